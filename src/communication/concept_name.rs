@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConceptName {
-    /// Theory of mind with communication planning: signals that save more presses than they cost.
+    /// ToM-Com, theory of mind with communication planning: sends signals that save more presses than they cost.
     #[default]
     TomCom,
-    /// Theory of mind without planning: signals about aspects with a large expected belief deviation.
+    /// ToM, theory of mind without planning: sends signals about aspects with a large expected belief deviation.
     Tom,
-    /// Deviation based: proposes the next good presses after an error.
+    /// DEV, deviation based: proposes the next good presses after an error.
     Dev,
     /// No concept: the assistant sends no signals.
     None,
@@ -21,7 +21,7 @@ impl ConceptName {
     /// All communication concepts.
     pub const ALL: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
 
-    /// Name of the concept in files.
+    /// Name of the communication concept in files.
     pub fn name(self) -> &'static str {
         match self {
             ConceptName::TomCom => "tom-com",
@@ -31,7 +31,7 @@ impl ConceptName {
         }
     }
 
-    /// Name of the concept in texts.
+    /// Name of the communication concept in texts.
     pub fn title(self) -> &'static str {
         match self {
             ConceptName::TomCom => "ToM-Com",

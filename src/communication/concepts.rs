@@ -13,8 +13,8 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::model::HumanModel;
 
-/// Creates the communication concept with this name and the settings of a session. Its random stream is seeded by
-/// `seed` and the number of presses.
+/// Creates the communication concept with this name and the settings of a session. `seed` and the number of presses
+/// seed the concept's random stream.
 pub fn concept(
     name: ConceptName,
     kitchen: Arc<Kitchen>,
@@ -30,7 +30,7 @@ pub fn concept(
     }
 }
 
-/// The concept that never sends a signal: the unassisted condition.
+/// The concept that never sends a signal, used in the unassisted condition.
 #[derive(Clone, Copy, Debug)]
 pub struct SilentConcept;
 

@@ -1,11 +1,11 @@
-//! DEV: the deviation based communication concept. When the human's press was an error, it proposes the next good
-//! presses (paper, "Concept comparisons": 1 to 5 of them).
+//! DEV: the deviation based communication concept. When the human's press was an error, DEV proposes the next good
+//! presses (paper, "Concept comparisons": 1 to 5 presses).
 //!
-//! A proposal has a signal of its own ([`Signal::Propose`](super::Signal::Propose)): "next: …". Most good presses
-//! involve the own hand or a storage, about which there is no other signal, and highlighting the location of a press
-//! would reveal its content, as the theory of mind concepts do. In trials of DEV the assistant sends proposals; beside
-//! a wizard they are shown at the console only. No other concept proposes presses. The offline comparison of concepts
-//! assumes that participants follow proposals, as in the paper.
+//! A proposal has a kind of signal of its own ([`Signal::Propose`](super::Signal::Propose)): "next: …". Most good
+//! presses involve the human's own hand or a storage, about which there is no other signal, and highlighting the
+//! location of a press would reveal its content, as the theory of mind concepts do. In trials of DEV the assistant
+//! sends proposals; beside a wizard, proposals are shown at the console only. No other concept proposes presses. The
+//! offline comparison of concepts assumes that participants follow proposals, as in the paper.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::recommendation::{PressProposal, Recommendation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 
-/// Largest number of presses of both agents that a proposal plans ahead.
+/// Largest number of presses of both agents that a proposal of DEV plans ahead.
 const MOST_AHEAD: usize = 40;
 
 /// The DEV concept: proposes the next good presses after an error.
@@ -31,7 +31,7 @@ impl DevConcept {
     }
 
     /// The next good presses of the human: presses that lower the cost to go of all orders. Where no press of the human
-    /// does, a press of the robot that does is assumed in between.
+    /// lowers the cost, a press of the robot that does is assumed in between.
     fn good(&self, cost: &mut CostToGo, state: State) -> Vec<ButtonId> {
         let mut state = state;
         let mut presses = Vec::new();
@@ -45,7 +45,7 @@ impl DevConcept {
         presses
     }
 
-    /// The agent's best press if it lowers the cost to go; ties go to the layout's order.
+    /// The agent's best press if the press lowers the cost to go; ties go to the layout's order.
     fn step(&self, cost: &mut CostToGo, state: State, agent: Agent) -> Option<(ButtonId, State)> {
         let recipes = self.kitchen.true_recipes();
         let decision = *cost.decision(state, &recipes, agent);
@@ -58,7 +58,7 @@ impl DevConcept {
 }
 
 impl Concept for DevConcept {
-    /// The advice of DEV: a proposal is valid, and is updated, until the human's next press.
+    /// The advice of DEV: a proposal of presses is valid, and is updated, until the human's next press.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
         let proposal = moment.error.map(|error| {

@@ -1,8 +1,8 @@
 //! Offers: recommendations as the wizard sees them. An offer opens, stays unchanged long enough to be read, and closes
 //! for a reason.
 //!
-//! This file has the types, the thresholds, and the memory of the present and the previous offers. The rules are in
-//! `session::offers`, since they need the trial's clock and the state of the kitchen.
+//! This file has the types, the thresholds, and the memory of the present and the previous offers. The rules of offers
+//! are in `session::offers`, since they need the trial's clock and the state of the kitchen.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,15 +11,15 @@ use super::recommendation::SignalReason;
 use super::signal::Signal;
 use crate::base::time::SessionTime;
 
-/// Time after its opening in which an offer closes only if the wizard takes it, if it becomes impossible, or if the
-/// trial ends.
+/// Time after its opening in which an offer closes only if the wizard takes it, if its signal becomes impossible, or if
+/// the trial ends.
 pub const HOLD: SessionTime = SessionTime(1_500_000_000);
 /// Time after the close of an offer in which no other offer opens.
 pub const GAP: SessionTime = SessionTime(1_000_000_000);
-/// Time after its opening in which the wizard cannot have read an offer: the key `enter` then refers to the previous
-/// offer.
+/// Time after its opening in which the wizard cannot have read an offer yet: the key `enter` then refers to the
+/// previous offer.
 pub const UNREAD: SessionTime = SessionTime(300_000_000);
-/// Time after its close in which the wizard can still take an offer, having read it and being about to press the key.
+/// Time after its close in which an offer can still be taken by a wizard who has read it and is about to press the key.
 pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 
 /// What an offer suggests to the wizard: a signal, or presses.
@@ -28,23 +28,23 @@ pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 pub enum OfferedCommunication {
     /// A signal that can be sent to the participant.
     Signal(Signal),
-    /// Presses that the DEV concept proposes, by the names of their buttons. They are shown to the wizard, who cannot
-    /// send them.
+    /// Presses that the DEV concept proposes, by the names of their buttons. The wizard sees the proposal, but cannot
+    /// send the presses.
     Presses(Vec<String>),
 }
 
 /// The value of an offered signal: in presses, or for the concept ToM in probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfferWorth {
-    /// Expected saving in presses; for ToM the expected belief deviation.
+    /// Expected saving of the signal in presses; for the concept ToM the expected belief deviation.
     pub benefit: f64,
-    /// Standard error of the signal's expected saving.
+    /// Standard error of the signal's expected saving, in the same unit.
     pub standard_error: f64,
-    /// Net benefit: benefit minus the cost of communication; for ToM minus the threshold.
+    /// Net benefit: benefit minus the cost of communication; for the concept ToM minus the threshold.
     pub net: f64,
 }
 
-/// Content of an offer to the wizard. It does not change while the offer is open.
+/// Content of an offer to the wizard, which does not change while the offer is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfferedAdvice {
     /// The offered signal, or the proposed presses.
@@ -58,44 +58,44 @@ pub struct OfferedAdvice {
     /// The false belief behind the offer and the press that the signal would prevent, as far as they are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<SignalReason>,
-    /// Whether a wizard could see the offer: there is a console or a script that reads offers, and the session's
+    /// Whether a wizard could see the offer: there is a console, or a script that reads offers, and the session's
     /// settings show recommendations.
     pub visible: bool,
 }
 
-/// How the wizard sent the signal of an offer.
+/// By which kind of key the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfferKeyUse {
-    /// By the key that takes the present offer.
+    /// The wizard sent the signal by the key `enter`, which takes the present offer.
     Taken,
-    /// By the key of this particular signal.
+    /// The wizard sent the signal by the signal's own key.
     OwnKey,
 }
 
 /// When and how the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct UsedOffer {
-    /// The kind of key with which the signal was sent.
+    /// The kind of key with which the wizard sent the signal.
     pub how: OfferKeyUse,
-    /// Session time at which the signal was sent.
+    /// Session time at which the wizard sent the signal.
     pub at: SessionTime,
 }
 
 /// An offer: a recommendation that is shown to the wizard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Offer {
-    /// Sequence number of the offer's event `offer_opened`, by which `offer_closed` and `signal_shown` refer to it.
+    /// Sequence number of the event `offer_opened`, by which `offer_closed` and `signal_shown` refer to the offer.
     pub seq: u64,
     /// Session time at which the offer opened.
     pub opened: SessionTime,
-    /// How the wizard sent the offer's signal while the offer was open or could still be taken, if the wizard sent it.
+    /// How and when the wizard sent the offer's signal while the offer could be taken; `None` if the wizard did not.
     pub used: Option<UsedOffer>,
-    /// The content of the offer, and the reason.
+    /// The content of the offer: what is offered, and the reason.
     pub advice: OfferedAdvice,
 }
 
 impl Offer {
-    /// The offered signal; `None` for proposed presses.
+    /// The offered signal; `None` if the offer proposes presses.
     pub fn signal(&self) -> Option<&Signal> {
         match &self.advice.what {
             OfferedCommunication::Signal(signal) => Some(signal),
@@ -108,22 +108,22 @@ impl Offer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferCloseReason {
-    /// The wizard took the offer.
+    /// The offer closed because the wizard took it.
     Taken,
-    /// The wizard sent the offered signal by the signal's own key.
+    /// The offer closed because the wizard sent the offered signal by the signal's own key.
     OwnKey,
-    /// The offered signal cannot be sent any more.
+    /// The offer closed because the offered signal cannot be sent any more.
     Impossible,
-    /// The net benefit of the offered signal fell below the threshold, or the proposal of presses is out of date.
+    /// The offer closed because the net benefit of its signal fell below the threshold, or its proposal is out of date.
     Fell,
-    /// Another signal became better than the offered one.
+    /// The offer closed because another signal became better than the offered one.
     Replaced,
-    /// The trial ended.
+    /// The offer closed because the trial ended.
     TrialEnded,
 }
 
 impl OfferCloseReason {
-    /// All reasons for which an offer closes.
+    /// All reasons for which an offer can close.
     pub const ALL: [OfferCloseReason; 6] = [
         OfferCloseReason::Taken,
         OfferCloseReason::OwnKey,
@@ -133,7 +133,7 @@ impl OfferCloseReason {
         OfferCloseReason::TrialEnded,
     ];
 
-    /// Name of the reason in logs and tables.
+    /// Name of the reason for closing an offer, in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
             OfferCloseReason::Taken => "taken",
@@ -158,18 +158,18 @@ impl OfferCloseReason {
     }
 }
 
-/// A closed offer, with the time and the reason.
+/// A closed offer, with the time and the reason of its close.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedOffer {
     /// The offer as it was when it closed.
     pub offer: Offer,
     /// Session time at which the offer closed.
     pub closed: SessionTime,
-    /// The reason for which the offer closed.
+    /// The reason for which this offer closed.
     pub reason: OfferCloseReason,
 }
 
-/// The offers of a trial: the open one, and the closed ones.
+/// The offers of a trial: the open offer, and the closed offers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OfferHistory {
     present: Option<Offer>,
@@ -177,7 +177,7 @@ pub struct OfferHistory {
 }
 
 impl OfferHistory {
-    /// The offer on the wizard's screen: it is open, and its signal has not been sent.
+    /// The offer on the wizard's screen, which is open and whose signal has not been sent; `None` if there is none.
     pub fn open(&self) -> Option<&Offer> {
         self.present.as_ref().filter(|offer| offer.used.is_none())
     }
@@ -187,7 +187,7 @@ impl OfferHistory {
         self.present.as_ref()
     }
 
-    /// The offer that closed last.
+    /// The offer of the trial that closed last.
     pub fn last(&self) -> Option<&ClosedOffer> {
         self.closed.last()
     }
@@ -197,7 +197,7 @@ impl OfferHistory {
         &self.closed
     }
 
-    /// The present or the last closed offer, if it has this sequence number.
+    /// The present offer or the last closed offer, if it has this sequence number.
     pub fn find(&self, seq: u64) -> Option<&Offer> {
         self.present.iter().chain(self.last().map(|last| &last.offer)).find(|offer| offer.seq == seq)
     }
@@ -212,8 +212,8 @@ impl OfferHistory {
         self.closed.extend(self.present.take().map(|offer| ClosedOffer { offer, closed: now, reason }));
     }
 
-    /// Records that the wizard sent a signal. It belongs to the open offer and, if `with_last`, to the last closed one,
-    /// if that offered the same signal.
+    /// Records that the wizard sent a signal. The sending counts for the open offer and, if `with_last`, for the last
+    /// closed offer, if that offered the same signal.
     pub fn sends(&mut self, signal: &Signal, used: UsedOffer, with_last: bool) {
         let last = self.closed.last_mut().filter(|_| with_last).map(|last| &mut last.offer);
         for offer in self.present.iter_mut().chain(last).filter(|offer| offer.signal() == Some(signal)) {
@@ -225,9 +225,9 @@ impl OfferHistory {
 /// Thresholds of net benefit at which offers close, in the unit of the concept's net benefit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OfferThresholds {
-    /// An offer closes when its net benefit is below this.
+    /// An offer closes when the net benefit of its signal is below this.
     pub closes_below: f64,
-    /// An offer closes when another signal's net benefit is higher by this.
+    /// An offer closes when another signal's net benefit exceeds that of its signal by at least this.
     pub better_by: f64,
 }
 
@@ -235,8 +235,8 @@ impl OfferThresholds {
     /// The thresholds of offers for a concept; offers of all concepts open above a net benefit of 0.
     ///
     /// ToM-Com: half a press, which is a third of the cost of communication and several standard errors of the benefit.
-    /// ToM: 0.1 of probability; one look at a place changes the belief about it by more. DEV: its proposals have no net
-    /// benefit.
+    /// ToM: 0.1 of probability; one look at a place changes the belief about that place by more. DEV: its proposals
+    /// have no net benefit.
     pub fn for_concept(name: ConceptName) -> OfferThresholds {
         match name {
             ConceptName::TomCom | ConceptName::Dev | ConceptName::None => {

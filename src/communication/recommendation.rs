@@ -15,15 +15,16 @@ pub struct Recommendation {
     pub for_seq: u64,
     /// Session time of the event for which the recommendation was computed.
     pub for_ns: SessionTime,
-    /// All signals that could be sent, the best first.
+    /// All signals that could be sent, the signal with the highest net benefit first.
     pub options: Vec<SignalOption>,
-    /// The recommended signal; `None` if no signal exceeds its cost.
+    /// The recommended signal; `None` if the saving of no signal exceeds its cost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub best: Option<Signal>,
-    /// Reason for the first option if it saves presses, even if it does not exceed its cost and `best` is `None`.
+    /// Reason for the first option if its signal saves presses, even if they do not exceed its cost and `best` is
+    /// `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<SignalReason>,
-    /// Proposed presses; only the concept DEV has any.
+    /// Proposed presses of the human; only the concept DEV proposes any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proposal: Option<PressProposal>,
 }
@@ -31,7 +32,7 @@ pub struct Recommendation {
 /// Good presses that the DEV concept proposes after an error.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PressProposal {
-    /// Sequence number of the erroneous press.
+    /// Sequence number of the erroneous press after which DEV proposes.
     pub error: u64,
     /// Proposed next presses of the human, by the names of their buttons.
     pub presses: Vec<String>,
@@ -42,31 +43,31 @@ pub struct PressProposal {
 pub struct SignalOption {
     /// The signal that could be sent to the participant.
     pub signal: Signal,
-    /// Expected saving in presses of both agents; for the concept ToM, the expected belief deviation.
+    /// Expected saving of the signal in presses of both agents; for the concept ToM, the expected belief deviation.
     pub benefit: f64,
     /// Standard error of the benefit, in the benefit's unit; 0 for a concept that computes it exactly.
     pub standard_error: f64,
-    /// Net benefit: benefit minus the cost of communication; for ToM, deviation minus threshold.
+    /// Net benefit: benefit minus the cost of communication; for the concept ToM, deviation minus threshold.
     pub net: f64,
-    /// Number of paired rollouts behind the estimate; 0 for ToM.
+    /// Number of paired rollouts behind the estimated benefit; 0 for the concept ToM, which needs none.
     pub rollouts: u32,
 }
 
 /// The false belief that a signal would correct, and the press that it would prevent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SignalReason {
-    /// Name of the aspect with the false belief.
+    /// Name of the state aspect with the false belief.
     pub aspect: String,
-    /// The value that is falsely believed, as text.
+    /// The value of the aspect that is falsely believed, as text.
     pub believes: String,
     /// The true value of the aspect, as text.
     pub truth: String,
-    /// Expected probability of the falsely believed value.
+    /// Expected probability that the human gives to the falsely believed value.
     pub p_believes: f64,
-    /// Name of the press that the false belief would lead to.
+    /// Name of the press to which the false belief would lead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prevents: Option<String>,
-    /// Name of the press after the signal; `None` for waiting.
+    /// Name of the press that the human makes after the signal instead; `None` for waiting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instead: Option<String>,
 }
@@ -77,7 +78,7 @@ impl Recommendation {
         Recommendation { for_seq: seq, for_ns: time, options: Vec::new(), best: None, reason: None, proposal: None }
     }
 
-    /// Removes a signal that has been sent; the next best signal is not computed before the next recommendation.
+    /// Removes a signal that has been sent; which signal is best then is not computed before the next recommendation.
     pub fn remove(&mut self, sent: &Signal) {
         self.options.retain(|option| option.signal != *sent);
         if self.best.as_ref() == Some(sent) {
@@ -91,8 +92,8 @@ impl Recommendation {
     }
 }
 
-/// The state aspects that a signal reveals: a location's content, or an order and the recipe of its dish; none for
-/// proposed presses.
+/// The state aspects that a signal reveals: a location's content, or an order and the recipe of the ordered dish; none
+/// for proposed presses.
 pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<AspectId> {
     let Some(location) = signal.location(kitchen) else { return Vec::new() };
     let mut aspects = vec![AspectId::of_location(location)];
@@ -102,13 +103,14 @@ pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<Asp
     aspects
 }
 
-/// A content worded as part of a sentence; a stack is put in quotes.
+/// A content's name worded as part of a sentence; a stack is put in quotes.
 pub fn phrase(label: &str) -> String {
     if label.contains(" + ") { format!("\"{label}\"") } else { label.to_string() }
 }
 
 impl SignalReason {
-    /// The reason for a signal: its aspect to whose true value the estimated belief gives the lowest probability.
+    /// The reason for a signal: of the signal's aspects, the one to whose true value the estimated belief gives the
+    /// lowest probability.
     pub fn for_signal(
         kitchen: &Kitchen,
         state: State,
@@ -133,14 +135,15 @@ impl SignalReason {
         })
     }
 
-    /// The false belief in words: "takes order 1 for tuna nigiri (0.83)", or "may take" below a probability of 0.5.
+    /// The false belief in words: "takes order 1 for tuna nigiri (0.83)"; "may take" if its probability is below 0.5.
     pub fn taken(&self) -> String {
         let SignalReason { aspect, believes, p_believes, .. } = self;
         let takes = if *p_believes < 0.5 { "may take" } else { "takes" };
         format!("{takes} {} for {} ({p_believes:.2})", aspect.replace('_', " "), phrase(believes))
     }
 
-    /// The reason in words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take salmon"".
+    /// The signal's reason in words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take
+    /// salmon"".
     pub fn words(&self) -> String {
         let said = |name: &str| name.replace('_', " ");
         let taken = self.taken();

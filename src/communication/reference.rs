@@ -1,6 +1,6 @@
 //! The reference planner: planning of communication implemented directly from the equations (paper, section "Planning
-//! communication"), for tests and benchmarks. It shares with [`super::planner`] only the cost to go, the kitchen's
-//! rules, the robot's policy and the parameters.
+//! communication"), for tests and benchmarks. The reference planner shares with [`super::planner`] only the cost to go,
+//! the kitchen's rules, the robot's policy and the parameters.
 //!
 //! Every rollout has an explicit belief whose components are gamma variates, updated by the human model ([`Particle`]).
 //! Every decision computes Q from worlds drawn from that belief. All signals and the baseline get the same number of
@@ -27,13 +27,13 @@ use crate::robot::policy;
 pub struct ReferenceBenefit {
     /// The signal whose benefit was estimated.
     pub signal: Signal,
-    /// Expected saving in presses of both agents.
+    /// Expected saving of the signal in presses of both agents.
     pub benefit: f64,
     /// Standard error of the benefit, in presses.
     pub standard_error: f64,
 }
 
-/// The planner of signals without optimisations, to check the fast one.
+/// The reference planner of signals, without optimisations, to check the optimised planner.
 #[derive(Clone, Debug)]
 pub struct ReferencePlanner {
     kitchen: Arc<Kitchen>,
@@ -46,17 +46,17 @@ pub struct ReferencePlanner {
 struct Future {
     state: State,
     person: Particle,
-    /// The button to which the robot's arm is moving, the time of arrival in seconds, and whether the press is made in
-    /// any case.
+    /// The button to which the robot's arm is moving, the time of arrival in seconds, and whether the robot makes the
+    /// press in any case.
     errand: Option<(ButtonId, f64, bool)>,
     now_s: f64,
     presses: u32,
-    /// The aspects of the signal, and the time at which it is read, until then.
+    /// The state aspects of the signal, and the time at which the human reads it; `None` once it is read.
     signal: Option<(Vec<AspectId>, f64)>,
 }
 
 impl Future {
-    /// The human reads the signal, if that is due at `now_s`.
+    /// Lets the human read the signal, if its reading is due at `now_s`.
     fn read_by(&mut self, kitchen: &Kitchen, now_s: f64) {
         if let Some((aspects, _)) = self.signal.take_if(|(_, read_s)| *read_s <= now_s) {
             for aspect in aspects {
@@ -65,7 +65,7 @@ impl Future {
         }
     }
 
-    /// The human sees the contents of the locations for which `is_seen` holds.
+    /// Lets the human see the contents of the locations for which `is_seen` holds.
     fn see(&mut self, kitchen: &Kitchen, is_seen: impl Fn(LocationId) -> bool) {
         for place in (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|place| is_seen(*place)) {
             let aspect = AspectId::of_location(place);
@@ -75,13 +75,13 @@ impl Future {
 }
 
 impl ReferencePlanner {
-    /// A reference planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
+    /// A reference planner for a human model. `seed` and the number of presses so far seed the planner's random stream.
     pub fn new(kitchen: Arc<Kitchen>, mut human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
         human.looking = spec.rollout.looking(&human.looking);
         ReferencePlanner { kitchen, human, spec, seed }
     }
 
-    /// Expected benefit of each available signal, by rollouts.
+    /// Expected benefit of each available signal, estimated by rollouts.
     pub fn advise(&self, cost: &mut CostToGo, moment: &DecisionPoint) -> Vec<ReferenceBenefit> {
         let situation = &moment.situation;
         let possible =
@@ -91,7 +91,7 @@ impl ReferencePlanner {
         for rollout in 0..self.spec.rollout.rollouts as u64 {
             let silent = self.roll_out(cost, moment, None, rollout);
             for (signal, saved) in signals.iter().zip(&mut saved) {
-                // Whoever misses the signal goes on as without it.
+                // A human who misses the signal continues as without the signal.
                 let kind = signal.location(&self.kitchen).map(|location| self.kitchen.location(location).kind);
                 let is_read = kind.map_or(1.0, |kind| situation.forecast.probability(kind));
                 saved.push(is_read * (silent - self.roll_out(cost, moment, Some(signal), rollout)));
@@ -112,7 +112,7 @@ impl ReferencePlanner {
         stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
 
-    /// Presses of both agents and the cost to go at the end of one rollout.
+    /// Number of presses of both agents in one rollout, plus the cost to go at its end.
     fn roll_out(&self, cost: &mut CostToGo, moment: &DecisionPoint, signal: Option<&Signal>, rollout: u64) -> f64 {
         let DecisionPoint { situation, presses, .. } = *moment;
         let mut random = self.chance("plain belief", presses, rollout, 0);
@@ -174,7 +174,7 @@ impl ReferencePlanner {
         }
     }
 
-    /// The human looks at locations, decides, and presses.
+    /// Lets the human look at locations, decide, and press.
     fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
         let kitchen = &self.kitchen;
         let chance = |rate_hz: f64| 1.0 - (-rate_hz * self.spec.rollout.human_press_s).exp();
@@ -195,7 +195,7 @@ impl ReferencePlanner {
         let Some(button) = deed else { return };
         let before = future.state;
         let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
-        // A human whose belief is contradicted by the press looks at the locations involved.
+        // A human whose belief is contradicted by the effect of the press looks at the locations involved.
         let truth = |index: usize| {
             let mut certain = vec![0.0; kitchen.aspects[index].values.len()];
             certain[kitchen.true_value(before, AspectId(index as u8))] = 1.0;
@@ -207,7 +207,7 @@ impl ReferencePlanner {
         future.presses += 1;
     }
 
-    /// The human's action for a uniform draw: `None` for waiting, or a press, slips included.
+    /// The human's action for a uniform random number `draw`: `None` for waiting, or a press, slips included.
     fn deed(&self, cost: &mut CostToGo, person: &Particle, draw: f64, random: &mut Stream) -> Option<ButtonId> {
         let (kitchen, decision) = (&self.kitchen, &self.human.decision);
         let (here, after) = person.prospects(kitchen, cost, self.spec.rollout.states, random);

@@ -1,5 +1,5 @@
-//! The repeat rule: a signal that was read is not repeated before its content can have been forgotten, and one that was probably missed
-//! not before it has left the display.
+//! The rule against repeated signals: a signal that was read is not repeated before its content can have been
+//! forgotten, and a signal that was probably missed is not repeated before it has left the display.
 
 use super::recommendation::aspects_told;
 use super::signal::{Signal, signals};
@@ -7,15 +7,16 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 
-/// Expected P(truth) above which the human is assumed to know the content of a signal.
+/// Expected P(truth) above which the human is assumed to know what a signal says.
 const KNOWN: f64 = 0.9;
-/// A signal with a smaller probability of having been read was probably missed.
+/// Probability of having been read below which a signal was probably missed.
 const PROBABLY_READ: f64 = 0.5;
 
-/// The signals that must not be repeated yet. A signal may be repeated once P(truth) of its aspects has passed 0.9 and fallen
-/// again, or the truth has changed. Where signals can be missed, one may also be repeated that has left the display, if it was probably not read or
-/// P(truth) has not passed 0.9 until then. How often somebody is told in vain who notices nothing is bounded by the planner, since the
-/// expected probability of being noticed falls with each missed signal.
+/// The signals that must not be repeated yet. A signal may be repeated once P(truth) of its aspects has passed 0.9 and
+/// fallen again, or the truth has changed. Where signals can be missed, a signal that has left the display may also be
+/// repeated if it was probably not read, or if P(truth) has not passed 0.9 until then. The planner bounds how often
+/// somebody who notices nothing is told in vain, since the expected probability of being noticed falls with each missed
+/// signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalRepeatRule {
     /// The last signal about each location.
@@ -25,15 +26,15 @@ pub struct SignalRepeatRule {
 /// Content of a signal that the display showed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Told {
-    /// Code of the location's content when the signal was shown.
+    /// Code of the location's content at the time when the signal was shown.
     code: u8,
     was_known: bool,
-    /// It has left the display, and was read with this probability.
+    /// Probability with which the signal was read before it left the display; `None` while the display shows it.
     read: Option<f64>,
 }
 
 impl SignalRepeatRule {
-    /// Records that the display showed a signal.
+    /// Records that the display shows a signal.
     pub fn shown(&mut self, kitchen: &Kitchen, state: State, signal: &Signal) {
         if let Some(location) = signal.location(kitchen) {
             self.told[location.index()] = Some(Told { code: state.code(location), was_known: false, read: None });
@@ -45,14 +46,14 @@ impl SignalRepeatRule {
         self.told[location.index()] = None;
     }
 
-    /// Notes that the signal about a location has left the display, and with which probability it was read.
+    /// Records that the signal about a location has left the display, and with which probability it was read.
     pub fn over(&mut self, location: LocationId, read: f64) {
         if let Some(told) = &mut self.told[location.index()] {
             told.read = Some(read);
         }
     }
 
-    /// Applies the repeat rule after a change of the estimate or of the true state.
+    /// Updates which signals may be repeated, after a change of the estimate or of the true state.
     pub fn update(&mut self, kitchen: &Kitchen, state: State, belief: &DirichletBelief) {
         for (location, signal) in signals(kitchen, true) {
             let slot = &mut self.told[location.index()];
@@ -68,7 +69,7 @@ impl SignalRepeatRule {
         }
     }
 
-    /// The available signals that the repeat rule allows now.
+    /// The available signals that the rule against repeats allows now.
     pub fn allowed(&self, kitchen: &Kitchen, own_hand: bool) -> Vec<Signal> {
         let all = signals(kitchen, own_hand).into_iter();
         all.filter(|(location, _)| self.told[location.index()].is_none()).map(|(_, signal)| signal).collect()

@@ -9,40 +9,40 @@ use crate::mind::model::LookingModel;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AssistantSpec {
-    /// Whether the assistant computes recommendations in trials in which it does not send signals.
+    /// Whether the assistant computes recommendations in trials in which the assistant does not send signals.
     pub shadow: ShadowMode,
-    /// The communication concept by which the assistant decides.
+    /// The communication concept by which the assistant decides which signals to send.
     pub concept: ConceptName,
-    /// Cost of communication in presses: the expected saving of a signal must exceed it (1.5 in the paper).
+    /// Cost of communication in presses: the expected saving of a signal must exceed this cost (1.5 in the paper).
     pub cost_of_communication: f64,
-    /// Expected belief deviation, a probability, above which ToM sends a signal.
+    /// Threshold of the concept ToM: expected belief deviation, a probability, above which ToM sends a signal.
     pub belief_threshold: f64,
     /// Number of presses that the concept DEV proposes after an error.
     pub proposed_presses: usize,
-    /// Whether the assistant is also asked for advice when the human has not pressed for unusually long
-    /// (`human_waits`).
+    /// Whether the assistant is also asked for advice when the human has not pressed for unusually long (event
+    /// `human_waits`).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_in_silence: bool,
     /// Whether the assistant is also asked for advice when, judged by the gaze alone, the human seems to have a false
-    /// belief (`seems_unaware`).
+    /// belief (event `seems_unaware`).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_by_gaze: bool,
-    /// Whether the assistant of a live session works ahead between requests for advice, which makes its answers come sooner, and
-    /// changes nothing else. Recordings name it only where it is off.
+    /// Whether the assistant of a live session works ahead between requests for advice, which makes the answers come
+    /// sooner, and changes nothing else. Recordings contain this setting only where it is off.
     #[serde(skip_serializing_if = "Clone::clone")]
     pub works_ahead: bool,
-    /// How finely the planner computes.
+    /// Settings of the planner's rollouts: how finely the planner computes.
     pub rollout: RolloutSettings,
 }
 
-/// Whether the assistant computes recommendations in conditions in which it does not send signals.
+/// Whether the assistant computes recommendations in conditions in which the assistant does not send signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShadowMode {
     /// The assistant computes recommendations beside the wizard, who may see them.
     #[default]
     On,
-    /// The assistant computes nothing in trials in which it does not send signals.
+    /// The assistant computes nothing in trials in which the assistant does not send signals.
     Off,
 }
 
@@ -52,7 +52,7 @@ impl Default for AssistantSpec {
             shadow: ShadowMode::On,
             concept: ConceptName::TomCom,
             cost_of_communication: 1.5,
-            // Equal to the definition of a false belief.
+            // The default threshold is equal to that in the definition of a false belief.
             belief_threshold: 0.5,
             proposed_presses: 1,
             asks_in_silence: false,
@@ -67,27 +67,28 @@ impl Default for AssistantSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RolloutSettings {
-    /// Number of human decisions in a rollout (horizon).
+    /// Horizon of a rollout: number of the human's decisions.
     pub horizon: usize,
     /// Largest number of paired rollouts per signal.
     pub rollouts: usize,
-    /// Number of worlds drawn from each belief sample.
+    /// Number of worlds drawn from each belief sample in a rollout.
     pub states: usize,
-    /// Time between presses of the human, in seconds.
+    /// Time between two presses of the human in a rollout, in seconds.
     pub human_press_s: f64,
-    /// Looks per second in rollouts, if they differ from those of the human model: see [`LookingModel`].
+    /// Looks per second in rollouts at places that the next press needs, if not as in the human model: see
+    /// [`LookingModel`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub looks_hz: Option<f64>,
-    /// Looks per second in rollouts at places that the next press does not need, if they differ from those of the human
-    /// model.
+    /// Looks per second in rollouts at places that the next press does not need, if the rate differs from that of the
+    /// human model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_looks_hz: Option<f64>,
-    /// Share of the changes by others that attract the gaze at once in rollouts, if it differs from that of the human
-    /// model.
+    /// Share of the changes by others that attract the gaze at once in rollouts, if the share differs from that of the
+    /// human model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capture: Option<f64>,
-    /// Rollouts of a signal end when the standard error of its benefit is at most this, in presses, or at most twice
-    /// this if the net benefit differs from zero by three standard errors.
+    /// Standard error of a signal's benefit at which its rollouts end, in presses; twice this is enough if the net
+    /// benefit differs from zero by three standard errors.
     pub enough_error: f64,
     /// Least number of paired rollouts per signal.
     pub least_rollouts: usize,
@@ -110,7 +111,7 @@ impl Default for RolloutSettings {
 }
 
 impl RolloutSettings {
-    /// Where the human looks in rollouts: as the human model says, or as the settings of the rollouts say.
+    /// The looking model of rollouts: that of the human model, with the rates that the settings of the rollouts name.
     pub fn looking(&self, human: &LookingModel) -> LookingModel {
         LookingModel {
             looks_hz: self.looks_hz.unwrap_or(human.looks_hz),
@@ -122,7 +123,7 @@ impl RolloutSettings {
 }
 
 impl AssistantSpec {
-    /// The value that a signal's benefit must exceed: the cost of communication in presses, or ToM's threshold.
+    /// The value that a signal's benefit must exceed: the cost of communication in presses, or the threshold of ToM.
     pub fn price(&self) -> f64 {
         match self.concept {
             ConceptName::Tom => self.belief_threshold,
@@ -130,7 +131,7 @@ impl AssistantSpec {
         }
     }
 
-    /// The parameter that is varied when concepts are compared: the cost of communication, ToM's threshold, or the
+    /// The parameter that is varied when concepts are compared: the cost of communication, the threshold of ToM, or the
     /// number of presses that DEV proposes.
     pub fn parameter(&self) -> f64 {
         match self.concept {

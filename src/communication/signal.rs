@@ -1,11 +1,11 @@
-//! The signals that can be sent to the participant, and when each is available.
+//! The signals that can be sent to the participant, and when each signal is available.
 
 use serde::{Deserialize, Serialize};
 
 use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::observation::MOST_PROPOSED;
 
-/// A signal to the participant, by the names of the layout's locations.
+/// A signal to the participant, which names locations as the layout does.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Signal {
@@ -13,8 +13,8 @@ pub enum Signal {
     ShowRecipe(String),
     /// Highlights a location, to direct attention to its content.
     Highlight(String),
-    /// Proposes the human's next presses, the next one first, by the names of their buttons. Only the concept DEV
-    /// proposes; a proposal reveals nothing about contents and recipes.
+    /// Proposes the human's next presses, the next one first, by the names of their buttons. Only the concept DEV makes
+    /// proposals; a proposal reveals nothing about contents and recipes.
     Propose(Vec<String>),
 }
 
@@ -32,7 +32,7 @@ impl Signal {
         kitchen.location_named(self.target()?)
     }
 
-    /// Number of contents of the signal: presses of a proposal, one of any other signal.
+    /// Number of things that the signal tells: the number of presses of a proposal, one for any other signal.
     pub fn contents(&self) -> usize {
         match self {
             Signal::ShowRecipe(_) | Signal::Highlight(_) => 1,
@@ -52,8 +52,8 @@ pub enum Sender {
 }
 
 /// The signal about each location, from which wizard, ToM-Com and ToM choose, in the order of the locations: recipes
-/// for orders, highlights for the other locations. The human's own hand has a signal only if `own_hand` allows it,
-/// since people see it best.
+/// for orders, highlights for the other locations. The human's own hand has a signal only if `own_hand` allows that,
+/// since people see their own hand best.
 pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
     let signal = |index: usize| {
         let location = &kitchen.locations[index];
@@ -67,14 +67,14 @@ pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
     (0..kitchen.locations.len()).filter_map(signal).collect()
 }
 
-/// The signals that can be sent in a state.
+/// The signals that can be sent in this state of the kitchen.
 pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal> {
     let all = signals(kitchen, own_hand).into_iter().map(|(_, signal)| signal);
     all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
 }
 
-/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show, and the
-/// first press of a proposal must have an effect.
+/// Why a signal cannot be sent now; `None` if it can be sent. Only an order that wants a dish has a recipe to show, and
+/// the first press of a proposal must have an effect.
 pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
     if let Signal::Propose(presses) = signal {
         return not_proposable(kitchen, state, presses);

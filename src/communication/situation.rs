@@ -9,21 +9,21 @@ use crate::mind::signal_model::SignalForecast;
 pub struct Situation<'a> {
     /// The true state of the kitchen.
     pub state: State,
-    /// The estimate of the human's belief.
+    /// The estimate of the human's belief at this time.
     pub belief: &'a DirichletBelief,
-    /// Locations that have just changed, and may attract the human's gaze.
+    /// State aspects of locations that have just changed, and that may attract the human's gaze.
     pub changed: &'a [AspectId],
     /// What the robot is doing now.
     pub robot: RobotIntent,
-    /// Duration of a robot press, in seconds.
+    /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
-    /// How a signal that is shown now will be read.
+    /// Forecast of how a signal that is shown now will be read.
     pub forecast: SignalForecast,
 }
 
 impl<'a> Situation<'a> {
-    /// A situation in which nothing has just changed, the robot follows its policy, with a press every 2.4 s, and a signal is believed at
-    /// once.
+    /// A situation in which nothing has just changed, the robot follows its policy, with a press every 2.4 s, and
+    /// signals are believed at once.
     pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
         let forecast = SignalForecast::default();
         Situation { state, belief, changed: &[], robot: RobotIntent::Free, robot_press_s: 2.4, forecast }
@@ -35,7 +35,7 @@ impl<'a> Situation<'a> {
 pub enum RobotIntent {
     /// The robot's arm is moving to a button.
     Busy {
-        /// The robot's button, as an index into its buttons.
+        /// The button to which the arm is moving, as an index into the robot's buttons.
         button: ButtonId,
         /// Time until the arm touches the button, in seconds.
         remaining_s: f64,

@@ -1,9 +1,9 @@
-//! ToM: the communication concept with theory of mind, but without planning. It communicates false or uncertain
-//! beliefs, whether they matter now or not (paper, "Concept comparisons"; Buehler and Weisswange 2018).
+//! ToM: the communication concept with theory of mind, but without planning. ToM sends signals about false or uncertain
+//! beliefs, whether the beliefs matter now or not (paper, "Concept comparisons"; Buehler and Weisswange 2018).
 //!
 //! Among the available signals, the one whose aspect has the largest expected belief deviation, 1 - E[P(truth)], is
-//! recommended if that deviation exceeds a threshold (0.4 to 0.99 in the paper). There is no signal about the own hand
-//! (unless the session allows it) and about recipes of dishes that are not ordered.
+//! recommended if that deviation exceeds a threshold (0.4 to 0.99 in the paper). There is no signal about the human's
+//! own hand (unless the session allows it) and about recipes of dishes that are not ordered.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl TomConcept {
         TomConcept { kitchen, threshold }
     }
 
-    /// Largest expected belief deviation among the aspects that a signal shows.
+    /// Largest expected belief deviation among the state aspects that a signal shows.
     fn deviation(&self, moment: &DecisionPoint, signal: &Signal) -> f64 {
         let (kitchen, state, belief) = (&self.kitchen, moment.situation.state, moment.situation.belief);
         let aspects = aspects_told(kitchen, state, signal).into_iter();
@@ -42,7 +42,7 @@ impl Concept for TomConcept {
         let (kitchen, state) = (&self.kitchen, moment.situation.state);
         let possible = moment.signals.iter().filter(|signal| unavailable(kitchen, state, signal).is_none());
         let mut ranked: Vec<(f64, &Signal)> = possible.map(|signal| (self.deviation(moment, signal), signal)).collect();
-        // The sort is stable: ties go to the layout's order.
+        // The sort is stable, so that signals with equal deviations keep the layout's order.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let best = ranked.first().filter(|(deviation, _)| *deviation > self.threshold);
         let option = |&(deviation, signal): &(f64, &Signal)| SignalOption {

@@ -1,10 +1,11 @@
 //! ToM-Com: sends the signal whose expected saving exceeds its cost (paper, section "Planning communication").
 //!
-//! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without the
-//! signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean difference
-//! between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that changes none of
-//! a sample's worlds saves exactly nothing in its rollout, which is skipped. Where signals take time, a rollout reads its signal after the
-//! mean delay, and counts by the probability that the signal is read: whoever misses it goes on like the baseline.
+//! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
+//! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
+//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that
+//! changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped. Where signals take time, a
+//! rollout reads its signal after the mean delay, and its saving is multiplied by the probability that the signal is
+//! read: a human who misses the signal continues like the baseline.
 
 mod lattice;
 mod rollout;
@@ -33,11 +34,11 @@ use crate::mind::ChoiceModel;
 use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::recorded_estimate::rounded;
 
-/// Number of rollouts after which the planner checks for which signals the net benefit is certain enough.
+/// Number of rollouts after which the planner checks for which signals the sign of the net benefit is certain enough.
 const BATCH: usize = 32;
 
-/// The ToM-Com planner: estimates the net benefit of each signal by paired rollouts. Its caches change computing time,
-/// never results.
+/// The ToM-Com planner: estimates the net benefit of each signal by paired rollouts. The planner's caches change
+/// computing time, never results.
 #[derive(Clone, Debug)]
 pub struct Planner {
     kitchen: Arc<Kitchen>,
@@ -45,17 +46,17 @@ pub struct Planner {
     seed: u64,
     choice: ChoiceModel,
     foresight: f64,
-    /// Where the human looks in a rollout.
+    /// Looking model of the rollouts: where, and how often, the human looks.
     looking: LookingModel,
     involved: Vec<Vec<AspectId>>,
     /// For each button of the human, the aspects at which the human looks before a press: the locations involved and,
-    /// before fetching an item, the robot's hand, which may be bringing it.
+    /// before fetching an item, the robot's hand, which may be bringing the item.
     watched: Vec<Vec<AspectId>>,
     policy: RobotPolicy,
     samples: BeliefSamples,
     baseline: BaselineRollout,
     state: RolloutState,
-    /// The human's weighted worlds without and with a signal.
+    /// Weighted worlds that represent the human's belief, without a signal and with one.
     believed: WeightedWorlds<u32>,
     signalled: WeightedWorlds<u32>,
     draws: Vec<RolloutDraws>,
@@ -66,14 +67,14 @@ pub struct Planner {
 struct Candidate {
     signal: Signal,
     aspects: Vec<AspectId>,
-    /// Probability that it is read and understood.
+    /// Probability that the signal is read and understood.
     probability: f64,
     tally: PairedDifferences,
     is_decided: bool,
 }
 
 impl Planner {
-    /// A planner for this human model. Its random stream is seeded by `seed` and the number of presses so far.
+    /// A planner for this human model. `seed` and the number of presses so far seed the planner's random stream.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
@@ -111,7 +112,7 @@ impl Planner {
         possible.map(candidate).collect()
     }
 
-    /// Runs one baseline rollout, and a paired rollout for each signal that changes a world.
+    /// Runs one baseline rollout, and a paired rollout for each signal that changes a world of the sample.
     fn roll_out(
         &mut self,
         cost: &mut CostToGo,
@@ -166,13 +167,13 @@ impl Planner {
             let worlds = if unread.is_some() { &self.believed } else { &self.signalled };
             self.state.begin(&self.kitchen, situation, worlds, sees);
             let outcome = rollout.with_signal(&mut self.state, unread, &self.baseline);
-            // Whoever misses the signal saves exactly nothing by it.
+            // A human who misses the signal saves exactly nothing by the signal.
             let saved = candidate.probability * f64::from(self.baseline.value - outcome.value);
             candidate.tally.add(saved, outcome.diverged);
         }
     }
 
-    /// Whether the net benefit of every signal is certain enough.
+    /// Whether the net benefit of every signal is known with enough certainty.
     fn is_decided(&self, candidates: &mut [Candidate], rollouts: usize) -> bool {
         let model = &self.spec.rollout;
         if rollouts < model.least_rollouts {
@@ -186,7 +187,8 @@ impl Planner {
         candidates.iter().all(|candidate| candidate.is_decided)
     }
 
-    /// The signals with their estimated savings, as far as `proceed` allowed: it is asked before each rollout.
+    /// The signals with their estimated savings, from as many rollouts as `proceed` allowed, which is asked before
+    /// each.
     fn compared(
         &mut self,
         cost: &mut CostToGo,
@@ -219,7 +221,7 @@ impl Planner {
     ) -> Recommendation {
         let price = self.spec.cost_of_communication;
         let mut candidates = candidates;
-        // Ties go to the layout's order.
+        // Signals with equal savings keep the layout's order.
         candidates.sort_by(|a, b| b.tally.mean().total_cmp(&a.tally.mean()));
         let option = |candidate: &Candidate| SignalOption {
             signal: candidate.signal.clone(),
@@ -245,7 +247,7 @@ impl Planner {
 }
 
 impl Concept for Planner {
-    /// Estimates the net benefit of the available signals and ranks them by it.
+    /// Estimates the net benefit of the available signals and ranks the signals by their net benefit.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let candidates = self.compared(cost, moment, &mut || true);
         self.recommendation(&moment.situation, candidates, Recommendation::silent(moment.seq, moment.time))

@@ -1,8 +1,8 @@
 //! One planner rollout: decisions of a human whose belief is one sample, and presses of the robot in between.
 //!
 //! Rollouts with the same number use the same random numbers with and without a signal (paired rollouts), which makes
-//! their differences precise. A rollout that reaches the same state as its baseline is not continued, since it ends
-//! like the baseline.
+//! the differences between them precise. A rollout that reaches the same state as its baseline is not continued, since
+//! it ends like the baseline.
 
 use rand::RngExt;
 
@@ -19,7 +19,7 @@ use crate::mind::choice::{ChoiceModel, HumanChoice};
 /// Number of robot presses between two decisions of the human that have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
 
-/// Random numbers of one decision of the human and of the robot's presses before it; `looks` by location.
+/// Random numbers of one decision of the human and of the robot's presses before that decision; `looks` by location.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RolloutDraws {
     decision: f64,
@@ -41,8 +41,8 @@ impl RolloutDraws {
         draws
     }
 
-    /// Replaces the random numbers of the decision, of the robot's first choice before it, and of whether the robot's
-    /// first press attracts the gaze.
+    /// Replaces three random numbers: of the decision, of the robot's first choice before the decision, and of whether
+    /// the robot's first press attracts the gaze.
     pub fn begin_with(&mut self, first: &[f64]) {
         if let &[decision, choice, capture] = first {
             (self.decision, self.choices[0], self.captures[0]) = (decision, choice, capture);
@@ -54,25 +54,25 @@ impl RolloutDraws {
 pub struct RolloutContext<'a> {
     /// The kitchen in which the rollout is simulated.
     pub kitchen: &'a Kitchen,
-    /// The true recipes of all dishes.
+    /// The true recipes of all dishes in the rollout.
     pub recipes: Recipes,
     /// The human's choice model.
     pub choice: &'a ChoiceModel,
-    /// For each button of the human, the aspects of the locations on which its effect depends.
+    /// For each button of the human, the state aspects of the locations on which the button's effect depends.
     pub involved: &'a [Vec<AspectId>],
-    /// For each button of the human, the aspects at which the human looks before the press.
+    /// For each button of the human, the state aspects at which the human looks before the press.
     pub watched: &'a [Vec<AspectId>],
-    /// Settings of the rollouts: horizon, number and accuracy.
+    /// Settings of the rollouts: their horizon, their number and their accuracy.
     pub model: &'a RolloutSettings,
     /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
-    /// Probability that the human looks at a needed location before a press.
+    /// Probability that the human looks at a location that the next press needs, before that press.
     pub looks: f64,
     /// Probability that the human looks at any other location before a decision.
     pub other_looks: f64,
     /// Share of the changes by others that attract the human's gaze at once.
     pub capture: f64,
-    /// Probability that the human infers the consequences of a robot press.
+    /// Probability that the human infers the consequences of a robot press that the human did not see.
     pub foresight: f64,
 }
 
@@ -81,7 +81,7 @@ pub struct RolloutContext<'a> {
 pub struct RolloutState {
     /// The true state of the kitchen.
     pub kitchen: State,
-    /// The worlds that represent the human's belief.
+    /// The weighted worlds that represent the human's belief.
     pub worlds: WeightedWorlds<u32>,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
@@ -89,22 +89,22 @@ pub struct RolloutState {
     now_s: f64,
 }
 
-/// The baseline of a signal's rollouts: the rollout without a signal, with its states, the human's choices, and its
-/// value.
+/// The baseline of a signal's rollouts: the rollout without a signal, with its states, the human's choices, and the
+/// number of presses that it takes.
 #[derive(Clone, Debug, Default)]
 pub struct BaselineRollout {
     states: Vec<RolloutState>,
     choices: Vec<HumanChoice>,
-    /// Number of presses of both agents up to the horizon plus the cost to go there.
+    /// Number of presses of both agents up to the horizon, plus the cost to go from there.
     pub value: i32,
 }
 
 /// Result of a rollout with a signal, paired with the baseline without one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
-    /// Number of presses of both agents plus the cost to go at the end.
+    /// Number of presses of both agents in the rollout, plus the cost to go at its end.
     pub value: i32,
-    /// The first choice of the human that differs: the choice in the baseline, and the choice with the signal.
+    /// The first choice of the human that differs between the two rollouts: in the baseline, and with the signal.
     pub diverged: Option<(HumanChoice, HumanChoice)>,
 }
 
@@ -127,7 +127,7 @@ impl RolloutState {
         (self.presses, self.now_s) = (0, 0.0);
     }
 
-    /// The human looks at every location that has just changed.
+    /// The human looks at every location whose content has just changed.
     fn see_changes(&mut self, kitchen: &Kitchen, before: State) {
         for location in kitchen.changed(before, self.kitchen) {
             self.worlds.learn(kitchen, AspectId::of_location(location), self.kitchen);
@@ -142,24 +142,24 @@ impl RolloutState {
         (self.presses, self.now_s) = (other.presses, other.now_s);
     }
 
-    /// Whether the rollout continues exactly like another one in the state `other` at the same time.
+    /// Whether this rollout continues exactly like another rollout that is in the state `other` at the same time.
     fn continues_like(&self, other: &RolloutState) -> bool {
         self.kitchen == other.kitchen && self.ongoing == other.ongoing && self.worlds == other.worlds
     }
 }
 
-/// A signal that will be read.
+/// A signal that the human of the rollout will read.
 #[derive(Clone, Copy, Debug)]
 pub struct UnreadSignal<'a> {
-    /// The aspects that it makes certain.
+    /// The state aspects of which the human becomes certain by reading the signal.
     pub aspects: &'a [AspectId],
-    /// Time at which it is read, in seconds since the start of the rollout.
+    /// Time at which the human reads the signal, in seconds since the start of the rollout.
     pub read_s: f64,
 }
 
 /// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
-    /// The data that all rollouts of the recommendation share.
+    /// The data that all rollouts for one recommendation share.
     pub context: &'a RolloutContext<'a>,
     /// The cost to go, with its caches.
     pub cost: &'a mut CostToGo,
@@ -167,12 +167,12 @@ pub struct Rollout<'a> {
     pub policy: &'a mut RobotPolicy,
     /// The random numbers of each decision of the human, in order.
     pub draws: &'a [RolloutDraws],
-    /// Time of the human's first decision, in seconds.
+    /// Time of the human's first decision, in seconds since the start of the rollout.
     pub first_s: f64,
 }
 
 impl Rollout<'_> {
-    /// Runs the rollout without a signal and stores its states and choices.
+    /// Runs the rollout without a signal and stores its states and the human's choices.
     pub fn baseline(&mut self, state: &mut RolloutState, baseline: &mut BaselineRollout) {
         baseline.choices.clear();
         for step in 0..self.draws.len() {
@@ -187,8 +187,8 @@ impl Rollout<'_> {
         baseline.value = self.value(state);
     }
 
-    /// Runs the rollout with a signal, which is in the state's worlds or still `unread`, paired with the baseline; it stops once the signal is read
-    /// and both are in the same state.
+    /// Runs the rollout with a signal, paired with the baseline; the signal is in the state's worlds already, or is
+    /// still `unread`. The rollout stops once the signal is read and both rollouts are in the same state.
     pub fn with_signal(
         &mut self,
         state: &mut RolloutState,
@@ -215,7 +215,7 @@ impl Rollout<'_> {
         state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
-    /// The human reads a signal that is due by `now_s`.
+    /// Lets the human read a signal whose reading is due by `now_s`.
     fn read_by(&self, now_s: f64, state: &mut RolloutState, unread: &mut Option<UnreadSignal>) {
         if let Some(signal) = unread.take_if(|signal| signal.read_s <= now_s) {
             for &aspect in signal.aspects {
@@ -224,7 +224,7 @@ impl Rollout<'_> {
         }
     }
 
-    /// Runs the robot until the human's next decision; a signal may be read meanwhile.
+    /// Runs the robot until the human's next decision; the human may read a signal meanwhile.
     fn until_decision(&mut self, state: &mut RolloutState, step: usize, unread: &mut Option<UnreadSignal>) {
         let until_s = self.first_s + step as f64 * self.context.model.human_press_s;
         let mut presses = 0;
@@ -260,12 +260,12 @@ impl Rollout<'_> {
         state.now_s = until_s;
     }
 
-    /// The robot's possible choices by its task policy in the true state.
+    /// The possible choices of the robot's task policy in the true state.
     fn choices(&mut self, state: State) -> RobotChoices {
         self.policy.choices(self.context.kitchen, self.cost, Fidelity::Exact, state, &self.context.recipes)
     }
 
-    /// Starts the next press of a robot arm that is idle, as its policy chooses.
+    /// Starts the next press of an idle robot arm, as the robot's policy chooses.
     fn set_out(&mut self, state: &mut RolloutState, step: usize, presses: usize) {
         if state.ongoing.is_some() {
             return;
@@ -279,7 +279,7 @@ impl Rollout<'_> {
         }
     }
 
-    /// The human looks at locations, decides, and presses.
+    /// Lets the human look at locations, decide, and press.
     fn decide(&mut self, state: &mut RolloutState, step: usize) -> HumanChoice {
         let (context, draws) = (self.context, &self.draws[step]);
         for (index, &draw) in draws.looks[..context.kitchen.locations.len()].iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The human in a planner rollout: the update of the human's weighted worlds, and the human's choices.
 //!
-//! The human's belief is one belief sample, represented by worlds drawn from it; equal worlds are merged, with their
-//! number of draws as weight. Most people are nearly certain of one value, so few distinct worlds remain.
+//! The human's belief in a rollout is one belief sample, represented by worlds drawn from it; equal worlds are merged,
+//! with their number of draws as weight. Most people are nearly certain of one value, so few distinct worlds remain.
 
 use super::rollout_robot::{RobotChoices, RobotPolicy};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
@@ -15,7 +15,7 @@ use crate::mind::choice::{ChoiceModel, ChoiceWeights};
 const FEW_DRAWS: u32 = 8;
 
 impl WeightedWorlds<u32> {
-    /// Sets an aspect to its true value in all worlds; returns whether a world changed.
+    /// Sets a state aspect to its true value in all worlds; returns whether a world changed.
     pub fn learn(&mut self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
         let mut changed = false;
         match kitchen.aspects[aspect.index()].kind {
@@ -40,8 +40,8 @@ impl WeightedWorlds<u32> {
         changed
     }
 
-    /// Conditions the worlds on the human's own press and whether it was effective. If no world is consistent with it,
-    /// the aspects involved are set to their true values, as if the human looked at them.
+    /// Conditions the worlds on the human's own press and on whether the press was effective. If no world is consistent
+    /// with it, the aspects involved are set to their true values, as if the human looked at them.
     pub fn pressed(
         &mut self,
         kitchen: &Kitchen,
@@ -71,8 +71,8 @@ impl WeightedWorlds<u32> {
     }
 
     /// Predicts a press of the robot, of which the human notices only that it happened: the weight of every world is
-    /// divided evenly among the presses that the robot's policy allows in it. `draw`, uniform in [0, 1), distributes
-    /// remainders.
+    /// divided evenly among the presses that the robot's policy allows in that world. The random number `draw`, uniform
+    /// in [0, 1), distributes remainders of integer weights.
     pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, policy: &mut RobotPolicy, draw: f64) {
         let n = self.draws();
         for index in 0..self.all.len() {

@@ -10,10 +10,10 @@ const BITS: u32 = 15;
 /// The robot's possible presses in a state, as bit sets of buttons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotChoices {
-    /// The presses among which the policy chooses with equal probability, one bit for each of the robot's buttons.
+    /// The presses among which the policy chooses with equal probability, one bit for each button of the robot.
     pub choices: u64,
-    /// The presses that the robot completes if its arm is already moving to them, one bit for each of the robot's
-    /// buttons.
+    /// The presses that the robot completes if its arm is already moving to their buttons, one bit for each button of
+    /// the robot.
     pub useful: u64,
 }
 
@@ -23,7 +23,7 @@ impl RobotChoices {
         self.choices.count_ones()
     }
 
-    /// The n-th of the equally likely choices, counted from 0.
+    /// The n-th of the robot's equally likely choices, counted from 0.
     pub fn nth(self, n: u32) -> ButtonId {
         let mut left = self.choices;
         for _ in 0..n {
@@ -33,8 +33,8 @@ impl RobotChoices {
     }
 }
 
-/// The robot's task policy with a cache by fidelity, state and ordered recipes. The cache changes computing time, never
-/// results.
+/// The robot's task policy with a cache by fidelity, state and ordered recipes. The policy's cache changes computing
+/// time, never results.
 #[derive(Clone, Debug)]
 pub struct RobotPolicy {
     known: Vec<Option<(Fidelity, State, Recipes, RobotChoices)>>,
@@ -47,7 +47,7 @@ impl Default for RobotPolicy {
 }
 
 impl RobotPolicy {
-    /// The possible choices of the robot's policy in a state, given the recipes.
+    /// The possible choices of the robot's policy in a state, given the true recipes.
     #[inline]
     pub fn choices(
         &mut self,
@@ -76,7 +76,7 @@ impl RobotPolicy {
     }
 }
 
-/// The recipes of ordered dishes, with all other recipes set to a fixed value: decisions do not depend on them.
+/// The recipes of ordered dishes, with all other recipes set to a fixed value, since decisions do not depend on those.
 fn wanted_recipes(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Recipes {
     let mut wanted = Recipes::default();
     for &order in &kitchen.orders {
@@ -96,11 +96,11 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
 /// The press towards which the robot's arm is moving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OngoingRobotPress {
-    /// The robot's button, as an index into its buttons.
+    /// The button of the press, as an index into the robot's buttons.
     pub button: ButtonId,
     /// Time at which the arm touches the button, in seconds since the start of the rollout.
     pub due_s: f64,
-    /// Whether the wizard chose the press, so that the robot makes it even if it is not useful.
+    /// Whether the wizard chose the press, so that the robot makes the press even if it is not useful.
     pub driven: bool,
 }
 
@@ -111,7 +111,7 @@ impl OngoingRobotPress {
     }
 }
 
-/// The state after this press of the robot.
+/// The state of the kitchen after this press of the robot.
 pub fn press(kitchen: &Kitchen, state: State, recipes: &Recipes, button: ButtonId) -> State {
     kitchen.press(state, recipes, Agent::Robot, button).unwrap_or(state)
 }

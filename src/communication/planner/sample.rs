@@ -6,16 +6,16 @@ use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, Weighte
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::urn::PolyaUrn;
 
-/// Belief samples for the rollouts of one recommendation. First draws are stratified over the samples by the mean of
-/// each aspect.
+/// Belief samples for the rollouts of one recommendation. The first draws are stratified over the samples by the mean
+/// of each state aspect.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSamples {
     urns: Vec<PolyaUrn>,
-    /// First draws of all samples: `[aspect * samples + sample]`.
+    /// First draws of the values in all samples: `[aspect * samples + sample]`.
     firsts: Vec<u8>,
-    /// All draws of the present sample: `[aspect * states + draw]`.
+    /// All draws of values in the present sample: `[aspect * states + draw]`.
     drawn: Vec<u8>,
-    /// Aspects with several values in the present belief sample.
+    /// State aspects of which the present belief sample has several values.
     mixed: Vec<usize>,
     samples: usize,
     states: usize,
@@ -35,8 +35,8 @@ impl BeliefSamples {
         }
     }
 
-    /// Draws one belief sample. A recipe is drawn only if decisions depend on it: in worlds whose orders show its dish,
-    /// and if the true orders do.
+    /// Draws one belief sample. A recipe is drawn only if decisions depend on it: in worlds whose orders show the
+    /// recipe's dish, and if the true orders do.
     pub fn draw(
         &mut self,
         kitchen: &Kitchen,
@@ -58,7 +58,7 @@ impl BeliefSamples {
         worlds.all.clear();
         let all: Vec<usize> = (0..self.urns.len()).collect();
         if self.mixed.iter().any(|index| kitchen.orders.iter().any(|order| order.index() == *index)) {
-            // The recipes on which decisions depend differ from draw to draw.
+            // The recipes on which decisions depend differ from draw to draw, since the drawn orders differ.
             for draw in 0..states {
                 let mut world = World::empty(kitchen);
                 self.set(kitchen, truth, draw, &all, &mut world);
@@ -77,7 +77,7 @@ impl BeliefSamples {
         }
     }
 
-    /// Sets these aspects of a world to the values of one draw; locations come before recipes.
+    /// Sets these state aspects of a world to the values of one draw; locations come before recipes.
     fn set(&self, kitchen: &Kitchen, truth: State, draw: usize, aspects: &[usize], world: &mut World) {
         for &index in aspects {
             let counts = match kitchen.aspects[index].kind {

@@ -1,9 +1,9 @@
-//! Statistics of the differences between paired rollouts, with and without a signal.
+//! Statistics of the differences between paired rollouts, one with and one without a signal.
 
 use crate::kitchen::ButtonId;
 use crate::mind::choice::HumanChoice;
 
-/// Running statistics of the differences between paired rollouts, with and without a signal.
+/// Running statistics of the differences between paired rollouts, one with and one without a signal.
 #[derive(Clone, Debug, Default)]
 pub struct PairedDifferences {
     count: u32,
@@ -12,7 +12,7 @@ pub struct PairedDifferences {
     divergences: Vec<Divergence>,
 }
 
-/// A pair of different choices of the human, at which rollouts without and with the signal separate.
+/// A pair of different choices of the human, at which the rollouts without and with the signal separate.
 #[derive(Clone, Copy, Debug)]
 struct Divergence {
     baseline: HumanChoice,
@@ -23,15 +23,15 @@ struct Divergence {
 }
 
 impl Divergence {
-    /// Total saving of the pair of choices minus one standard error: a single large saving by chance does not count as
-    /// the reason.
+    /// Total saving of rollouts with this pair of choices minus one standard error, so that a single large saving by
+    /// chance does not count as the reason.
     fn surely_saved(&self) -> f64 {
         self.sum - self.squares.sqrt()
     }
 }
 
 impl PairedDifferences {
-    /// Adds the saving of a rollout, in presses, and the choices at which it diverged from the baseline.
+    /// Adds the saving of a rollout, in presses, and the human's choices at which it diverged from the baseline.
     pub fn add(&mut self, saved: f64, diverged: Option<(HumanChoice, HumanChoice)>) {
         self.count += 1;
         self.sum += saved;
@@ -51,12 +51,12 @@ impl PairedDifferences {
         }
     }
 
-    /// Number of pairs of rollouts.
+    /// Number of pairs of rollouts so far.
     pub fn count(&self) -> u32 {
         self.count
     }
 
-    /// Mean saving, in presses; 0 without pairs.
+    /// Mean saving of the rollouts with the signal, in presses; 0 without rollouts.
     pub fn mean(&self) -> f64 {
         self.sum / f64::from(self.count.max(1))
     }
@@ -66,7 +66,7 @@ impl PairedDifferences {
         self.error_with(0.0)
     }
 
-    /// Standard error of the mean saving if one further rollout saved three presses: without any difference so far, the
+    /// Standard error of the mean saving if one further rollout saved three presses: while no rollout differed, the
     /// plain standard error would be 0.
     pub fn cautious_error(&self) -> f64 {
         self.error_with(9.0)
@@ -78,7 +78,7 @@ impl PairedDifferences {
         (spread / (n - 1.0) / n).sqrt()
     }
 
-    /// The press whose prevention by the signal saves most, and the press that replaces it (`None` for waiting).
+    /// The press that the signal prevents with the largest saving, and the press that replaces it (`None` for waiting).
     pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
         let presses =
             self.divergences.iter().filter_map(|divergence| match (divergence.baseline, divergence.signalled) {

@@ -1,9 +1,10 @@
-//! Working ahead between two requests for advice.
+//! Working ahead between two requests for advice, so that the next answer comes sooner.
 //!
-//! After a press the planner's caches lack what the new situation needs, and computing that is most of the time of a late answer. Seconds pass
-//! between presses, so the planner runs the rollouts of the likeliest next situations in advance and drops their results. The
-//! caches keep costs to go, decisions and choices of the robot, which do not depend on the gaze and on time. The answer itself is still computed after
-//! the event, from its situation: it is the same with and without working ahead.
+//! After a press the planner's caches lack what the new situation needs, and filling them takes most of the time of a
+//! late answer. Seconds pass between presses, so the planner runs the rollouts of the likeliest next situations in
+//! advance and drops their results. The caches keep costs to go, decisions and choices of the robot, which do not
+//! depend on the gaze and on time. The answer itself is still computed after the event, from the situation then: the
+//! answer is the same with and without working ahead.
 
 use super::Planner;
 use super::lattice::QuasiRandomLattice;
@@ -18,24 +19,24 @@ use crate::mind::dirichlet::DirichletBelief;
 
 /// Number of belief samples that say which presses of the human are likely.
 const SAMPLES: usize = 32;
-/// Number of the human's presses that are prepared for, at most.
+/// Largest number of the human's presses for which the planner prepares.
 const PRESSES: usize = 4;
-/// Share of the belief samples in which a press must be chosen.
+/// Least share of the belief samples in which the human must choose a press for the planner to prepare for that press.
 const LEAST_SHARE: f64 = 0.05;
 
-/// A situation that may come next.
+/// A situation of the trial that may come next.
 struct NextSituation {
     state: State,
     belief: DirichletBelief,
     changed: Vec<AspectId>,
     robot: RobotIntent,
-    /// Number of presses until then.
+    /// Number of presses of both agents when the situation comes.
     presses: u32,
 }
 
 impl Planner {
-    /// Runs the rollouts of the situations after the robot's ongoing press, after the human's likeliest presses, and with any new order where
-    /// there is none.
+    /// Runs the rollouts of the situations after the robot's ongoing press, after the human's likeliest presses, and
+    /// with any new order where there is no order.
     pub(super) fn prepare_for_presses(
         &mut self,
         cost: &mut CostToGo,
@@ -98,7 +99,7 @@ impl Planner {
         })
     }
 
-    /// The situation after a press of the human, which knows what the press changed.
+    /// The situation after a press of the human, who knows what the press changed.
     fn after_the_human(&self, moment: &DecisionPoint, button: ButtonId) -> Option<NextSituation> {
         let before = moment.situation.state;
         let state = self.kitchen.press(before, &self.kitchen.true_recipes(), Agent::Human, button)?;
@@ -128,13 +129,13 @@ impl Planner {
     }
 }
 
-/// The situation of a decision point in another state.
+/// The situation of a decision point, but in another state of the kitchen.
 fn unchanged(state: State, moment: &DecisionPoint) -> NextSituation {
     let Situation { belief, robot, .. } = moment.situation;
     NextSituation { state, belief: belief.clone(), changed: Vec::new(), robot, presses: moment.presses }
 }
 
-/// Makes the estimate certain of the true value of an aspect.
+/// Makes the estimate certain of the true value of a state aspect.
 fn make_certain(kitchen: &Kitchen, belief: &mut DirichletBelief, aspect: AspectId, state: State) {
     let truth = kitchen.true_value(state, aspect);
     let dirichlet = &mut belief.aspects[aspect.index()];

@@ -6,11 +6,11 @@ use super::true_beliefs::ParticipantBeliefs;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Press, State, World};
 
-/// Probability that participants who know everything (a setting) give to the true value.
+/// Probability that all-knowing participants (a setting of the population) give to the true value of every aspect.
 const SURE: f64 = 0.99;
 
 impl SimulatedParticipant {
-    /// Starts the trial; the participant sees that the kitchen is empty.
+    /// Starts the trial for the participant, who sees that the kitchen is empty.
     pub fn on_trial_start(&mut self, now: SessionTime, state: State) {
         self.is_started = true;
         self.display = state;
@@ -21,8 +21,8 @@ impl SimulatedParticipant {
         self.press_at = now + self.reaction();
     }
 
-    /// Performs the simulated participant's next due action. From the true `state` it uses only fixated locations and
-    /// the recorded P(truth).
+    /// Performs the simulated participant's next due action. Of the true `state` the participant uses only fixated
+    /// locations; the record of the participant's belief also uses P(truth).
     pub fn act(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         if !self.is_started {
             return None;
@@ -53,7 +53,8 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reacts to a press. The simulated participant notices that the robot pressed, but not which button.
+    /// Reacts to a press. Of a robot's press the simulated participant notices that it happened, but not which button
+    /// it was.
     pub fn on_press(&mut self, now: SessionTime, press: &Press) {
         match press.agent {
             Agent::Robot => {

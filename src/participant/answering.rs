@@ -1,4 +1,5 @@
-//! How a simulated participant answers the questions of a freeze probe: with the most probable value of its belief.
+//! How a simulated participant answers the questions of a freeze probe: with the value that is most probable in the
+//! participant's belief.
 
 use rand::RngExt;
 
@@ -11,24 +12,24 @@ use crate::mind::RecordedBelief;
 
 /// Standard deviation of the logarithm of one participant's answering times.
 const ANSWER_JITTER: f64 = 0.35;
-/// Least probabilities of the most probable value for which the confidence in an answer is 2 or 3.
+/// Least probabilities of the most probable value from which the confidence in an answer is 2 or 3 (of 3).
 const SURE_FROM: [f64; 2] = [2.0 / 3.0, 0.9];
 
 impl SimulatedParticipant {
-    /// Record of the participant's present beliefs, from which the answers follow.
+    /// Record of the participant's present beliefs, from which the answers to a probe follow.
     pub fn believes(&self, state: State) -> RecordedBelief {
         witness::without_press(&self.kitchen, &self.beliefs, state)
     }
 
-    /// Time from a question to its answer, in seconds.
+    /// Time from a probe's question to the participant's answer, in seconds.
     pub fn answers_after_s(&self, probe: u32, question: u32) -> f64 {
         self.person.answer_s * (ANSWER_JITTER * normal(&mut self.of_answer(probe, question))).exp()
     }
 
-    /// The participant's answer to a question about an aspect: one of the choices, or `None` for "I don't know".
+    /// The participant's answer to a question about a state aspect: one of the choices, or `None` for "I don't know".
     ///
-    /// If the truth is as probable as any other value, the truth is the answer: so the answer is right exactly where
-    /// the belief is not false.
+    /// If the true value is as probable as any other value, the participant answers the true value: so the answer is
+    /// right exactly where the belief is not false.
     pub fn answer(
         &self,
         state: State,
@@ -61,12 +62,12 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The order that the participant expects to be served next: the one on which it works.
+    /// The order that the participant expects to be served next: the order on which the participant works.
     pub fn next_order(&self) -> Option<LocationId> {
         self.intent.order.map(|(order, _)| order)
     }
 
-    /// The random stream of one answer, so that no answer depends on which others were given.
+    /// The random stream of one answer, separate for each answer, so that no answer depends on which others were given.
     fn of_answer(&self, probe: u32, question: u32) -> Stream {
         stream(self.answer_seed, "participant's answers", u64::from(probe) << 8 | u64::from(question))
     }

@@ -1,8 +1,8 @@
-//! Decisions of the simulated participant, in a world that it believes: on which order to work, and which press comes
-//! next.
+//! Decisions of the simulated participant, in a world that the participant believes: on which order to work, and which
+//! press comes next.
 //!
-//! A decision is a function of beliefs: repeated with the truth and the same lapses, it tells whether a press came from
-//! a false belief.
+//! A decision is a function of beliefs: when it is repeated with the truth and the same lapses, the result tells
+//! whether a press came from a false belief.
 
 use std::collections::VecDeque;
 
@@ -13,16 +13,16 @@ use super::planning::{BackwardChaining, ProposedPress};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, State, World};
 
-/// Number of presses after which a new plan is made even if all goes well; the participant looks at the places of
-/// planned presses.
+/// Number of presses after which the participant makes a new plan even if all goes well; the participant looks at the
+/// places of planned presses.
 const PLANNED_PRESSES: usize = 2;
-/// Weights for the choice of an order: of the finished dish, of each part on the board, of each other part that is
-/// available.
+/// Weights for the choice of an order to work on: of the finished dish, of each part on the board, of each other part
+/// that is available.
 const FINISHED_WORTH: usize = 100;
 const BASE_WORTH: usize = 10;
 const PART_WORTH: usize = 2;
 
-/// Share of the desperate decisions in which the participant still waits for the robot.
+/// Share of the decisions without any useful press (desperate ones) in which the participant still waits for the robot.
 const HOPES: f64 = 0.5;
 
 /// Current plan of the simulated participant.
@@ -30,11 +30,12 @@ const HOPES: f64 = 0.5;
 pub struct ParticipantPlan {
     /// Planned next presses of the participant.
     pub plan: VecDeque<ButtonId>,
-    /// The order that the participant works on, and the time until which it stays with this order.
+    /// The order on which the participant works, and the session time until which the participant stays with this
+    /// order.
     pub order: Option<(LocationId, SessionTime)>,
     /// The stack that the participant served last.
     pub last_dish: Option<ContentId>,
-    /// Lapses (omissions and habits) of the decisions until the next press.
+    /// Lapses (omissions and habits) that hold for the decisions until the next press.
     pub lapses: Lapses,
 }
 
@@ -46,61 +47,61 @@ impl ParticipantPlan {
     }
 }
 
-/// How long the simulated participant has found no useful press.
+/// How long the simulated participant has found no useful press, and what the participant therefore does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Impatience {
-    /// The participant waits for the robot.
+    /// The participant waits for the robot, for the time being.
     Calm,
-    /// The participant makes detours.
+    /// The participant also considers detours (presses that undo something for another press).
     Impatient,
     /// The participant does not wait for the robot any more, and tries anything.
     Desperate,
 }
 
-/// The data for a decision on the next presses, except for the world in which it is made.
+/// The data for a decision on the participant's next presses, except for the world in which the decision is made.
 #[derive(Clone, Debug)]
 pub struct Decision<'a> {
     /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
     /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,
-    /// The participant's habits, such as the order in which it fetches parts.
+    /// The participant's habits, such as the order of fetching parts.
     pub habits: &'a Habits,
-    /// Number of own presses that the participant thinks through.
+    /// Number of own presses ahead that the participant thinks through.
     pub depth: usize,
     /// The order on which the participant works.
     pub in_progress: Option<LocationId>,
     /// The stack that the participant served last.
     pub last_dish: Option<ContentId>,
-    /// Lapses (omissions and habits) in this decision.
+    /// Lapses (omissions and habits) of the participant in this decision.
     pub lapses: Lapses,
     /// How long the participant has found no useful press.
     pub urgency: Impatience,
 }
 
-/// The result of a decision: an order and the next presses.
+/// The result of a participant's decision: an order and the next presses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DecisionResult {
     /// The order on which the participant works.
     pub order: Option<LocationId>,
-    /// The next presses; empty if the participant waits.
+    /// The participant's next presses; empty if the participant waits.
     pub plan: VecDeque<ButtonId>,
 }
 
 /// A press with its consequences as the participant foresees them.
 struct Foreseen {
-    /// The presses from this one on.
+    /// The presses from this press on, in order.
     path: VecDeque<ButtonId>,
     /// Number of detours (presses that undo something for the sake of another) among the foreseen presses.
     detours: u32,
     /// Whether the press fills the empty hand.
     fills_hand: bool,
-    /// Whether the press itself is a detour: it only makes room.
+    /// Whether the press itself is a detour, which only makes room.
     is_detour: bool,
 }
 
 impl Decision<'_> {
-    /// Decides on the next presses in a world that the participant believes to be true.
+    /// Decides on the participant's next presses in a world that the participant believes to be true.
     pub fn resolve(&self, world: &World) -> DecisionResult {
         let presses = |button: ButtonId| self.kitchen.press(world.state, &world.recipes, Agent::Human, button);
         if let Some(button) = self.lapses.insists_on.filter(|&button| presses(button).is_some()) {
@@ -116,7 +117,7 @@ impl Decision<'_> {
         };
         let habits = self.habits.with_last(self.last_dish.filter(|_| self.lapses.follows_habit));
         let orders = self.orders(&prospect, world.state);
-        // If nothing can be done for an order now, the next order is considered.
+        // If nothing can be done for an order now, the decision considers the next order.
         for &order in &orders {
             if let Some(plan) = self.choose(&prospect, world.state, order, &habits) {
                 return DecisionResult { order: Some(order), plan };
@@ -127,7 +128,7 @@ impl Decision<'_> {
         DecisionResult { order: orders.first().copied(), plan }
     }
 
-    /// The orders by preference: the one in progress first, then those for which most is available already; ties are
+    /// The orders by preference: the order in progress first, then those for which most is available already; ties are
     /// broken at random.
     fn orders(&self, prospect: &GoalContext, state: State) -> Vec<LocationId> {
         let worth = |order: LocationId| {
@@ -148,12 +149,12 @@ impl Decision<'_> {
         let turn = (self.lapses.whim * orders.len() as f64) as usize;
         let turn = turn.min(orders.len());
         orders.rotate_left(turn);
-        // The sort is stable: among equal orders, the random rotation decides.
+        // The sort is stable: among equally preferred orders, the random rotation decides.
         orders.sort_by_key(|&(in_progress, worth, _)| std::cmp::Reverse((in_progress, worth)));
         orders.into_iter().map(|(_, _, order)| order).collect()
     }
 
-    /// The press with the fewest foreseen detours; ties go to the first.
+    /// The press with the fewest foreseen detours; ties go to the first of the presses.
     fn choose(
         &self,
         prospect: &GoalContext,
@@ -183,18 +184,19 @@ impl Decision<'_> {
             }
         }
         let best = best?;
-        // A hand that would stay full is left empty, except for making room: the robot may make room meanwhile.
+        // The participant does not fill a hand that would stay full, except to make room: the robot may make room
+        // meanwhile.
         let is_trap = best.fills_hand && best.detours > 0 && !best.is_detour && !self.lapses.skips_check;
         (!is_trap).then_some(best.path)
     }
 
-    /// Whether a press is quick: processing and serving take one press and no room.
+    /// Whether a press needs no foresight: processing and serving take one press and no room.
     fn is_quick(&self, press: &ProposedPress) -> bool {
         let action = self.kitchen.button(Agent::Human, press.button).action;
         matches!(action, ButtonAction::Process(_) | ButtonAction::Serve(_))
     }
 
-    /// Simulates a press and the participant's next ones; `None` if the press would have no effect.
+    /// Simulates a press and the participant's next presses; `None` if the press would have no effect.
     fn foresee(
         &self,
         prospect: &GoalContext,
@@ -225,7 +227,7 @@ impl Decision<'_> {
         Some(foreseen)
     }
 
-    /// A press that may end a standstill: empties the hand, or takes something away from a place.
+    /// A press that may end a standstill: a press that empties the hand, or takes something away from a place.
     fn try_something(&self, world: &World) -> Option<ButtonId> {
         let presses = effective_presses(self.kitchen, world);
         let is_trash = |button: ButtonId| self.kitchen.button(Agent::Human, button).action == ButtonAction::Trash;
@@ -244,7 +246,7 @@ impl Decision<'_> {
     }
 }
 
-/// The human's presses that change the state of a world, with the states after them.
+/// The human's presses that change the state of a world, each with the state after the press.
 pub fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);

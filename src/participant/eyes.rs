@@ -1,4 +1,4 @@
-//! Simulated eye tracking of a participant: fixations, saccades, blinks and noise at 120 samples per second.
+//! Simulated eye tracking of a participant: fixations, saccades, blinks and noise, at 120 gaze samples per second.
 
 use rand::RngExt;
 
@@ -7,13 +7,14 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 
-/// Gaze samples per second: the rate of a Pupil Core eye tracker.
+/// Gaze samples per second, as a Pupil Core eye tracker delivers them.
 pub const RATE_HZ: u64 = 120;
 /// Time from the start of a fixation until its location has been read, in seconds: about half of a usual fixation.
 const READING_S: f64 = 0.14;
 /// Shortest duration of a fixation, in seconds.
 const SHORTEST_FIXATION_S: f64 = 0.16;
-/// Standard deviations in metres on the display: of a saccade's landing point, and of the jitter during a fixation.
+/// Standard deviations in metres on the display: of a saccade's landing point, and of the gaze's jitter during a
+/// fixation.
 const LANDING_M: f64 = 0.012;
 const TREMOR_M: f64 = 0.004;
 /// Drift of the simulated eye tracker's offset, as a share of the offset's size (standard deviation per root second).
@@ -22,10 +23,10 @@ const DRIFT: f64 = 0.05;
 const BLINK_EVERY_S: f64 = 4.5;
 const BLINK_S: [f64; 2] = [0.1, 0.2];
 
-/// Progress of the simulated eyes' present fixation.
+/// Progress of the present fixation of the simulated eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FixationProgress {
-    /// The saccade is under way, or the fixation continues.
+    /// Nothing happened: the saccade is still under way, or the fixation continues.
     Nothing,
     /// The fixation has lasted long enough for its location to be read.
     Read,
@@ -33,7 +34,7 @@ pub enum FixationProgress {
     Done,
 }
 
-/// The eyes of one simulated participant, with the error of its eye tracker.
+/// The eyes of one simulated participant, with the measurement error of the participant's eye tracker.
 #[derive(Clone, Debug)]
 pub struct Eyes {
     random: Stream,
@@ -54,7 +55,7 @@ pub struct Eyes {
 }
 
 impl Eyes {
-    /// Creates eyes that fixate the middle of the display.
+    /// Simulated eyes that fixate the middle of the display.
     pub fn new(mut random: Stream, display_m: [f64; 2], individual: &ParticipantTraits, offset_size_m: f64) -> Eyes {
         let offset_m = [normal(&mut random) * offset_size_m, normal(&mut random) * offset_size_m];
         let zero = SessionTime::ZERO;
@@ -76,7 +77,7 @@ impl Eyes {
         }
     }
 
-    /// Starts the trial; the first gaze sample is due now.
+    /// Starts the trial for the simulated eyes; the first gaze sample is due now.
     pub fn start(&mut self, now: SessionTime) {
         self.started = now;
         self.samples = 0;
@@ -98,7 +99,7 @@ impl Eyes {
         self.reads = self.reads.map(|time| time + by);
     }
 
-    /// Starts a saccade to a point of the display.
+    /// Starts a saccade (jump of the eyes) to a point of the display.
     pub fn look_at(&mut self, now: SessionTime, point: [f64; 2]) {
         self.from = self.position(now);
         let landing = |goal: f64, length_m: f64, random: &mut Stream| goal + normal(random) * LANDING_M / length_m;
@@ -129,25 +130,25 @@ impl Eyes {
         if now >= self.ends { FixationProgress::Done } else { FixationProgress::Nothing }
     }
 
-    /// Restarts the reading time, because the content at the fixated location has just changed.
+    /// Restarts the time needed for reading, because the content at the fixated location has just changed.
     pub fn look_again(&mut self, now: SessionTime) {
         let read = now + SessionTime::from_secs_f64(READING_S);
         self.reads = Some(read);
         self.ends = self.ends.max(read);
     }
 
-    /// Keeps the present fixation until `until`; the participant reads nothing more in it.
+    /// Keeps the present fixation until `until`; the participant reads nothing more during the fixation.
     pub fn rest_until(&mut self, until: SessionTime) {
         self.reads = None;
         self.ends = self.ends.max(until);
     }
 
-    /// Whether the saccade has ended.
+    /// Whether the saccade has ended, so that a fixation has begun.
     pub fn has_landed(&self, now: SessionTime) -> bool {
         now >= self.lands && !self.is_closed(now)
     }
 
-    /// True gaze point, as fractions of the display's width and height.
+    /// True point of gaze, as fractions of the display's width and height.
     pub fn position(&self, now: SessionTime) -> [f64; 2] {
         let duration = self.lands.secs_since(self.leaves);
         let part = if duration > 0.0 { (now.secs_since(self.leaves) / duration).min(1.0) } else { 1.0 };
@@ -156,7 +157,7 @@ impl Eyes {
         [0, 1].map(|axis| self.from[axis] + (self.goal[axis] - self.from[axis]) * part)
     }
 
-    /// The gaze sample that is due, with the eye tracker's offset, noise and confidence.
+    /// The gaze sample that is due, with the simulated eye tracker's offset, noise and confidence.
     pub fn sample(&mut self, now: SessionTime) -> GazeSample {
         self.samples += 1;
         if now >= self.blink.1 {
@@ -177,7 +178,7 @@ impl Eyes {
             true => 0.3 * self.random.random::<f64>(),
             false => (0.95 - 0.04 * normal(&mut self.random).abs()).clamp(0.0, 1.0),
         };
-        // Four decimals are below the accuracy of eye trackers and shorten the log.
+        // Rounding to four decimals changes less than the accuracy of eye trackers, and shortens the log.
         let rounded = |value: f64| (value * 1e4).round() / 1e4;
         GazeSample::new(rounded(seen[0]), rounded(seen[1]), rounded(confidence))
     }
@@ -189,7 +190,7 @@ impl Eyes {
     fn next_blink(&mut self, now: SessionTime) -> (SessionTime, SessionTime) {
         let wait_s = -BLINK_EVERY_S * (1.0 - self.random.random::<f64>()).ln();
         let length_s = BLINK_S[0] + (BLINK_S[1] - BLINK_S[0]) * self.random.random::<f64>();
-        // A second blink occasionally follows immediately.
+        // A second blink occasionally follows a blink immediately.
         let wait_s = if chance(&mut self.random, 0.05) { 0.1 } else { wait_s.max(0.3) };
         let shut = now + SessionTime::from_secs_f64(wait_s);
         (shut, shut + SessionTime::from_secs_f64(length_s))

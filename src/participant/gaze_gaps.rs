@@ -5,25 +5,25 @@ use rand::RngExt;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 
-/// The schedule of the eye tracker's drop-outs in one trial.
+/// The schedule of the simulated eye tracker's drop-outs in one trial.
 #[derive(Clone, Debug)]
 pub struct GazeDropoutSchedule {
     random: Stream,
     every_s: f64,
-    /// Natural logarithms of the shortest and the longest drop-out in seconds.
+    /// Natural logarithms of the shortest and the longest duration of a drop-out in seconds.
     lengths: [f64; 2],
-    /// Beginning and end of the present or next drop-out; `None` before the first sample.
+    /// Beginning and end of the present or next drop-out; `None` before the first gaze sample.
     next: Option<[SessionTime; 2]>,
 }
 
 impl GazeDropoutSchedule {
-    /// A schedule: mean time between drop-outs, shortest and longest drop-out, in seconds.
+    /// A schedule of drop-outs from the mean time between drop-outs, and the shortest and longest drop-out, in seconds.
     pub fn new(every_s: f64, [shortest_s, longest_s]: [f64; 2], random: Stream) -> GazeDropoutSchedule {
         GazeDropoutSchedule { random, every_s, lengths: [shortest_s.ln(), longest_s.ln()], next: None }
     }
 
-    /// Whether the gaze sample that is due `now` is lost in a drop-out. Must be called in the order of the samples'
-    /// times.
+    /// Whether the gaze sample that is due `now` is lost in a drop-out. The function must be called in the order of the
+    /// samples' times.
     pub fn swallows(&mut self, now: SessionTime) -> bool {
         loop {
             let [begin, end] =

@@ -1,52 +1,52 @@
-//! Goals of a simulated participant in the state that it believes: for each order, the missing parts of the dish, and
-//! what is available for them.
+//! Goals of a simulated participant in the state that the participant believes: for each order, the missing parts of
+//! the dish, and what is available for these parts.
 
 use super::knowledge::TaskKnowledge;
 use crate::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind, Recipes, State};
 
-/// A content in the kitchen that can become a part, or is a finished dish.
+/// A content in the kitchen that can be made into a part of a dish, or that is a finished dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartSource {
-    /// The location of the content.
+    /// The location where the content is.
     pub at: LocationId,
-    /// The content as it is now.
+    /// The content as it is now, before further processing.
     pub content: ContentId,
 }
 
-/// A part that is missing for a dish.
+/// A part that is still missing for a dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartNeed {
-    /// The part as it goes on the board: an item, or a stack of several.
+    /// The part as it is put on the board: an item, or a stack of several items.
     pub part: ContentId,
-    /// The content that can become the part; `None` if it has to come from a storage.
+    /// The content that can be made into the part; `None` if the part has to come from a storage.
     pub source: Option<PartSource>,
 }
 
-/// The simulated participant's goal for one order.
+/// The simulated participant's goal for one order: the dish, and what is missing for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderGoal {
     /// The location of the order.
     pub order: LocationId,
-    /// The stack that the participant believes to be the dish.
+    /// The stack of items that the participant believes to be the ordered dish.
     pub stack: ContentId,
-    /// The location of the finished stack, if there is one.
+    /// The location of the finished stack; `None` if the dish is not finished.
     pub finished: Option<LocationId>,
-    /// Whether the stack on the board is the beginning of the dish.
+    /// Whether the stack on the board is the beginning of the ordered dish.
     pub has_base: bool,
-    /// The parts that are still missing.
+    /// The parts that are still missing for the ordered dish.
     pub needs: Vec<PartNeed>,
 }
 
-/// The participant's goals for all orders that it believes in, the one in progress first, and the contents that they
-/// use.
+/// The participant's goals for all orders that the participant believes in, the order in progress first, and the
+/// contents that these goals use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goals {
-    /// The participant's goal for each order that it believes in.
+    /// The participant's goal for each order that the participant believes to be shown.
     pub orders: Vec<OrderGoal>,
     claimed: u32,
 }
 
-/// What a simulated participant takes into account when it determines its goals.
+/// What a simulated participant takes into account to determine the goals.
 #[derive(Clone, Copy, Debug)]
 pub struct GoalContext<'a> {
     /// The kitchen in which the participant works.
@@ -55,16 +55,16 @@ pub struct GoalContext<'a> {
     pub knowledge: &'a TaskKnowledge,
     /// The recipes in which the participant believes.
     pub recipes: &'a Recipes,
-    /// Whether the participant forgets parts that lie at parking places.
+    /// Whether the participant forgets parts that lie at parking places (places without processing).
     pub forgets_parked: bool,
-    /// Whether the participant takes items without checking where they can go next.
+    /// Whether the participant takes items without checking whether they can be used next.
     pub skips_check: bool,
-    /// Whether the participant waits for what the robot holds.
+    /// Whether the participant waits for what the robot holds in its hand.
     pub waits_for_robot: bool,
 }
 
 impl Goals {
-    /// The goals in a state; the order `first` claims available contents before the others.
+    /// The goals in a state; the order `first` claims available contents before the other orders.
     pub fn in_state(prospect: &GoalContext, state: State, first: LocationId) -> Goals {
         let mut wanted: Vec<(LocationId, DishId)> = prospect.kitchen.wanted(state).collect();
         wanted.sort_by_key(|&(order, _)| order != first);
@@ -76,7 +76,7 @@ impl Goals {
         goals
     }
 
-    /// Whether some order uses the content of this location.
+    /// Whether the goal of some order uses the content of this location.
     pub fn uses(&self, location: LocationId) -> bool {
         self.claimed >> location.0 & 1 == 1
     }
@@ -118,8 +118,8 @@ impl Goals {
         goal
     }
 
-    /// The unclaimed content that needs the fewest processing steps; ties go to the own hand, then to places, then to
-    /// the robot's hand.
+    /// The content that no goal has claimed and that needs the fewest processing steps; ties go to the own hand, then
+    /// to places, then to the robot's hand.
     fn find(
         &self,
         prospect: &GoalContext,

@@ -1,4 +1,4 @@
-//! Habits and lapses of a simulated participant: the order in which it fetches parts, and the omissions in one
+//! Habits and lapses of a simulated participant: the habitual order of fetching parts, and the omissions in one
 //! decision.
 
 use rand::RngExt;
@@ -7,12 +7,13 @@ use super::population::{ParticipantTraits, chance};
 use crate::base::rng::Stream;
 use crate::kitchen::{ButtonId, ContentId, Kitchen};
 
-/// Habits of one simulated participant, including the dish that it made last.
+/// Habits of one simulated participant, including the dish that the participant made last.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Habits {
-    /// Rank of each content as ingredient: the participant fetches those of lower rank first.
+    /// Rank of each content as an ingredient: the participant fetches ingredients of lower rank first.
     ranks: Vec<u8>,
-    /// The stack that the participant served last, if it confuses it with the present one in this decision.
+    /// The stack that the participant served last, if the participant confuses it with the present dish in this
+    /// decision.
     last: Option<ContentId>,
 }
 
@@ -22,8 +23,8 @@ impl Habits {
         Habits { ranks: kitchen.contents.iter().map(|_| random.random_range(0..=u8::MAX)).collect(), last: None }
     }
 
-    /// The same habits for a decision in which the participant confuses the present dish with the last one, or (`None`)
-    /// does not.
+    /// The same habits for a decision in which the participant confuses the present dish with the last one; with
+    /// `None`, for a decision without such a confusion.
     pub fn with_last(&self, last: Option<ContentId>) -> Habits {
         Habits { last, ..self.clone() }
     }
@@ -33,8 +34,8 @@ impl Habits {
         self.ranks[ingredient.index()]
     }
 
-    /// The part of the last dish that the participant takes by habit instead of one of the present dish: of the same
-    /// slot, so that the two do not stack.
+    /// The part of the last dish that the participant takes by habit instead of a part of the present dish. Both parts
+    /// belong in the same slot of a dish, so that they do not stack.
     pub fn part_instead(&self, kitchen: &Kitchen, stack: ContentId, part: ContentId) -> Option<ContentId> {
         let last = &kitchen.content(self.last?).items;
         let own = &kitchen.content(stack).items;
@@ -49,22 +50,22 @@ impl Habits {
 /// decision has the same lapses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lapses {
-    /// The participant does not check the preconditions of later presses.
+    /// Lapse: the participant does not check the preconditions of presses after the next one.
     pub skips_check: bool,
-    /// The participant confuses the present dish with the last one.
+    /// Lapse: the participant confuses the present dish with the last one.
     pub follows_habit: bool,
-    /// The participant forgets parts at parking places.
+    /// Lapse: the participant forgets parts that lie at parking places.
     pub forgets_parked: bool,
-    /// The participant first does what is within reach for another order.
+    /// Lapse: the participant first does what is within reach for another order.
     pub takes_along: bool,
-    /// Random number from 0 to 1 that decides between equal choices.
+    /// Random number from 0 to 1 that decides between equally good choices.
     pub whim: f64,
-    /// The press that just had no effect, if the participant tries it again.
+    /// The button of the press that just had no effect, if the participant tries that press again.
     pub insists_on: Option<ButtonId>,
 }
 
 impl Lapses {
-    /// Draws the lapses until the next press.
+    /// Draws the participant's lapses until the next press.
     pub fn draw(person: &ParticipantTraits, random: &mut Stream) -> Lapses {
         Lapses {
             skips_check: chance(random, person.skips_check),

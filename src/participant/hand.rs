@@ -12,24 +12,24 @@ use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId
 
 /// Certainty about a location's content below which the participant looks at the location before using it.
 const UNSURE_BELOW: f64 = 0.6;
-/// Delay of a press by a look at a location that the press uses, in seconds, and maximum number of such looks per
+/// Delay of a press by a look at a location that the press uses, in seconds, and largest number of such looks per
 /// press.
 const LOOK_FIRST_S: f64 = 0.4;
 const MOST_LOOKS_FIRST: u32 = 2;
-/// Time since the last reading of a location, in seconds, after which the participant may look at it again before using
-/// it.
+/// Time since the last reading of a location, in seconds, after which the participant may look at the location again
+/// before using it.
 const FRESH_S: f64 = 0.8;
-/// Interval between decisions while no press is useful, in seconds: shortest and longest.
+/// Interval between two decisions while no press is useful, in seconds: shortest and longest.
 const THINK_AGAIN_S: [f64; 2] = [0.4, 0.8];
-/// Multiple of the patience time without a useful press after which the participant tries a press that seems useless.
+/// Multiple of the participant's patience, without a useful press, after which a seemingly useless press is tried.
 const PATIENCE_FACTOR: f64 = 3.0;
-/// Probability that the participant doubts a recipe instead of trying a press that seems useless.
+/// Probability that the participant then doubts a recipe instead of trying a press that seems useless.
 const DOUBTS_RECIPE: f64 = 0.5;
-/// Share of the belief in a recipe that remains after the participant doubts it because no press was useful.
+/// Share of the belief in a recipe that remains after the participant doubted the recipe because no press was useful.
 const STANDSTILL_TRUST: f64 = 0.4;
 
 impl SimulatedParticipant {
-    /// Presses the planned button when it is due, or waits if no press is planned.
+    /// Presses the planned button when the press is due, or waits if no press is planned.
     pub(super) fn move_hand(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         self.think(now);
         let Some(&button) = self.intent.plan.front() else { return self.wait(now, state) };
@@ -58,9 +58,9 @@ impl SimulatedParticipant {
         PressReason::decided(&self.decision(urgency), &believed, &truth, button)
     }
 
-    /// The location to look at before a press: the participant is unsure of its content, or cautious and has not read
-    /// it for a while. Before taking an item from a storage, the participant looks at the robot's hand, because the
-    /// robot may be fetching the same item.
+    /// The location to look at before a press: the participant is unsure of the location's content, or is cautious and
+    /// has not read the location for a while. Before taking an item from a storage, the participant looks at the
+    /// robot's hand, because the robot may be fetching the same item.
     fn worth_a_look(&mut self, now: SessionTime, button: ButtonId) -> Option<LocationId> {
         let kitchen = self.kitchen.clone();
         let own = kitchen.hands[Agent::Human.index()];
@@ -86,7 +86,7 @@ impl SimulatedParticipant {
         ParticipantAction::Press { button, belief: witness::witness(&self.kitchen, &self.beliefs, state, reason) }
     }
 
-    /// Samples a slip: the button pressed instead of the intended one, and its description.
+    /// Draws whether the press is a slip: the button that is pressed instead of the intended one, and a description.
     fn slip(&mut self, button: ButtonId) -> (ButtonId, Option<String>) {
         let kitchen = self.kitchen.clone();
         let name = |button| kitchen.button(Agent::Human, button).name.clone();
@@ -119,7 +119,7 @@ impl SimulatedParticipant {
         (pressed, Some(cause))
     }
 
-    /// Waits while no press is useful: the participant looks around, then doubts its recipes, and at last tries a
+    /// Waits while no press is useful: the participant looks around, then doubts the recipes, and at last tries a
     /// press.
     fn wait(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
@@ -158,7 +158,7 @@ impl SimulatedParticipant {
         self.press_urgently(now, state, Impatience::Desperate)
     }
 
-    /// Decides again with this urgency, and presses at once.
+    /// Decides again with this urgency, and presses at once if the decision names a press.
     fn press_urgently(&mut self, now: SessionTime, state: State, urgency: Impatience) -> Option<ParticipantAction> {
         let plan = self.decision(urgency).resolve(&self.beliefs.point(&self.kitchen)).plan;
         let button = *plan.front()?;

@@ -5,14 +5,14 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, Location
 /// Longest chain of processing steps from an ingredient to a part of a dish.
 const MOST_STEPS: usize = 8;
 
-/// How an item is made: the processing step, and the item to which it is applied.
+/// How an item is made: the processing step, and the item to which the step is applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ItemPreparation {
-    /// The processing step, as an index into [`Kitchen::processes`].
+    /// The processing step, as an index into the kitchen's list [`Kitchen::processes`].
     pub process: u8,
-    /// The item before the processing step.
+    /// The item as it is before the processing step.
     pub from: ContentId,
-    /// Place of the processing step; `None` for the hand of the agent who presses.
+    /// Place of the processing step; `None` if it is done in the hand of the agent who presses.
     pub place: Option<LocationId>,
 }
 
@@ -23,14 +23,14 @@ pub struct TaskKnowledge {
     uses: Vec<Option<ButtonId>>,
     processes: Vec<Option<ButtonId>>,
     serves: Vec<Option<ButtonId>>,
-    /// The human's button that throws the content of its hand away.
+    /// The human's button that throws away what the hand holds.
     pub trash: Option<ButtonId>,
     makings: Vec<Option<ItemPreparation>>,
     is_station: Vec<bool>,
 }
 
 impl TaskKnowledge {
-    /// Complete and correct knowledge of a kitchen.
+    /// Complete and correct knowledge of a kitchen's buttons and processing steps.
     pub fn new(kitchen: &Kitchen) -> TaskKnowledge {
         let mut knowledge = TaskKnowledge {
             takes: vec![None; kitchen.contents.len()],
@@ -70,7 +70,7 @@ impl TaskKnowledge {
         self.takes[item.index()]
     }
 
-    /// The human's button of a place, which puts down or picks up.
+    /// The human's button of a place, which puts an item down there or picks one up.
     pub fn at(&self, place: LocationId) -> Option<ButtonId> {
         self.uses[place.index()]
     }
@@ -85,7 +85,7 @@ impl TaskKnowledge {
         self.serves[order.index()]
     }
 
-    /// Whether items are stacked, processed or served at a place, so that it is more than a parking place.
+    /// Whether items are stacked, processed or served at a place, so that the place is more than a parking place.
     pub fn is_station(&self, place: LocationId) -> bool {
         self.is_station[place.index()]
     }
@@ -95,7 +95,7 @@ impl TaskKnowledge {
         self.makings[item.index()]
     }
 
-    /// The number of processing steps from `content` to `part`; `None` if it does not become that part.
+    /// The number of processing steps from `content` to `part`; `None` if the content cannot become that part.
     pub fn steps_to(&self, content: ContentId, part: ContentId) -> Option<u8> {
         let mut item = part;
         for steps in 0..MOST_STEPS {
@@ -107,8 +107,8 @@ impl TaskKnowledge {
         None
     }
 
-    /// The next processing step of `content` on the way to `part`; `None` if it is that part already, or can never
-    /// become it.
+    /// The next processing step of `content` on the way to `part`; `None` if the content is that part already, or can
+    /// never become it.
     pub fn next_making(&self, content: ContentId, part: ContentId) -> Option<ItemPreparation> {
         let mut item = part;
         for _ in 0..MOST_STEPS {
@@ -121,7 +121,7 @@ impl TaskKnowledge {
         None
     }
 
-    /// The ingredient in a storage from which a part is made.
+    /// The ingredient, taken from a storage, from which a part is made.
     pub fn ingredient(&self, part: ContentId) -> ContentId {
         let mut item = part;
         for _ in 0..MOST_STEPS {

@@ -1,18 +1,18 @@
-//! Belief changes of the simulated participant after its own effective and ineffective presses.
+//! Belief changes of the simulated participant after the participant's own effective and ineffective presses.
 
 use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State, World};
 
-/// Probability that the simulated participant gives to the expected result of its own effective press.
+/// Probability that the simulated participant gives to the expected result of an own effective press.
 const ACTED_CERTAINTY: f64 = 0.97;
-/// Certainty that the participant gains about its own hand when it explains an ineffective press, because it feels what
-/// it holds.
+/// Certainty that the participant gains about the own hand's content when explaining an ineffective press, because
+/// people feel what they hold.
 const FELT_CERTAINTY: f64 = 0.3;
-/// Factor on the probability of values with which an ineffective press would have had an effect.
+/// Factor on the probability of values with which the ineffective press would have had an effect.
 const CONTRADICTED_FACTOR: f64 = 0.04;
 
-/// Updates the participant's beliefs after its own press, effective or not. Returns true if the effect contradicted the
-/// beliefs.
+/// Updates the participant's beliefs after an own press, effective or not. Returns true if the press's effect
+/// contradicted the beliefs.
 pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, effective: bool) -> bool {
     let World { state, recipes } = beliefs.point(kitchen);
     let expected = kitchen.press(state, &recipes, Agent::Human, button);
@@ -25,8 +25,8 @@ pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Button
     expected.is_some() != effective
 }
 
-/// Adopts an expected effect: the locations involved take the values that the rules predict, with the certainty before
-/// the press.
+/// Adopts an expected effect of a press: the locations involved take the values that the rules predict, with the
+/// certainty before the press.
 fn carry_out(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, next: State) {
     let places = kitchen.involved(Agent::Human, button);
     let sure =
@@ -43,8 +43,8 @@ fn settle(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, place: LocationId
     }
 }
 
-/// Explains an unexpected effect: values that it implies are adopted, other values at the locations involved become
-/// uncertain.
+/// Explains an unexpected effect of a press: values that the effect implies are adopted, other values at the locations
+/// involved become uncertain.
 fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId) {
     let hand = kitchen.hands[Agent::Human.index()];
     let World { mut state, .. } = beliefs.point(kitchen);
@@ -73,15 +73,15 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Butto
     }
 }
 
-/// Explains an unexpected lack of effect: the belief about the least certain of the locations involved is weakened.
+/// Explains an unexpected lack of effect: the belief about the least certain of the press's locations is weakened.
 fn blame(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, state: State, button: ButtonId) {
     if matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_)) {
-        // The participant sees the plate's content, so it doubts the recipe instead; see `RecipeMemory::doubt`.
+        // The participant sees the plate's content, so the recipe is doubted instead; see `RecipeMemory::doubt`.
         return;
     }
     let recipes = kitchen.true_recipes();
     let mut places = kitchen.involved(Agent::Human, button);
-    // The participant feels what its hand holds.
+    // The participant feels what the own hand holds, so this belief is hardly doubted.
     let hand = kitchen.hands[Agent::Human.index()];
     let trust =
         |place| beliefs.certainty(AspectId::of_location(place)) + if place == hand { FELT_CERTAINTY } else { 0.0 };

@@ -11,23 +11,24 @@ use crate::kitchen::{
     Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State, World,
 };
 
-/// Probability that the participant assigns to the content that it has just read.
+/// Probability that the participant gives to the content that was just read at a location.
 const READ_CERTAINTY: f64 = 0.97;
 /// Factor on the probability of a misreading if the look-alike is expected; divisor if the true content is expected.
 const EXPECTATION_FACTOR: f64 = 4.0;
-/// Distance at which a change captures attention half as often as at the fixation point, in metres on the display.
+/// Distance from the fixation point at which a change captures attention half as often, in metres on the display.
 const CAPTURE_REACH_M: f64 = 0.6;
-/// Number of independent capture attempts by a change at a location of the next presses.
+/// Number of independent chances to capture attention that a change at a location of the next presses has.
 const WATCHED_ATTEMPTS: i32 = 3;
-/// Number of planned presses whose locations are looked at.
+/// Number of planned presses at whose locations the participant looks.
 const LOOKS_AHEAD: usize = 2;
-/// Time constant with which the weight of a location as a fixation target grows since its last reading, in seconds.
+/// Time constant with which a location becomes more likely as a fixation target after its last reading, in seconds.
 const STALE_S: f64 = 6.0;
-/// Share of the belief in a recipe that remains when the robot's behaviour contradicts it.
+/// Share of the belief in a recipe that remains when the robot's behaviour contradicts the recipe.
 const HINT_TRUST: f64 = 0.2;
 
 impl SimulatedParticipant {
-    /// Moves the eyes: changes capture attention, a completed fixation is read, then the next target is chosen.
+    /// Moves the eyes: changes capture attention, the location of a completed fixation is read, then a target is
+    /// chosen.
     pub(super) fn look(&mut self, now: SessionTime, state: State) {
         self.notice_changes(now, state);
         match self.eyes.advance(now) {
@@ -49,7 +50,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Changes on the display may capture attention; a change at the fixated location is read again.
+    /// Lets changes on the display capture attention; a change at the fixated location is read again.
     fn notice_changes(&mut self, now: SessionTime, state: State) {
         if state == self.display {
             return;
@@ -76,7 +77,8 @@ impl SimulatedParticipant {
             };
             let distance_m = location.display.distance_m(eye, kitchen.display_m);
             let seen = strength * 0.5_f64.powf(distance_m / CAPTURE_REACH_M);
-            // Locations that the next presses use are watched in peripheral vision.
+            // Locations that the next presses use are watched in peripheral vision, so changes there are noticed more
+            // often.
             let seen = if needed.contains(&id) { 1.0 - (1.0 - seen).powi(WATCHED_ATTEMPTS) } else { seen };
             if chance(&mut self.mind, seen) {
                 self.attention.first(id);
@@ -121,7 +123,7 @@ impl SimulatedParticipant {
             .map(|index| LocationId(index as u8))
     }
 
-    /// Locations of the next two planned presses, except the own hand, whose content is felt.
+    /// Locations of the next two planned presses, except the own hand, whose content the participant feels.
     pub(super) fn needed(&self) -> Vec<LocationId> {
         let next = self.intent.plan.iter().take(LOOKS_AHEAD);
         let mut places: Vec<LocationId> =
@@ -130,7 +132,7 @@ impl SimulatedParticipant {
         places
     }
 
-    /// A point outside of the task's locations: a storage, or a random point of the display.
+    /// A point outside of the task's locations to look at: a storage, or a random point of the display.
     fn elsewhere(&mut self) -> [f64; 2] {
         let storages: Vec<[f64; 2]> = self.kitchen.storages.iter().map(|storage| storage.display.centre()).collect();
         match storages.is_empty() || chance(&mut self.mind, 0.4) {
@@ -139,7 +141,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reads the content of a location, occasionally mistaken for a look-alike.
+    /// Reads the content of a location, which is occasionally mistaken for a look-alike.
     pub(super) fn read(&mut self, now: SessionTime, location: LocationId, state: State) {
         let kitchen = self.kitchen.clone();
         let aspect = AspectId::of_location(location);
@@ -167,7 +169,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reacts to a content that differs from the believed content.
+    /// Reacts to reading a content that differs from the believed content.
     fn on_news(&mut self, location: LocationId, believed: u8, code: u8) {
         let kitchen = self.kitchen.clone();
         let wanted: Vec<_> = kitchen
@@ -184,7 +186,7 @@ impl SimulatedParticipant {
             }
             return;
         }
-        // The robot knows the true recipes, so what it carries, stacks or discards reveals something about them.
+        // The robot knows the true recipes, so what it carries, stacks or discards reveals something about the recipes.
         let World { recipes, .. } = self.beliefs.point(&kitchen);
         let (before, now) = (ContentId(believed), ContentId(code));
         let has_place =
@@ -200,7 +202,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether the participant believes all items of `content` to be in the kitchen.
+    /// Whether the participant believes that all items of `content` are in the kitchen.
     fn is_about(&self, content: ContentId) -> bool {
         let kitchen = &self.kitchen;
         let World { state, .. } = self.beliefs.point(kitchen);
@@ -212,7 +214,7 @@ impl SimulatedParticipant {
     }
 
     /// Reacts to a hint: no believed recipe explains the robot's press, so the participant may recall another version
-    /// that `fits` the press.
+    /// of a recipe, one that `fits` the press.
     fn take_hint(&mut self, wanted: &[DishId], fits: impl Fn(ContentId) -> bool) {
         if !chance(&mut self.mind, self.person.takes_hints) {
             return;
@@ -224,7 +226,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The dish whose recipe the participant is least certain of.
+    /// The dish, among these, of whose recipe the participant is least certain.
     pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
         let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
@@ -242,8 +244,8 @@ fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Ve
     dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
 }
 
-/// Whether `content` can become part of `stack`: all items of a stack must occur in it, of a single item only its
-/// ingredient.
+/// Whether `content` can become part of the dish `stack`: of a stacked content all items must occur in the dish, of a
+/// single item only its ingredient.
 fn could_become(kitchen: &Kitchen, content: ContentId, stack: ContentId) -> bool {
     let (content, stack) = (kitchen.content(content), kitchen.content(stack));
     match content.is_stack() {

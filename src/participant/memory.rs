@@ -9,37 +9,37 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ContentId, DishId, Kitchen};
 
-/// Probability that the participant gives to the version of a recipe that it has just recalled: people do not hedge.
+/// Probability that the participant gives to the version of a recipe that was just recalled: people do not hedge.
 const RECALLED_CERTAINTY: f64 = 0.92;
 /// Probability that the participant gives to a recipe that was just shown or served.
 const CONFIRMED_CERTAINTY: f64 = 0.97;
 /// Share of the belief in a recipe that remains after a stack made by this recipe could not be served.
 const FAILED_TRUST: f64 = 0.05;
-/// Number of dishes on the menu for which the population's memory parameters were set.
+/// Number of dishes on the menu for which the parameters of the population's memory were set.
 const USUAL_MENU_DISHES: f64 = 6.0;
-/// Factor on the weight of recipe versions that agree with an observation.
+/// Factor on the weight of versions of a recipe that agree with an observation.
 const FITTING_FACTOR: f64 = 4.0;
 
-/// Memory of one simulated participant for the recipes.
+/// Memory of one simulated participant for the recipes of all dishes.
 #[derive(Clone, Debug)]
 pub struct RecipeMemory {
     random: Stream,
-    /// Distribution over the versions of each dish's recipe to which the participant's memory fades.
+    /// Distribution over the versions of each dish's recipe to which the participant's memory of the recipe fades.
     faded: Vec<Vec<f64>>,
     /// Distribution to which the memory of a recipe fades once the recipe was shown or served, which corrects what was
     /// learned wrongly.
     corrected: Vec<Vec<f64>>,
-    /// Distribution over the versions of each dish's recipe after the instruction; it is restored when the participant
-    /// doubts a recipe.
+    /// Distribution over the versions of each dish's recipe after the instruction, which is restored when the
+    /// participant doubts the recipe.
     learned: Vec<Vec<f64>>,
-    /// Remaining weight of each version of a recipe after doubts; reset when a version is confirmed.
+    /// Remaining weight of each version of a recipe after doubts; set back when a version is confirmed.
     left: Vec<Vec<f64>>,
     half_life_s: f64,
     last: SessionTime,
 }
 
 impl RecipeMemory {
-    /// Memory of the recipes after the instruction; it sets the recipe aspects of `beliefs`.
+    /// Memory of the recipes after the instruction; creating it also sets the beliefs about recipes in `beliefs`.
     pub fn new(
         kitchen: &Kitchen,
         population: &Population,
@@ -48,7 +48,7 @@ impl RecipeMemory {
         beliefs: &mut ParticipantBeliefs,
     ) -> RecipeMemory {
         let (mut faded, mut learned, mut corrected) = (Vec::new(), Vec::new(), Vec::new());
-        // Fewer dishes are easier to remember.
+        // With fewer dishes on the menu, recipes are easier to remember.
         let ease = USUAL_MENU_DISHES / kitchen.dishes.len() as f64;
         let odds_of = |p: f64| p / (1.0 - p) * ease;
         for (index, dish) in kitchen.dishes.iter().enumerate() {
@@ -61,7 +61,7 @@ impl RecipeMemory {
             let with_truth = |p_truth: f64| -> Vec<f64> {
                 std::iter::once(p_truth).chain(weights.iter().map(|w| w / total * (1.0 - p_truth))).collect()
             };
-            // Individual dishes differ in how well they are remembered.
+            // Individual dishes differ in how well their recipes are remembered.
             let odds = odds_of(person.learned) * (0.5 * normal(&mut random)).exp();
             let known = with_truth(odds / (1.0 + odds));
             let odds = odds_of(person.half_forgotten);
@@ -95,17 +95,17 @@ impl RecipeMemory {
         }
     }
 
-    /// Seconds since the memory of recipes last faded.
+    /// Seconds since the memory of recipes was last made to fade.
     pub fn since_s(&self, now: SessionTime) -> f64 {
         now.secs_since(self.last)
     }
 
-    /// Postpones fading by the duration of a pause.
+    /// Postpones the fading of memory by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.last = self.last + by;
     }
 
-    /// Recalls one version of the recipe of an ordered dish, in which the participant then believes.
+    /// Recalls one version of an ordered dish's recipe, in which the participant then believes.
     pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         let aspect = kitchen.aspect_of_dish(dish);
         let mut draw = self.random.random::<f64>();
@@ -118,15 +118,15 @@ impl RecipeMemory {
         beliefs.settle(aspect, recalled.unwrap_or(0), sure);
     }
 
-    /// The participant loses the thread while working on an order: it recalls the recipe again from a partly faded
+    /// Lets the participant lose the thread while working on an order: the recipe is recalled again from a partly faded
     /// memory.
     pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         beliefs.mix(kitchen.aspect_of_dish(dish), &self.faded[dish.index()], 0.5);
         self.recall(kitchen, beliefs, dish);
     }
 
-    /// Doubts the believed version of a recipe and recalls another, preferably one that `fits` an observation. `trust`
-    /// is the share of the belief in the doubted version that remains.
+    /// Doubts the believed version of a recipe and recalls another version, preferably one that `fits` an observation.
+    /// `trust` is the share of the belief in the doubted version that remains.
     pub fn doubt(
         &mut self,
         kitchen: &Kitchen,
@@ -149,7 +149,7 @@ impl RecipeMemory {
         self.recall(kitchen, beliefs, dish);
     }
 
-    /// Rejects the believed version of a recipe, because a stack made by it could not be served.
+    /// Rejects the believed version of a recipe, because a stack made by this version could not be served.
     pub fn fail(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         self.doubt(kitchen, beliefs, dish, FAILED_TRUST, |_| false);
     }

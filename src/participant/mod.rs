@@ -1,8 +1,8 @@
 //! Simulated participants for tests and simulated studies, with errors of known cause.
 //!
-//! A simulated participant differs from the assistant's human model: it acts on one most probable world, plans by
-//! backward chaining, sees only fixated locations, and forgets recipes in steps. It knows nothing of the cost to go
-//! that drives the assistant and defines errors.
+//! A simulated participant differs from the assistant's human model: a participant acts on one most probable world,
+//! plans by backward chaining, sees only fixated locations, and forgets recipes in steps. A participant knows nothing
+//! of the cost to go that drives the assistant and defines errors.
 //!
 //! Modules from the ground up:
 //!

@@ -1,5 +1,5 @@
-//! Backward chaining of a simulated participant: from the goal of an order, over the preconditions of the rules, to a
-//! press that is possible now.
+//! Backward chaining of a simulated participant: from the goal of an order, over the preconditions of the kitchen's
+//! rules, to a press that is possible now.
 //!
 //! A dish is served from the plate, stacked on the board from parts, and parts are made of ingredients at stations. An
 //! unmet precondition of a press becomes the next goal: an occupied place is cleared, the content of a full hand is put
@@ -15,7 +15,7 @@ use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State
 pub struct ProposedPress {
     /// The proposed button of the human.
     pub button: ButtonId,
-    /// Whether the press is a detour: it only makes room, at the cost of another press later.
+    /// Whether the press is a detour, which only makes room, at the cost of another press later.
     pub is_detour: bool,
 }
 
@@ -29,7 +29,7 @@ impl ProposedPress {
     }
 }
 
-/// Backward chaining in one believed state.
+/// Backward chaining from the participant's goals in one believed state.
 pub struct BackwardChaining<'a> {
     prospect: &'a GoalContext<'a>,
     state: State,
@@ -39,15 +39,15 @@ pub struct BackwardChaining<'a> {
 }
 
 impl<'a> BackwardChaining<'a> {
-    /// Starts from the goals in a state, those of the order in progress first.
+    /// Starts backward chaining from the goals in a state, those of the order in progress first.
     pub fn new(prospect: &'a GoalContext<'a>, state: State, in_progress: LocationId) -> BackwardChaining<'a> {
         let hand = prospect.kitchen.hands[Agent::Human.index()];
         let goals = Goals::in_state(prospect, state, in_progress);
         BackwardChaining { prospect, state, goals, hand, held: state.content(hand) }
     }
 
-    /// The presses that advance the goals, the preferred one first: for the order in progress by the participant's
-    /// habit, then for other orders.
+    /// The presses that advance the participant's goals, the preferred press first: for the order in progress by the
+    /// participant's habit, then for other orders.
     pub fn proposals(&self, habits: &Habits) -> Vec<ProposedPress> {
         let mut proposals: Vec<ProposedPress> = Vec::with_capacity(8);
         let mut propose = |press: Option<ProposedPress>| {
@@ -70,7 +70,7 @@ impl<'a> BackwardChaining<'a> {
         proposals
     }
 
-    /// The next press that brings a finished stack to its order.
+    /// The next press that brings a finished dish (stack) to its order.
     fn serve(&self, goal: &OrderGoal, at: LocationId) -> Option<ProposedPress> {
         let plate = self.prospect.kitchen.plate;
         match self.prospect.kitchen.location(at).kind {
@@ -85,7 +85,7 @@ impl<'a> BackwardChaining<'a> {
         }
     }
 
-    /// The next press towards a missing part.
+    /// The next press towards a missing part of a dish.
     fn advance(&self, goal: &OrderGoal, need: &PartNeed, habits: &Habits) -> Option<ProposedPress> {
         let kitchen = self.prospect.kitchen;
         let Some(source) = need.source else { return self.fetch(goal, need.part, habits) };
@@ -118,8 +118,8 @@ impl<'a> BackwardChaining<'a> {
         }
     }
 
-    /// Takes the ingredient of a part from a storage; by habit the participant may take that of the last dish's part
-    /// instead.
+    /// Takes the ingredient of a part from a storage; by habit the participant may take the ingredient of the last
+    /// dish's part instead.
     fn fetch(&self, goal: &OrderGoal, part: ContentId, habits: &Habits) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         let meant = habits.part_instead(self.prospect.kitchen, goal.stack, part);
@@ -137,7 +137,7 @@ impl<'a> BackwardChaining<'a> {
         }
     }
 
-    /// Clears a place that the robot needs for its hand's content.
+    /// Clears a place that the robot needs to put down what its hand holds.
     fn make_way(&self, place: LocationId) -> Option<ProposedPress> {
         self.clear(place).map(|press| ProposedPress { is_detour: press.is_detour || !self.held.is_empty(), ..press })
     }
@@ -167,7 +167,8 @@ impl<'a> BackwardChaining<'a> {
         Some(ProposedPress { button, is_detour: self.goals.uses(place) })
     }
 
-    /// Empties the hand: where its content helps an order, else at a parking place; what no order needs is thrown away.
+    /// Empties the hand: where the held content helps an order, else at a parking place; what no order needs is thrown
+    /// away.
     fn free_hand(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         if !self.goals.uses(self.hand) {
@@ -195,12 +196,12 @@ impl<'a> BackwardChaining<'a> {
         self.park()
     }
 
-    /// Puts the hand's content down where it is least in the way; without such a place it is thrown away.
+    /// Puts the held content down where it is least in the way; if no place is free, it is thrown away.
     fn park(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         let places = (0..self.prospect.kitchen.locations.len()).map(|index| LocationId(index as u8));
         let free = places.filter(|&place| knowledge.at(place).is_some() && self.is_free(place, self.held));
-        // The board and the plate are needed for every dish.
+        // Board and plate are the last choice for parking, since every dish needs them.
         let kitchen = self.prospect.kitchen;
         let price = |place: &LocationId| {
             (u8::from(knowledge.is_station(*place)), u8::from(*place == kitchen.board || *place == kitchen.plate))
@@ -209,7 +210,7 @@ impl<'a> BackwardChaining<'a> {
         best.or(knowledge.trash).map(ProposedPress::detour)
     }
 
-    /// Whether some available part needs this place next.
+    /// Whether some part that is available needs this place next.
     fn is_next(&self, place: LocationId) -> bool {
         let needs = self.goals.orders.iter().flat_map(|goal| &goal.needs);
         let sources = needs.filter_map(|need| need.source.map(|source| (source, need.part)));
@@ -220,7 +221,7 @@ impl<'a> BackwardChaining<'a> {
         sources.filter(|(source, _)| source.at != self.hand).any(|one| station(one) == Some(place))
     }
 
-    /// Whether a station will accept a part, as far as the participant checks before it takes the part into its hand.
+    /// Whether a station will accept a part, as far as the participant checks before taking the part into the hand.
     fn is_ready(&self, station: LocationId, item: ContentId, goal: &OrderGoal) -> bool {
         self.prospect.skips_check || self.takes(station, item, goal)
     }

@@ -1,4 +1,4 @@
-//! Population of simulated participants: distributions of traits, and individuals drawn from them.
+//! Population of simulated participants: distributions of traits, and individual participants drawn from them.
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -6,30 +6,30 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::rng::Stream;
 
-/// Distribution of one trait over the simulated population: median and relative spread.
+/// Distribution of one trait over the simulated population, given by median and relative spread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraitSpread {
     /// Median of the trait, in the trait's unit.
     pub median: f64,
-    /// Standard deviation of the logarithm of the trait (of the logit, for a probability).
+    /// Standard deviation over people of the trait's logarithm (of its logit, if the trait is a probability).
     pub sigma: f64,
 }
 
-/// A probability of 0 for everybody: the default of traits that the calibrated population does not have.
+/// A probability of 0 for everybody, the default of traits that the calibrated population does not have.
 const NEVER: TraitSpread = TraitSpread::from_median(0.0, 0.4);
 
-/// Default probability of a wrong answer to a question of a probe: small, since otherwise wrong answers would hide the
-/// few false beliefs.
+/// Default probability of a wrong answer to a question of a freeze probe: small, since otherwise wrong answers would
+/// hide the few false beliefs.
 const ANSWERS_WRONG: TraitSpread = TraitSpread::from_median(0.01, 0.4);
-/// Least P(truth) with which a belief is not false, see `measures::sequences::FALSE_BELOW`.
+/// Least P(truth) with which a belief does not count as false, see `measures::sequences::FALSE_BELOW`.
 const ANSWERS_FROM: f64 = 0.5;
 const ANSWER_S: TraitSpread = TraitSpread::from_median(3.0, 0.3);
 /// Default probability of following a noticed proposal; it is an assumption, since proposals were never shown to
 /// people.
 const FOLLOWS_PROPOSAL: TraitSpread = TraitSpread::from_median(0.9, 0.4);
 
-// Recordings leave out how participants answer probes where it is the default.
+// A default setting of how participants answer probes is not written to recordings.
 fn is_usual_wrong(value: &TraitSpread) -> bool {
     *value == ANSWERS_WRONG
 }
@@ -51,17 +51,17 @@ impl TraitSpread {
         TraitSpread { median, sigma }
     }
 
-    /// Whether the trait is 0 for everybody. Recordings leave such a trait out.
+    /// Whether the trait is 0 for everybody; recordings leave such a trait out.
     fn is_never(&self) -> bool {
         *self == NEVER
     }
 
-    /// Draws a positive trait: log-normal, truncated at three sigma.
+    /// Draws a positive trait of a person: log-normal, truncated at three sigma.
     fn draw(self, random: &mut Stream) -> f64 {
         self.median * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp()
     }
 
-    /// Draws a trait that is a probability: logit-normal, truncated at three sigma.
+    /// Draws a person's trait that is a probability: logit-normal, truncated at three sigma.
     fn draw_chance(self, random: &mut Stream) -> f64 {
         let odds = self.median / (1.0 - self.median) * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp();
         odds / (1.0 + odds)
@@ -78,8 +78,8 @@ pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
     random.random::<f64>() < p
 }
 
-/// True with probability `p`. No random number is drawn if `p` is 0, so that a new trait does not change participants
-/// without it.
+/// Draws whether an event with probability `p` happens. If `p` is 0 no random number is drawn, so that a new trait does
+/// not change participants without the trait.
 pub(super) fn rare_chance(random: &mut Stream, p: f64) -> bool {
     p > 0.0 && chance(random, p)
 }
@@ -91,37 +91,37 @@ pub(super) fn rare_chance(random: &mut Stream, p: f64) -> bool {
 pub struct Population {
     /// Time from one press to the next, in seconds, of a participant with some practice.
     pub press_s: TraitSpread,
-    /// Standard deviation of the logarithm of one participant's times between presses.
+    /// Standard deviation of the logarithm of one participant's times from press to press.
     pub press_jitter: f64,
-    /// Relative increase of the time between presses at the beginning (0.3: 30 % slower).
+    /// Relative increase of the time between presses for a beginner (0.3: 30 % slower).
     pub novice_slowdown: f64,
-    /// Number of presses after which half of the initial slowdown is gone.
+    /// Number of presses after which half of a beginner's slowdown is gone.
     pub practice_presses: f64,
-    /// Probability of a slip: pressing the neighbouring button on the table.
+    /// Probability of a slip that presses the neighbouring button on the table.
     pub slip: TraitSpread,
-    /// Probability of a slip: taking the look-alike ingredient from the storage.
+    /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
-    /// Probability of a thoughtless press: effective but useless.
+    /// Probability that a press is thoughtless: effective but useless.
     pub thoughtless: TraitSpread,
-    /// Probability that the participant notices its own slip.
+    /// Probability that the participant notices an own slip.
     pub notices_slip: f64,
     /// Probability of repeating an unexpectedly ineffective press before searching for its cause (perseveration).
     pub insists: f64,
     /// Probability that the participant looks at a location right before using it.
     pub checks: TraitSpread,
-    /// Probability of another look before a press if the last look at its location is some time ago.
+    /// Probability of another look before a press if the last look at the press's location is some time ago.
     pub makes_sure: TraitSpread,
-    /// Probability that a change anywhere on the display captures attention.
+    /// Probability that a change anywhere on the display captures the participant's attention.
     pub capture: TraitSpread,
-    /// Probability that a new order captures attention.
+    /// Probability that a new order captures the participant's attention.
     pub order_capture: TraitSpread,
     /// Probability that a fixation is outside of the task's locations.
     pub wanders: TraitSpread,
     /// Weight of the robot's hand in the choice of fixation targets (1: as a location of the next press).
     pub watches_robot: TraitSpread,
-    /// Duration of a fixation, in seconds.
+    /// Duration of a fixation of the eyes, in seconds.
     pub fixation_s: TraitSpread,
-    /// Probability of mistaking a content for one that looks like it.
+    /// Probability of mistaking the content of a location for one that looks like it.
     pub misreads: TraitSpread,
     /// Share of the belief in the unseen content of the robot's hand that is lost when the robot presses.
     pub doubts_robot_hand: TraitSpread,
@@ -133,14 +133,14 @@ pub struct Population {
     pub half_forgotten: TraitSpread,
     /// Half-life of the fading of recipe memories, in seconds.
     pub half_life_s: TraitSpread,
-    /// Rate per minute at which the participant forgets the recipe during the work on its order, and then recalls it
-    /// again.
+    /// Rate per minute at which the participant forgets the recipe during the work on its order, and then recalls the
+    /// recipe again.
     pub loses_thread_per_min: TraitSpread,
     /// Weight of a look-alike topping among the false memories of a recipe (another topping has weight 1).
     pub confuses_look_alikes: f64,
     /// Probability that the participant doubts a recipe when the robot's behaviour contradicts it.
     pub takes_hints: TraitSpread,
-    /// Time without a useful press after which the participant looks around and doubts its recipes, in seconds.
+    /// Time without a useful press after which the participant looks around and doubts recipes, in seconds.
     pub patience_s: TraitSpread,
     /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: TraitSpread,
@@ -160,48 +160,48 @@ pub struct Population {
     pub signal_after_s: [f64; 2],
     /// Shortest and longest time that reading a signal takes, in seconds. The participant sees nothing else meanwhile.
     pub reads_signal_s: [f64; 2],
-    /// Probability that the participant loses its next intention by reading a signal.
+    /// Probability that the participant, by reading a signal, forgets which press was intended next.
     pub loses_intention: TraitSpread,
-    /// Time from reading a signal to the next press if the intention is lost, in seconds.
+    /// Time from reading a signal to the next press if the intended press was forgotten, in seconds.
     pub resumes_after_s: f64,
     /// Share by which the attention to signals moves towards the usefulness of each signal that is read.
     pub tires_of_signals: TraitSpread,
     /// Probability of misreading a recipe that a signal shows.
     pub misreads_signal: f64,
-    /// Probability that the participant keeps its own version of a recipe when a signal shows another one.
+    /// Probability that the participant keeps the own version of a recipe when a signal shows another version.
     #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub keeps_own_recipe: TraitSpread,
     /// Probability, for each recipe, that the participant is sure of a wrong version after the instruction.
     #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub misremembers: TraitSpread,
-    /// Probability that the participant guesses rightly what the robot did by a press that it did not see.
+    /// Probability that the participant guesses rightly what the robot did by a press that the participant did not see.
     #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub guesses_robot: TraitSpread,
-    /// Factor per earlier trial on the odds of knowing a recipe (1: no learning between trials).
+    /// Factor, per earlier trial, on the odds of knowing a recipe (1: no learning between trials).
     pub recipes_gained: f64,
-    /// Share of the presses in earlier trials that count as practice (0: no practice is kept).
+    /// Share of the presses in earlier trials that count as practice (0: earlier trials give no practice).
     pub practice_kept: f64,
     /// Size of the eye tracker's systematic offset, in metres on the display (1 deg at 2 m is 0.035 m).
     pub tracker_offset_m: f64,
-    /// Whether the participants know the state and all recipes: they then make only planning errors and slips.
+    /// Whether all participants know the state and all recipes, and so make only planning errors and slips.
     pub all_knowing: bool,
     /// Probability of a wrong answer to a question of a freeze probe, whatever the participant believes.
     #[serde(skip_serializing_if = "is_usual_wrong")]
     pub answers_wrong: TraitSpread,
-    /// Least probability of a belief's most probable value with which it is given as the answer to a probe; below, the
-    /// answer is "I don't know".
+    /// Least probability of a belief's most probable value from which the value is given as the answer to a probe;
+    /// below it, the answer is "I don't know".
     #[serde(skip_serializing_if = "is_usual_from")]
     pub answers_from: f64,
     /// Time that a participant takes to answer a question of a freeze probe, in seconds.
     #[serde(skip_serializing_if = "is_usual_time")]
     pub answer_s: TraitSpread,
-    /// Probability that the participant makes the proposed presses that it has read; it makes them at the next
-    /// decision, whatever it believes.
+    /// Probability that the participant, having read a proposal, makes the proposed presses at the next decision,
+    /// whatever the participant believes.
     #[serde(skip_serializing_if = "is_usual_following")]
     pub follows_proposal: TraitSpread,
 }
 
-/// A participant's experience from earlier trials.
+/// A participant's experience (practice) from earlier trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
     /// Number of the participant's earlier trials.
@@ -267,32 +267,32 @@ impl Default for Population {
     }
 }
 
-/// Traits of one simulated participant, drawn from the population. Meanings and units as in [`Population`].
+/// Traits of one simulated participant, drawn from the population, with meanings and units as in [`Population`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticipantTraits {
-    /// Median time from one press of the participant to the next, in seconds, with some practice.
+    /// Median time from one press of the participant to the next, in seconds, after some practice.
     pub press_s: f64,
-    /// Probability of a slip: hitting the neighbouring button on the table.
+    /// Probability of a slip that hits the neighbouring button on the table.
     pub slip: f64,
-    /// Probability of a slip: taking the look-alike ingredient from the storage.
+    /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: f64,
-    /// Probability of a thoughtless press: effective but useless.
+    /// Probability that a press is thoughtless: effective but useless.
     pub thoughtless: f64,
-    /// Probability of looking at a location right before using it.
+    /// Probability that the participant looks at a location right before using it.
     pub checks: f64,
-    /// Probability of another look before a press if the last look is some time ago.
+    /// Probability of another look before a press if the last look at the press's location is some time ago.
     pub makes_sure: f64,
-    /// Probability that a change anywhere on the display captures attention.
+    /// Probability that a change anywhere on the display captures the participant's attention.
     pub capture: f64,
-    /// Probability that a new order captures attention.
+    /// Probability that a new order captures the participant's attention.
     pub order_capture: f64,
-    /// Probability that a fixation is outside of the task's locations.
+    /// Probability that a fixation of the eyes is outside of the task's locations.
     pub wanders: f64,
     /// Weight of the robot's hand in the choice of fixation targets.
     pub watches_robot: f64,
     /// Median duration of a fixation, in seconds.
     pub fixation_s: f64,
-    /// Probability of mistaking a content for one that looks like it.
+    /// Probability of mistaking the content of a location for one that looks like it.
     pub misreads: f64,
     /// Share of the belief in the unseen content of the robot's hand that is lost when the robot presses, 0 to 1.
     pub doubts_robot_hand: f64,
@@ -300,31 +300,31 @@ pub struct ParticipantTraits {
     pub doubts_places: f64,
     /// Probability that the participant gives to the true recipe after the instruction.
     pub learned: f64,
-    /// Probability of the true recipe to which an unused memory of it fades.
+    /// Probability of the true recipe to which the participant's unused memory of a recipe fades.
     pub half_forgotten: f64,
     /// Half-life of the fading of recipe memories, in seconds.
     pub half_life_s: f64,
     /// Rate at which the participant forgets the recipe while working on an order, per second.
     pub loses_thread_per_s: f64,
-    /// Probability of doubting the own recipe when the robot's behaviour contradicts it.
+    /// Probability of doubting the own version of a recipe when the robot's behaviour contradicts it.
     pub takes_hints: f64,
-    /// Time without a useful press after which the participant looks around and doubts its recipes, in seconds.
+    /// Time without a useful press after which the participant looks around and doubts recipes, in seconds.
     pub patience_s: f64,
     /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: f64,
-    /// Probability of noticing a signal.
+    /// Probability that the participant notices a signal.
     pub notices_signal: f64,
-    /// Number of own presses that the participant thinks through, 2 to 5.
+    /// Number of own presses ahead that the participant thinks through, 2 to 5.
     pub depth: usize,
-    /// Probability of not checking the preconditions of later presses.
+    /// Probability of not checking the preconditions of presses after the next one.
     pub skips_check: f64,
     /// Probability of taking a part of the last dish instead of one of the present dish, by habit.
     pub follows_habit: f64,
-    /// Probability of forgetting parts at parking places.
+    /// Probability of forgetting parts that lie at parking places.
     pub forgets_parked: f64,
     /// Probability of first doing what is within reach for another order.
     pub takes_along: f64,
-    /// Probability of losing the next intention by reading a signal.
+    /// Probability of forgetting the intended next press by reading a signal.
     pub loses_intention: f64,
     /// Share by which the attention to signals moves towards the usefulness of each signal, 0 to 1.
     pub tires_of_signals: f64,
@@ -332,7 +332,7 @@ pub struct ParticipantTraits {
     pub keeps_own_recipe: f64,
     /// Probability of being sure of a wrong version of a recipe after the instruction.
     pub misremembers: f64,
-    /// Probability of guessing rightly what the robot did unseen.
+    /// Probability of guessing rightly what the robot did by a press that was not seen.
     pub guesses_robot: f64,
     /// Probability of a wrong answer to a question of a freeze probe.
     pub answers_wrong: f64,
@@ -348,8 +348,8 @@ const DEPTHS: [usize; 2] = [2, 5];
 const MOST_SIGNALS_NOTICED: f64 = 0.85;
 
 impl Population {
-    /// The first parameters that contradict each other: the path of one of them in a session file, the value found, and
-    /// a valid value. The ranges of single parameters are in `session::ranges`.
+    /// The first parameters that contradict each other: the path of one of these in a session file, the value found,
+    /// and a valid value. The ranges of single parameters are in `session::ranges`.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let intervals = [
             ("participant.population.signal_after_s", "signal_after_s", self.signal_after_s),
@@ -359,7 +359,7 @@ impl Population {
         Some((path, format!("{name} = [{least}, {most}]"), "[least, most], in seconds"))
     }
 
-    /// Draws one individual from the population.
+    /// Draws the traits of one individual from the population.
     pub fn draw(&self, random: &mut Stream) -> ParticipantTraits {
         ParticipantTraits {
             press_s: self.press_s.draw(random),
@@ -402,7 +402,7 @@ impl Population {
 }
 
 impl ParticipantTraits {
-    /// The same individual after some trials: it knows the recipes better.
+    /// The same individual's traits after some trials, when the individual knows the recipes better.
     pub fn after(self, experience: Experience, population: &Population) -> ParticipantTraits {
         let gain = population.recipes_gained.powi(experience.trials as i32);
         let better = |p: f64| gain * p / (1.0 - p + gain * p);

@@ -1,4 +1,5 @@
-//! A simulated participant's state regarding signals: the signal that it will read, and how useful signals have been.
+//! A simulated participant's state regarding signals: the signal that will be read next, and how useful signals have
+//! been.
 
 use std::collections::VecDeque;
 
@@ -6,16 +7,16 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::{ButtonId, LocationId};
 
-/// A simulated participant's state regarding signals.
+/// A simulated participant's state regarding signals from wizard or assistant.
 #[derive(Clone, Debug)]
 pub(super) struct SignalSense {
-    /// A noticed signal: the time at which the participant will read it, the location that it is about, and the signal.
+    /// A noticed signal: the time at which the participant will read the signal, the signal's location, and the signal.
     pub pending: Option<(SessionTime, Option<LocationId>, Signal)>,
     /// Proposed presses that the participant intends to make next.
     pub follows: VecDeque<ButtonId>,
-    /// Time until which the participant reads a signal.
+    /// Session time until which the participant is reading a signal.
     pub busy_until: SessionTime,
-    /// How useful the signals so far have been to the participant, 0 to 1.
+    /// How useful the signals so far have been to the participant, from 0 to 1.
     pub worth: f64,
 }
 

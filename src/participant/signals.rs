@@ -1,7 +1,7 @@
-//! The effect of signals on the simulated participant: it may notice and read them, and reading costs time and
+//! The effect of signals on the simulated participant, who may notice and read a signal; reading costs time and
 //! attention.
-//!
-//! The values come from the literature on glances and interruptions and were fixed before any condition with signals
+//! The values of these effects come from the literature on glances and interruptions and were fixed before any
+//! condition with signals was simulated:
 //! was simulated:
 //!
 //! - Reading takes a glance, during which the participant sees and presses nothing else: 0.5 to 1.5 s, as people
@@ -25,14 +25,14 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
-/// Number of grid steps along each side of the display in the search for free room.
+/// Number of grid steps along each side of the display in the search for free room on it.
 const ROOM_STEPS: usize = 20;
 
-/// Least share of a participant's signals that it still notices when all of them were useless.
+/// Least share of signals that a participant still notices when all signals so far were useless.
 const LEAST_HEED: f64 = 0.3;
 
 impl SimulatedParticipant {
-    /// Reacts to a signal: the participant may notice it and looks at it after a short delay.
+    /// Reacts to a signal: the participant may notice the signal, and then looks at it after a short delay.
     pub fn on_signal(&mut self, now: SessionTime, location: Option<LocationId>, signal: &Signal) {
         let [least, most] = self.population.signal_after_s;
         let after_s = least + (most - least) * self.mind.random::<f64>();
@@ -42,8 +42,8 @@ impl SimulatedParticipant {
             is_noticed.then(|| (now + SessionTime::from_secs_f64(after_s), location, signal.clone()));
     }
 
-    /// Removes the signal from the display; the participant cannot read it any more. It does not make proposed presses
-    /// that are out of date.
+    /// Removes the signal from the display, so that the participant cannot read it any more. The participant does not
+    /// make proposed presses that are out of date.
     pub fn on_signal_end(&mut self, is_outdated: bool) {
         self.signals.pending = None;
         if is_outdated {
@@ -51,12 +51,13 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether the participant is reading a signal, during which it sees nothing else.
+    /// Whether the participant is reading a signal, and therefore sees nothing else.
     pub(super) fn is_reading_signal(&self, now: SessionTime) -> bool {
         now < self.signals.busy_until
     }
 
-    /// Reads the signal that is due. If it told nothing new, the participant notices later signals less.
+    /// Reads the signal whose reading is due. If the signal told nothing new, the participant notices later signals
+    /// less.
     pub(super) fn read_signal(&mut self, now: SessionTime, state: State) {
         let is_due = self.signals.pending.as_ref().is_some_and(|(time, _, _)| now >= *time);
         let Some((_, location, signal)) = self.signals.pending.take_if(|_| is_due) else { return };
@@ -85,7 +86,8 @@ impl SimulatedParticipant {
         self.pay_for_signal(now, is_useful);
     }
 
-    /// Reads the recipe of a dish, occasionally wrongly; the participant may keep its own version.
+    /// Reads the recipe that a signal shows, occasionally wrongly; the participant may keep the own version of the
+    /// recipe.
     fn read_recipe(&mut self, dish: DishId) {
         let kitchen = self.kitchen.clone();
         let variants = kitchen.dish(dish).variants.len();
@@ -97,8 +99,8 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reads proposed presses, which the participant may intend to make. They reveal nothing about contents and
-    /// recipes, so beliefs do not change. Returns whether they differ from the planned presses.
+    /// Reads proposed presses, which the participant may intend to make. Proposals reveal nothing about contents and
+    /// recipes, so beliefs do not change. Returns whether the proposed presses differ from the planned ones.
     fn read_proposal(&mut self, presses: &[String]) -> bool {
         let buttons = presses.iter().filter_map(|name| self.kitchen.button_named(Agent::Human, name));
         let buttons: VecDeque<ButtonId> = buttons.collect();
@@ -109,7 +111,7 @@ impl SimulatedParticipant {
         is_new
     }
 
-    /// Records an own press: a proposal is followed press by press, and any other press ends that.
+    /// Records an own press: a proposal is followed press by press, and any other press ends following it.
     pub(super) fn has_pressed(&mut self, button: ButtonId) {
         if self.signals.follows.pop_front() != Some(button) {
             self.signals.follows.clear();
@@ -117,7 +119,7 @@ impl SimulatedParticipant {
     }
 
     /// Applies the costs of a signal that was read: time, possibly the loss of the next intention, and less attention
-    /// to later signals if it was useless.
+    /// to later signals if the signal was useless.
     fn pay_for_signal(&mut self, now: SessionTime, is_useful: bool) {
         let [least, most] = self.population.reads_signal_s;
         let reading_s = least + (most - least) * self.mind.random::<f64>();
@@ -136,7 +138,7 @@ impl SimulatedParticipant {
 }
 
 /// Where the participant's display shows proposed presses: the point that is farthest from all locations and storages,
-/// as a fraction of the display's width and height.
+/// in fractions of the display's width and height.
 fn roomiest(kitchen: &Kitchen) -> [f64; 2] {
     let at = |step: usize| step as f64 / ROOM_STEPS as f64;
     // The corners of the display are reserved for the eye tracker's markers.

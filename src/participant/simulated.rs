@@ -1,4 +1,4 @@
-//! Data of a simulated participant: traits, beliefs, plan and the times of its next actions.
+//! Data of a simulated participant: traits, beliefs, plan, and the times of the participant's next actions.
 
 use std::sync::Arc;
 
@@ -17,13 +17,13 @@ use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
 use crate::mind::RecordedBelief;
 
-/// Probability that the simulated participant gives to the empty kitchen at the start of a trial.
+/// Probability with which the simulated participant believes that the kitchen is empty at the start of a trial.
 const SURE_AT_START: f64 = 0.97;
 
 /// Action of a simulated participant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParticipantAction {
-    /// A gaze sample of its eye tracker.
+    /// A gaze sample of the participant's simulated eye tracker.
     Gaze(GazeSample),
     /// A press of a button; `belief` records the participant's beliefs at the press and the cause of the press.
     Press {
@@ -45,8 +45,7 @@ pub struct SimulatedParticipant {
     pub(super) beliefs: ParticipantBeliefs,
     pub(super) memory: RecipeMemory,
     pub(super) eyes: Eyes,
-    /// Copy of the eyes that looks at the targets of an accuracy check of the eye tracker; present only during the
-    /// check.
+    /// Copy of the eyes that looks at the targets of a gaze accuracy check; `None` while no check is running.
     pub(super) at_targets: Option<Eyes>,
     pub(super) attention: LookQueue,
     pub(super) intent: ParticipantPlan,
@@ -55,7 +54,7 @@ pub struct SimulatedParticipant {
     pub(super) mind: Stream,
     pub(super) hand: Stream,
     pub(super) is_started: bool,
-    /// State of the display when the participant last compared it for changes.
+    /// State that the display showed when the participant last compared it for changes.
     pub(super) display: State,
     pub(super) rethink: bool,
     pub(super) press_at: SessionTime,
@@ -64,18 +63,18 @@ pub struct SimulatedParticipant {
     pub(super) idle_since: Option<SessionTime>,
     /// Time of the robot's last press.
     pub(super) robot_pressed_at: SessionTime,
-    /// The intended button of a slip that the participant has not noticed; else `None`.
+    /// The button that the participant intended, if the last press was a slip that went unnoticed; else `None`.
     pub(super) meant: Option<ButtonId>,
     pub(super) signals: SignalSense,
-    /// Seed of the participant's answers to the questions of probes.
+    /// Seed of the random numbers with which the participant answers probes.
     pub(super) answer_seed: u64,
-    /// Served orders, each with the time at which the participant expects it to disappear.
+    /// Served orders, each with the session time at which the participant expects the order to disappear.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,
 }
 
 impl SimulatedParticipant {
     /// Draws the simulated participant of a trial from a population. Traits are seeded by `person`, random events of
-    /// the trial by `trial`, so one person can have several trials. `experience` describes the earlier ones.
+    /// the trial by `trial`, so one person can have several trials. `experience` describes the person's earlier trials.
     pub fn new(
         kitchen: Arc<Kitchen>,
         population: &Population,
@@ -124,7 +123,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Individual traits of the participant.
+    /// Individual traits of this simulated participant.
     pub fn person(&self) -> &ParticipantTraits {
         &self.person
     }
@@ -134,12 +133,12 @@ impl SimulatedParticipant {
         &self.beliefs
     }
 
-    /// Time of the participant's next action; `None` before the trial's start.
+    /// Session time of the participant's next action; `None` before the trial's start.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.is_started.then(|| self.press_at.min(self.eyes.due()))
     }
 
-    /// The participant's planned next press and its time, if already decided.
+    /// The participant's planned next press and the press's time; `None` if not decided yet.
     pub fn next_press(&self) -> Option<(ButtonId, SessionTime)> {
         let button = self.intent.plan.front().filter(|_| self.is_started)?;
         Some((*button, self.press_at))

@@ -1,12 +1,12 @@
-//! Behaviour of a simulated participant during an accuracy check of its eye tracker: it looks at the targets.
+//! Behaviour of a simulated participant during a gaze accuracy check: the participant looks at the targets.
 
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 
 impl SimulatedParticipant {
-    /// Shows a target of the accuracy check, or removes it. A copy of the eyes looks at the target, so a check changes
-    /// nothing in the trial; the copy has the same tracker offset.
+    /// Shows a target of the gaze accuracy check, or removes it. A copy of the eyes looks at the target, so a check
+    /// changes nothing in the trial; the copy has the same offset of the eye tracker.
     pub fn on_target(&mut self, now: SessionTime, target: Option<[f64; 2]>) {
         match (target, &mut self.at_targets) {
             (None, eyes) => *eyes = None,
@@ -20,7 +20,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Time at which the next gaze sample of the accuracy check is due.
+    /// Session time at which the next gaze sample of the accuracy check is due.
     pub fn target_due(&self) -> Option<SessionTime> {
         self.at_targets.as_ref().map(|eyes| eyes.due())
     }

@@ -12,13 +12,13 @@ use crate::kitchen::{
     Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State, World,
 };
 
-/// Probability that the participant looks at the location that its last press changed.
+/// Probability that the participant looks at the location that the participant's last press changed.
 const LOOKS_AT_RESULT: f64 = 0.5;
-/// Time since reading a location during which the participant relies on the content read there, in seconds.
+/// Time after reading a location during which the participant relies on the content that was read, in seconds.
 const SEEN_JUST_NOW_S: f64 = 5.0;
-/// Probability that the participant gives to what it rightly guesses about a press of the robot.
+/// Probability that the participant gives to a right guess about what the robot's press did.
 const GUESSED_CERTAINTY: f64 = 0.85;
-/// Probability that the participant gives to the disappearance of a served order after the usual time.
+/// Probability with which the participant expects a served order to have disappeared after the usual time.
 const EXPECTED: f64 = 0.8;
 
 impl SimulatedParticipant {
@@ -55,8 +55,8 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reacts to a robot press whose effect the participant guesses rightly: it believes the present content of the
-    /// places that the press changed.
+    /// Reacts to a robot press whose effect the participant guesses rightly: the participant believes the present
+    /// content of the places that the press changed.
     pub(super) fn guess(&mut self, before: State, after: State) {
         let kitchen = self.kitchen.clone();
         for index in 0..kitchen.locations.len() {
@@ -100,8 +100,8 @@ impl SimulatedParticipant {
                     let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
                     self.clearing.push((gone, order));
                 }
-                // The participant first doubts the plate's content; it doubts the recipe only if it has just seen the
-                // plate.
+                // The participant first doubts the belief about the plate's content; the recipe is doubted only if the
+                // plate was just seen.
                 false if now.secs_since(self.attention.read_at[kitchen.plate.index()]) < SEEN_JUST_NOW_S => {
                     self.memory.fail(&kitchen, &mut self.beliefs, dish);
                 }
@@ -111,8 +111,8 @@ impl SimulatedParticipant {
         self.rethink = true;
     }
 
-    /// Decides on the next presses and queues looks at their locations. A proposal that the participant follows
-    /// replaces the decision.
+    /// Decides on the participant's next presses and queues looks at their locations. A proposal that the participant
+    /// follows replaces the decision.
     pub(super) fn think(&mut self, now: SessionTime) {
         self.rethink = false;
         if !self.population.all_knowing {
@@ -136,7 +136,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The data of the decision that is due, without the world that the participant believes.
+    /// The data of the participant's decision that is due, without the world that the participant believes.
     pub(super) fn decision(&self, urgency: Impatience) -> Decision<'_> {
         Decision {
             kitchen: &self.kitchen,
@@ -178,7 +178,7 @@ impl SimulatedParticipant {
     }
 }
 
-/// Content of the order that a serve button serves; `OrderContent::None` for other buttons.
+/// What the order shows that a serve button serves; `OrderContent::None` for other buttons.
 fn serve_of(action: ButtonAction, state: State) -> OrderContent {
     match action {
         ButtonAction::Serve(order) => state.order(order),

@@ -1,9 +1,9 @@
-//! Beliefs of the simulated participant: one categorical distribution per state aspect, with operations that change it.
+//! Beliefs of the simulated participant: one categorical distribution per state aspect, with operations on them.
 
 use crate::kitchen::{AspectId, AspectKind, ContentId, DishId, Kitchen, LocationId, OrderContent, State, World};
 
 /// Beliefs of a simulated participant: one distribution per state aspect. Every distribution sums to 1, and every value
-/// has a positive probability.
+/// of an aspect has a positive probability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticipantBeliefs {
     of: Vec<Vec<f64>>,
@@ -13,8 +13,8 @@ pub struct ParticipantBeliefs {
 const RESIDUE: f64 = 1e-6;
 
 impl ParticipantBeliefs {
-    /// Beliefs with probability `sure` on each value in `state` and on the true recipes; the memory changes the recipes
-    /// afterwards.
+    /// Beliefs with probability `sure` on each aspect's value in `state` and on the true recipes; the participant's
+    /// memory changes the beliefs about recipes afterwards.
     pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
         let mut beliefs = ParticipantBeliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
         for index in 0..kitchen.aspects.len() {
@@ -24,12 +24,12 @@ impl ParticipantBeliefs {
         beliefs
     }
 
-    /// The participant's distribution over the values of an aspect.
+    /// The participant's probability distribution over the values of a state aspect.
     pub fn distribution(&self, aspect: AspectId) -> &[f64] {
         &self.of[aspect.index()]
     }
 
-    /// Index of the most probable value; ties go to the first.
+    /// Index of the most probable value of a state aspect; ties go to the first value.
     pub fn most_likely(&self, aspect: AspectId) -> usize {
         let values = self.distribution(aspect);
         (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
@@ -56,8 +56,8 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Moves the distribution of an aspect by the share `weight` towards another distribution, which is given as
-    /// unnormalized weights.
+    /// Moves the distribution of an aspect by the share `weight` towards another distribution, which `towards` gives as
+    /// unnormalised weights.
     pub fn mix(&mut self, aspect: AspectId, towards: &[f64], weight: f64) {
         let total: f64 = towards.iter().sum();
         if total <= 0.0 {
@@ -84,7 +84,7 @@ impl ParticipantBeliefs {
         self.mix(aspect, weights, 1.0);
     }
 
-    /// The most probable state and recipes, as the participant believes.
+    /// The world (state and recipes) that is most probable in the participant's beliefs.
     pub fn point(&self, kitchen: &Kitchen) -> World {
         let World { mut state, mut recipes } = World::empty(kitchen);
         for (index, aspect) in kitchen.aspects.iter().enumerate() {

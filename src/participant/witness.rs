@@ -1,15 +1,15 @@
-//! Record of a participant's beliefs at a press, and of the origin of the press.
+//! Record of a participant's beliefs at a press, and of the press's origin (plan, false belief or slip).
 //!
 //! The participant's decision is repeated with the truth and the same lapses. If the press stays the same, it came from
-//! the plan; if it changes, from a false belief, namely the smallest replacement by the truth that changes it. An order
-//! and the recipe of its dish are replaced together.
+//! the plan; if the press changes, it came from a false belief, namely the smallest replacement by the truth that
+//! changes the press. An order and the recipe of its dish are replaced together.
 
 use super::decision::Decision;
 use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State, World};
 use crate::mind::{AspectBelief, PressOrigin, RecordedBelief, WORTH_TELLING};
 
-/// Records the belief about every aspect: its most probable value, the probability of the true value, and all other
+/// Records the belief about every aspect: the most probable value, the probability of the true value, and all other
 /// probabilities large enough for the log.
 pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, reason: PressReason) -> RecordedBelief {
     let name = |aspect: &AspectId| kitchen.aspects[aspect.index()].name.clone();
@@ -21,7 +21,7 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
     }
 }
 
-/// Records the belief about every aspect at a freeze probe, which causes no press.
+/// Records the belief about every aspect at a freeze probe, which leads to no press.
 pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
     let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
@@ -51,14 +51,14 @@ pub(super) fn rounded(p: f64) -> f64 {
 pub struct PressReason {
     /// Whether the press comes from the plan, from a false belief, or from a slip.
     pub origin: PressOrigin,
-    /// The reason of the press, in words.
+    /// The reason of the press, in words for the log.
     pub cause: String,
-    /// The aspects whose replacement by the truth changes the decision.
+    /// The state aspects whose replacement by the truth changes the decision.
     pub targets: Vec<AspectId>,
 }
 
 impl PressReason {
-    /// The reason of a slip, with its description.
+    /// The reason of a press that was a slip, with a description of the slip.
     pub fn slip(cause: String) -> PressReason {
         PressReason { origin: PressOrigin::Slip, cause, targets: Vec::new() }
     }
@@ -112,8 +112,8 @@ impl PressReason {
     }
 }
 
-/// Aspects with false beliefs, in the order of the layout; an order and the believed recipes of the dishes in question
-/// are one target.
+/// State aspects with false beliefs, in the order of the layout; an order and the believed recipes of the dishes that
+/// it may want are one target.
 fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<AspectId>> {
     let is_wrong = |aspect: &AspectId| code_of(kitchen, believed, *aspect) != code_of(kitchen, truth, *aspect);
     let mut left: Vec<AspectId> =
@@ -145,7 +145,7 @@ fn code_of(kitchen: &Kitchen, world: &World, aspect: AspectId) -> u8 {
     }
 }
 
-/// Sets an aspect of a world to its true value.
+/// Sets a state aspect of a world to its true value.
 fn tell(kitchen: &Kitchen, world: &mut World, truth: &World, aspect: AspectId) {
     match kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => world.state.set_code(location, truth.state.code(location)),

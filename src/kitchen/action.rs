@@ -1,11 +1,11 @@
-//! Buttons: an action of the task is one press of one physical button by one agent.
+//! Buttons of the kitchen: an action of the task is one press of one physical button by one agent.
 
 use serde::{Deserialize, Serialize};
 
 use super::content::ContentId;
 use super::location::LocationId;
 
-/// Identifies a button: an index into the buttons of one agent.
+/// Identifies a button, as an index into the list of one agent's buttons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ButtonId(pub u8);
 
@@ -17,15 +17,15 @@ impl ButtonId {
     }
 }
 
-/// What a button does when it is pressed.
+/// The action that a press of a button performs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ButtonAction {
-    /// Take this item from the agent's own storage into its empty hand.
+    /// Take this item from the agent's own storage into the agent's empty hand.
     Take(ContentId),
-    /// Pick up, put down or stack: exchanges contents between the agent's hand and this location.
+    /// Pick up, put down or stack: exchange contents between the agent's hand and this location.
     Use(LocationId),
-    /// Apply the processing step with this index: to the content of the hand if the step has no place, else to the
-    /// content of its place.
+    /// Apply the processing step with this index: to the content of the hand if the step has no place of its own, else
+    /// to the content of the step's place.
     Process(u8),
     /// Throw away the content of the agent's hand.
     Trash,
@@ -46,13 +46,13 @@ pub struct Button {
     pub key: Option<char>,
     /// Number of the button on the human's gamepad that presses this button.
     pub gamepad: Option<u8>,
-    /// The colour of the button's cap, which the display shows, too.
+    /// The colour of the button's cap, which the participant's display shows, too.
     pub colour: Option<ButtonColour>,
     /// The name of the button's area on the table; buttons of one area stand together, as on the display.
     pub area: Option<String>,
 }
 
-/// Colour of a button's cap: the colours in which arcade buttons are sold.
+/// Colour of a button's cap: one of the colours in which arcade buttons are sold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ButtonColour {

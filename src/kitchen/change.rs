@@ -17,18 +17,18 @@ pub struct Press {
     pub before: State,
     /// The state of the kitchen after the press; the same as before if the press had no effect.
     pub after: State,
-    /// Whether the button's action was available, so that the press had an effect.
+    /// Whether the button's action was available in the state before, so that the press had an effect.
     pub effective: bool,
 }
 
-/// What an event of the session changed in the kitchen.
+/// What an event of the session changed in the kitchen's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KitchenChange {
     /// The event does not change the kitchen.
     None,
     /// The trial started with an empty kitchen.
     TrialStarted {
-        /// The state before the trial started.
+        /// The state of the kitchen before the trial started.
         before: State,
         /// The state of the empty kitchen.
         after: State,
@@ -37,10 +37,10 @@ pub enum KitchenChange {
     Press {
         /// The press with the states before and after it.
         press: Press,
-        /// How many presses each agent has made, this one included, indexed by [`Agent::index`].
+        /// How many presses each agent has made, this press included, indexed by [`Agent::index`].
         presses: [u32; 2],
     },
-    /// An agent pressed a button while no trial ran: the press has no effect and does not count.
+    /// An agent pressed a button while no trial ran; such a press has no effect and does not count.
     UncountedPress {
         /// The agent that pressed.
         agent: Agent,
@@ -51,24 +51,24 @@ pub enum KitchenChange {
     Order {
         /// The location of the order.
         order: LocationId,
-        /// The state before the order changed.
+        /// The state of the kitchen before the order changed.
         before: State,
-        /// The state after the order changed.
+        /// The state of the kitchen after the order changed.
         after: State,
     },
     /// The wizard corrected the content of a location in the program's state, which differed from the real one.
     Correction {
         /// The location that was corrected.
         location: LocationId,
-        /// The state before the correction.
+        /// The state of the kitchen before the wizard's correction.
         before: State,
-        /// The state after the correction.
+        /// The state of the kitchen after the wizard's correction.
         after: State,
     },
 }
 
 impl Kitchen {
-    /// The press of this button by this agent in `state`, and its effect under the true recipes.
+    /// The press of this button by this agent in `state`, with its effect under the true recipes.
     pub fn try_press(&self, state: State, agent: Agent, button: ButtonId) -> Press {
         let after = self.press(state, &self.true_recipes(), agent, button);
         Press { agent, button, before: state, after: after.unwrap_or(state), effective: after.is_some() }
@@ -76,14 +76,14 @@ impl Kitchen {
 }
 
 impl Press {
-    /// The state of the kitchen after the press, if the press had an effect.
+    /// The state of the kitchen after the press; `None` if the press had no effect.
     pub fn result(&self) -> Option<State> {
         self.effective.then_some(self.after)
     }
 }
 
 impl KitchenChange {
-    /// The press of either agent, if the event is one that counts.
+    /// The press of either agent that made the change; `None` if the event is no press that counts.
     pub fn press(&self) -> Option<Press> {
         match self {
             KitchenChange::Press { press, .. } => Some(*press),
@@ -91,12 +91,12 @@ impl KitchenChange {
         }
     }
 
-    /// The press of the human, if the event is one that counts.
+    /// The press of the human that made the change; `None` if the event is no press of the human that counts.
     pub fn human_press(&self) -> Option<Press> {
         self.press().filter(|press| press.agent == Agent::Human)
     }
 
-    /// The state of the kitchen before and after the event, if the event changed it.
+    /// The state of the kitchen before and after the event; `None` if the event did not change it.
     pub fn states(&self) -> Option<(State, State)> {
         let (before, after) = match self {
             KitchenChange::None | KitchenChange::UncountedPress { .. } => return None,

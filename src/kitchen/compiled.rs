@@ -1,4 +1,4 @@
-//! The compiled kitchen: its tables, and look-ups by name and id.
+//! The compiled kitchen: its tables, and look-ups of its parts by name and id.
 
 use super::action::{Button, ButtonAction, ButtonId};
 use super::agent::Agent;
@@ -12,26 +12,26 @@ use super::state::{OrderContent, Recipes, State};
 use super::transition_tables::TransitionTables;
 use crate::base::rng::mix;
 
-/// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.
+/// A compiled kitchen: tables over contents, locations, buttons and dishes, which never change after loading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kitchen {
     /// Identifier of the kitchen, from the layout file.
     pub name: String,
     /// Title of the kitchen on screens.
     pub title: String,
-    /// Size of the wall display in metres, width and height.
+    /// Width and height of the wall display in metres.
     pub display_m: [f64; 2],
     /// Height of the table in the frame of the robot's base, in metres.
     pub table_height_m: f64,
     /// Time for which an order is shown as served, in seconds.
     pub served_shown_s: f64,
-    /// Time from serving an order to the next order, in seconds.
+    /// Time from serving an order to the appearance of the next order, in seconds.
     pub new_order_after_s: f64,
-    /// Every content; index 0 is "empty", then the ingredient items, then the stacks by size.
+    /// Every content that a location can hold; index 0 is "empty", then the items, then the stacks by size.
     pub contents: Vec<Content>,
-    /// How contents are worded on screens, by language.
+    /// Words of screens for contents, by language.
     pub words: KitchenWords,
-    /// The locations in the order of the layout file, orders first.
+    /// The kitchen's locations in the order of the layout file, orders first.
     pub locations: Vec<Location>,
     /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
     pub buttons: [Vec<Button>; 2],
@@ -42,21 +42,21 @@ pub struct Kitchen {
     /// The state aspects, about which beliefs can be false: one per location (its content) and one per dish (its
     /// recipe).
     pub aspects: Vec<StateAspect>,
-    /// The processing steps: cutting, cooking and their like.
+    /// The processing steps, such as cutting and cooking.
     pub processes: Vec<ProcessingStep>,
     /// The locations that show orders.
     pub orders: Vec<LocationId>,
     /// The hand of each agent, indexed by [`Agent::index`].
     pub hands: [LocationId; 2],
-    /// The location where items are stacked.
+    /// The location (board) where items are stacked to a dish.
     pub board: LocationId,
-    /// The location from which orders are served.
+    /// The location (plate) from which orders are served.
     pub plate: LocationId,
     pub(super) tables: TransitionTables,
 }
 
 impl Kitchen {
-    /// The state with empty locations and no orders.
+    /// The state of the kitchen with empty locations and no orders.
     pub fn empty_state(&self) -> State {
         State::default()
     }
@@ -70,7 +70,7 @@ impl Kitchen {
         recipes
     }
 
-    /// The number of joint values of all state aspects, |S| of the paper.
+    /// The number of joint values of all state aspects, called |S| in the paper.
     pub fn state_count(&self) -> u128 {
         self.aspects.iter().map(|aspect| aspect.values.len() as u128).product()
     }
@@ -126,12 +126,12 @@ impl Kitchen {
         self.buttons[agent.index()].iter().position(|button| button.name == name).map(|index| ButtonId(index as u8))
     }
 
-    /// How screens word a content, from its name in logs; an unknown name is returned as it is.
+    /// Words of screens for a content, from the content's name in logs; an unknown name is returned as it is.
     pub fn worded<'a>(&'a self, name: &'a str) -> &'a str {
         self.content_named(name).map_or(name, |content| &self.content(content).wording)
     }
 
-    /// What a location shows, in words: its content, or the order's dish, `none` or `served`.
+    /// What a location shows, in words: its content, or for an order the ordered dish, `none` or `served`.
     pub fn content_label(&self, state: State, location: LocationId) -> &str {
         match self.location(location).kind {
             LocationKind::Order => match state.order(location) {
@@ -143,13 +143,13 @@ impl Kitchen {
         }
     }
 
-    /// A fingerprint of a state for logs: equal states have equal fingerprints.
+    /// A fingerprint of a state for comparing logs: equal states have equal fingerprints.
     pub fn state_mark(&self, state: State) -> u64 {
         let bytes = state.bits();
         mix(bytes as u64 ^ mix((bytes >> 64) as u64))
     }
 
-    /// The agent's button that is nearest to this one on the table.
+    /// The agent's button that is nearest to this button on the table.
     pub fn nearest_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
         let buttons = &self.buttons[agent.index()];
         let own = buttons[button.index()].at_m;
@@ -158,7 +158,7 @@ impl Kitchen {
         others.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).map(|index| ButtonId(index as u8))
     }
 
-    /// The agent's storage button whose item looks like that of this one.
+    /// The agent's storage button whose item looks like the item of this button; `None` if there is none.
     pub fn look_alike_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
         let ButtonAction::Take(item) = self.button(agent, button).action else { return None };
         let alike = &self.content(item).look_alikes;

@@ -7,7 +7,7 @@ use super::look::Appearance;
 pub struct ContentId(pub u8);
 
 impl ContentId {
-    /// Nothing: the location is empty.
+    /// The empty content: the location holds nothing.
     pub const EMPTY: ContentId = ContentId(0);
 
     /// The content's place in [`Kitchen::contents`](super::Kitchen::contents).
@@ -16,7 +16,7 @@ impl ContentId {
         usize::from(self.0)
     }
 
-    /// Whether this is the empty content.
+    /// Whether this is the empty content (nothing).
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0 == 0
@@ -29,15 +29,15 @@ pub struct Content {
     /// The content's name in logs and tables: "rice cooked", "nori + rice cooked", "empty"; a stack that is a dish of
     /// the menu has the dish's name.
     pub name: String,
-    /// How screens and reports word the content: "cooked rice", "nori + cooked rice".
+    /// Words of screens and reports for the content: "cooked rice", "nori + cooked rice".
     pub wording: String,
     /// The items in the content, in the order of the recipe file; one for a single item, none for "empty".
     pub items: Vec<ContentId>,
-    /// The ingredient of a single item, as an index into the recipe file's list; none for a stack.
+    /// The ingredient of a single item, as an index into the recipe file's list; `None` for a stack.
     pub ingredient: Option<usize>,
-    /// The contents that look similar: the same with one ingredient replaced by a look-alike.
+    /// The contents that look similar: the same content with one ingredient replaced by a look-alike.
     pub look_alikes: Vec<ContentId>,
-    /// How the display draws a single item, if the recipe file says so.
+    /// How the participant's display draws a single item, if the recipe file says so.
     pub look: Option<Appearance>,
 }
 

@@ -25,7 +25,7 @@ pub struct Dish {
     pub name: String,
     /// Variants of the dish's recipe that people may believe in: stacks of items, the true recipe first.
     pub variants: Vec<ContentId>,
-    /// How the display draws the finished dish, if the recipe file says so.
+    /// How the participant's display draws the finished dish, if the recipe file says so.
     pub look: Option<Appearance>,
 }
 

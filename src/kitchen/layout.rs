@@ -7,7 +7,7 @@ use super::action::ButtonColour;
 use super::agent::Agent;
 use super::location::DisplayArea;
 
-/// The layout file of a kitchen as written.
+/// The layout file of a kitchen, as it is written.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayoutSpec {
@@ -15,19 +15,19 @@ pub struct LayoutSpec {
     pub name: String,
     /// The kitchen's title on screens.
     pub title: String,
-    /// The recipe file, relative to the layout file.
+    /// Path of the recipe file, relative to the layout file.
     pub recipes: Spanned<String>,
     /// The size of the wall display.
     pub display: WallDisplaySpec,
-    /// The table, and the timing of orders.
+    /// The height of the table, and the timing of orders.
     pub table: TabletopSpec,
-    /// The order locations: at least one.
+    /// The order locations of the kitchen, at least one.
     pub order: Vec<OrderSpec>,
     /// The hands: one for each agent.
     pub hand: Vec<HandSpec>,
-    /// The places where things can be put down.
+    /// The places where agents can put things down.
     pub place: Vec<PlaceSpec>,
-    /// Buttons of the recipe file's processes, beside those of the places.
+    /// Buttons for processing steps of the recipe file, beside the buttons of the places.
     #[serde(default)]
     pub process: Vec<ProcessButtonSpec>,
     /// The storages, one for each agent and ingredient.
@@ -35,7 +35,7 @@ pub struct LayoutSpec {
 }
 
 impl LayoutSpec {
-    /// The locations about which a signal can be sent, and the wizard's key for it.
+    /// The locations about which a signal can be sent, each with the wizard's key for that signal.
     pub fn signal_keys(&self) -> impl Iterator<Item = (&str, &Spanned<char>)> {
         let orders = self.order.iter().map(|order| (&order.name, &order.signal));
         let hands = self.hand.iter().map(|hand| (&hand.name, &hand.signal));
@@ -44,7 +44,7 @@ impl LayoutSpec {
         all.filter_map(|(name, key)| Some((name.get_ref().as_str(), key.as_ref()?)))
     }
 
-    /// The buttons of both agents.
+    /// The buttons of both agents, as the layout file has them.
     pub fn buttons(&self) -> impl Iterator<Item = &ButtonSpec> {
         let orders = self.order.iter().map(|order| &order.serve);
         let hands = self.hand.iter().map(|hand| &hand.trash);
@@ -54,7 +54,7 @@ impl LayoutSpec {
         orders.chain(hands).chain(places).chain(processes).chain(storages)
     }
 
-    /// The human's keys for buttons.
+    /// The keys on the human's keyboard that press buttons.
     pub fn button_keys(&self) -> impl Iterator<Item = &Spanned<char>> {
         self.buttons().filter_map(|button| button.key.as_ref())
     }
@@ -87,17 +87,17 @@ pub struct TabletopSpec {
     pub new_order_after_s: Spanned<f64>,
 }
 
-/// A physical button: its place on the table in the frame of the robot's base, and the human's key for it.
+/// A physical button: its position on the table in the frame of the robot's base, and the human's key for the button.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ButtonSpec {
     /// Position of the button on the table in metres, in the frame of the robot's base: x towards the human, y to the
     /// robot's left.
     pub at_m: Spanned<[f64; 2]>,
-    /// The key on the human's keyboard for this button; none: the human cannot press it by keyboard.
+    /// The key on the human's keyboard that presses this button; `None`: the human cannot press it by keyboard.
     #[serde(default)]
     pub key: Option<Spanned<char>>,
-    /// Number of the button on the human's gamepad (W3C Gamepad), counted from 0.
+    /// Number of the button on the human's gamepad (W3C Gamepad API), counted from 0.
     #[serde(default)]
     pub gamepad: Option<Spanned<u8>>,
     /// The colour of the button's cap, which the display shows beside the button's action.
@@ -108,11 +108,11 @@ pub struct ButtonSpec {
     pub area: Option<Spanned<String>>,
 }
 
-/// `[[order]]` of a layout file: a location that shows which dish is wanted.
+/// `[[order]]` of a layout file: a location that shows which dish is ordered.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrderSpec {
-    /// Identifier of the order's location.
+    /// Identifier of the order location.
     pub name: Spanned<String>,
     /// The order's area on the wall display.
     pub display: Spanned<DisplayArea>,
@@ -129,7 +129,7 @@ pub struct OrderSpec {
 pub struct HandSpec {
     /// Identifier of the hand's location.
     pub name: Spanned<String>,
-    /// The agent whose hand it is.
+    /// The agent to whom the hand belongs.
     pub agent: Spanned<Agent>,
     /// The hand's area on the wall display.
     pub display: Spanned<DisplayArea>,
@@ -140,16 +140,16 @@ pub struct HandSpec {
     pub trash: ButtonSpec,
 }
 
-/// `[[place]]` of a layout file: a location where contents are put down and taken up.
+/// `[[place]]` of a layout file: a location where contents are put down and picked up.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceSpec {
     /// Identifier of the place.
     pub name: Spanned<String>,
-    /// Whether items are stacked here: true for exactly one place.
+    /// Whether items are stacked at this place: true for exactly one place.
     #[serde(default)]
     pub stacks: bool,
-    /// Whether orders are served from here: true for exactly one place.
+    /// Whether orders are served from this place: true for exactly one place.
     #[serde(default)]
     pub serves: bool,
     /// Contents that the place accepts: "anything", "ingredients", "dishes", or a group of the recipe file.
@@ -159,7 +159,7 @@ pub struct PlaceSpec {
     /// The wizard's key for the signal about this place.
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
-    /// The button that puts the hand's content down here, or picks up the content of the place.
+    /// The button that puts the hand's content down at this place, or picks up the content of the place.
     pub button: ButtonSpec,
     /// Appearance of the place on the display: a shape and colours.
     #[serde(default)]

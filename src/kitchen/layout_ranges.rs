@@ -1,5 +1,5 @@
-//! The allowed ranges of the numbers in layout files. Those of session files are in `session::ranges`; recipe files
-//! have no numbers.
+//! The allowed ranges of the numbers in layout files. The ranges for session files are in `session::ranges`; recipe
+//! files have no numbers.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -30,7 +30,7 @@ pub const RANGES: [NumberRange; 11] = [
 /// ignored.
 ///
 /// # Errors
-/// The first number outside of its range, with its position.
+/// The first number outside of its allowed range, with its position.
 pub fn check(text: &str) -> Result<(), OutOfRange> {
     let Ok(document) = DeTable::parse(text) else { return Ok(()) };
     in_table(document.get_ref(), "")

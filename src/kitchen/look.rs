@@ -1,5 +1,5 @@
 //! Appearance of ingredients, dishes and places on the participant's display: a shape and its colours, from the
-//! kitchen's files. The browser page draws the shapes.
+//! kitchen's files. The page in the browser draws the shapes.
 
 use serde::Serialize;
 
@@ -15,12 +15,12 @@ pub const SHAPES: [&str; 32] = [
 pub struct Appearance {
     /// Name of the shape: one of [`SHAPES`].
     pub shape: String,
-    /// The colours of the shape as "#rrggbb"; if empty, the shape has its default colours.
+    /// The colours of the shape as "#rrggbb"; if the list is empty, the shape has its default colours.
     pub colours: Vec<String>,
 }
 
 impl Appearance {
-    /// Reads a shape and up to four colours from text.
+    /// Reads an appearance (a shape and up to four colours) from text.
     ///
     /// # Errors
     /// What the text would have to contain.

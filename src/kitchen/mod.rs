@@ -1,6 +1,6 @@
 //! The kitchen: contents, locations and buttons, the rules of a press, and the cost to go.
 //!
-//! Everything is computed from two files ([`layout::LayoutSpec`] and [`recipe::RecipesSpec`]); no code depends on a
+//! The kitchen is computed from two files ([`layout::LayoutSpec`] and [`recipe::RecipesSpec`]); no code depends on a
 //! particular dish.
 //!
 //! The files from the ground up; each imports only from those before it:

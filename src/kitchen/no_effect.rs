@@ -13,26 +13,26 @@ use super::state::{OrderContent, State};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoEffectReason {
-    /// The agent's hand holds something, but would have to be empty.
+    /// No effect because the agent's hand holds something, but would have to be empty.
     HandFull,
-    /// The agent's hand is empty, but would have to hold something.
+    /// No effect because the agent's hand is empty, but would have to hold something.
     HandEmpty,
-    /// The agent's hand and the place are both empty.
+    /// No effect because the agent's hand and the place are both empty.
     BothEmpty,
-    /// The place is empty, but would have to hold something.
+    /// No effect because the place is empty, but would have to hold something.
     PlaceEmpty,
-    /// The place is occupied, and items cannot be stacked there.
+    /// No effect because the place is occupied, and items cannot be stacked there.
     PlaceFull,
-    /// The place does not accept the content of the hand.
+    /// No effect because the place does not accept the content of the hand.
     NotAccepted,
-    /// The content of the hand cannot be stacked on the content of the place.
+    /// No effect because the content of the hand cannot be stacked on the content of the place.
     NotStacked,
-    /// The content of the place cannot be processed in this way.
+    /// No effect because the content of the place cannot be processed in this way.
     NotProcessed,
-    /// The order location shows no order.
+    /// No effect because the order location shows no order.
     NoOrder,
-    /// The content of the plate cannot be served for this order. The reason does not say which dish it is, or what is
-    /// wrong with it.
+    /// No effect because the content of the plate cannot be served for this order. The reason does not say which dish
+    /// the content is, or what is wrong with it.
     NotServed,
 }
 

@@ -1,9 +1,9 @@
-//! Processing steps: cutting, cooking and their like.
+//! Processing steps of the kitchen, such as cutting and cooking.
 
 use super::content::ContentId;
 use super::location::LocationId;
 
-/// A compiled processing step.
+/// A processing step of the compiled kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProcessingStep {
     /// The name of the processing step from the recipe file: "cut".
@@ -12,6 +12,6 @@ pub struct ProcessingStep {
     pub place: Option<LocationId>,
     /// Which agents can do the processing step, indexed by [`super::Agent::index`].
     pub agents: [bool; 2],
-    /// Pairs of input item and output item of the processing step.
+    /// Pairs of input item and output item: what the processing step makes of each item.
     pub steps: Vec<(ContentId, ContentId)>,
 }

@@ -8,15 +8,15 @@ use toml::Spanned;
 
 use super::agent::Agent;
 
-/// The recipe file of a kitchen as written.
+/// The recipe file of a kitchen, as it is written.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecipesSpec {
     /// Identifier of the recipe file's menu.
     pub name: String,
-    /// The ingredients with their possible states.
+    /// The ingredients of the kitchen with their possible states.
     pub ingredient: Vec<IngredientSpec>,
-    /// The processing steps.
+    /// The processing steps, such as cutting.
     #[serde(default)]
     pub process: Vec<ProcessingStepSpec>,
     /// The slots of a dish: a dish has at most one item from each slot.
@@ -29,7 +29,7 @@ pub struct RecipesSpec {
     /// How people may misremember the recipes of dishes.
     #[serde(default)]
     pub deviation: Vec<DeviationSpec>,
-    /// How items, ingredients and dishes are worded on screens: by language, then by name.
+    /// Words of screens for items, ingredients and dishes: by language, then by name.
     #[serde(default)]
     pub words: BTreeMap<String, BTreeMap<String, Spanned<String>>>,
 }
@@ -40,11 +40,11 @@ pub struct RecipesSpec {
 pub struct IngredientSpec {
     /// The ingredient's name: "salmon".
     pub name: Spanned<String>,
-    /// The states of the ingredient in order; a storage supplies the first. Empty for an ingredient with a single
-    /// state.
+    /// The states of the ingredient in order; a storage supplies the ingredient in the first state. Empty for an
+    /// ingredient with a single state.
     #[serde(default)]
     pub states: Vec<Spanned<String>>,
-    /// Ingredients for which this one can be mistaken at a glance.
+    /// Ingredients for which this ingredient can be mistaken at a glance.
     #[serde(default)]
     pub looks_like: Vec<Spanned<String>>,
     /// Appearance of the ingredient on the display: a shape and colours for each state.
@@ -62,27 +62,27 @@ pub struct ProcessingStepSpec {
     pub at: Spanned<String>,
     /// The agents who can do the processing step.
     pub agents: Vec<Agent>,
-    /// The conversions of the processing step: which item becomes which.
+    /// The conversions of the processing step: which item becomes which other item.
     pub steps: Vec<ItemConversionSpec>,
 }
 
-/// A step of a process: one item becomes another.
+/// One conversion of a processing step: an item becomes another item.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ItemConversionSpec {
-    /// The item before, as "ingredient state".
+    /// The item before the conversion, as "ingredient state".
     pub from: Spanned<String>,
-    /// The item after, as "ingredient state".
+    /// The item after the conversion, as "ingredient state".
     pub to: Spanned<String>,
 }
 
-/// `[[slot]]` of a recipe file: items that have the same role in a dish.
+/// `[[slot]]` of a recipe file: items that have the same role in a dish, such as toppings.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlotSpec {
     /// The slot's name: "topping".
     pub name: Spanned<String>,
-    /// The items of the slot, as "ingredient state"; each item in at most one slot.
+    /// The items of the slot, as "ingredient state"; each item is in at most one slot.
     pub items: Vec<Spanned<String>>,
 }
 
@@ -92,7 +92,8 @@ pub struct SlotSpec {
 pub struct GroupSpec {
     /// The name of the group of items.
     pub name: Spanned<String>,
-    /// The items that belong to the group, as "ingredient state"; a stack belongs to it if each of its items does.
+    /// The items that belong to the group, as "ingredient state"; a stack belongs to the group if each of its items
+    /// does.
     pub made_of: Vec<Spanned<String>>,
 }
 
@@ -104,7 +105,7 @@ pub struct DishSpec {
     pub name: Spanned<String>,
     /// The items of the dish, as "ingredient state": the true recipe.
     pub items: Spanned<Vec<Spanned<String>>>,
-    /// Appearance of the finished dish on the display; it must not reveal the recipe.
+    /// Appearance of the finished dish on the display, which must not reveal the recipe.
     #[serde(default)]
     pub look: Option<Spanned<String>>,
 }

@@ -1,4 +1,4 @@
-//! The rules of the task: the state transition after a press, by table look-ups.
+//! The rules of the task: the state after a press follows from the state before it, by table look-ups.
 
 use super::action::{ButtonAction, ButtonId};
 use super::agent::Agent;
@@ -9,20 +9,20 @@ use super::location::{LocationId, LocationKind};
 use super::state::{OrderContent, Recipes, State};
 
 impl Kitchen {
-    /// Whether an empty `location` accepts `content`.
+    /// Whether the location `location`, when empty, accepts the content `content`.
     #[inline]
     pub fn accepts(&self, location: LocationId, content: ContentId) -> bool {
         self.tables.accepts[location.index() * self.tables.width + content.index()]
     }
 
-    /// The stack of two contents; `None` if they do not stack.
+    /// The stack of two contents; `None` if the contents do not stack.
     #[inline]
     pub fn stacked(&self, below: ContentId, above: ContentId) -> Option<ContentId> {
         let stack = self.tables.stacks[below.index() * self.tables.width + above.index()];
         (!stack.is_empty()).then_some(stack)
     }
 
-    /// The result of a processing step; `None` if it does not apply to the content.
+    /// The result of a processing step; `None` if the step does not apply to the content.
     #[inline]
     pub fn processed(&self, process: u8, content: ContentId) -> Option<ContentId> {
         let result = self.tables.becomes[usize::from(process) * self.tables.width + content.index()];
@@ -40,22 +40,22 @@ impl Kitchen {
         }
     }
 
-    /// The locations that the human looks at before a press: those that determine its effect and, before fetching an
-    /// item, the robot's hand, which may be bringing the item.
+    /// The locations at which the human looks before a press: those that determine the press's effect and, before
+    /// fetching an item, the robot's hand, which may be bringing the item.
     pub fn watched(&self, button: ButtonId) -> Vec<LocationId> {
         let fetches = matches!(self.button(Agent::Human, button).action, ButtonAction::Take(_));
         let robots_hand = fetches.then_some(self.hands[Agent::Robot.index()]);
         self.involved(Agent::Human, button).into_iter().chain(robots_hand).collect()
     }
 
-    /// The state after `agent` presses `button`; `None` if the press has no effect.
+    /// The state of the kitchen after `agent` presses `button`; `None` if the press has no effect.
     #[inline]
     pub fn press(&self, state: State, recipes: &Recipes, agent: Agent, button: ButtonId) -> Option<State> {
         self.act(state, recipes, agent, self.button(agent, button).action)
     }
 
-    /// The state after an action of an agent; `None` if the action is not available. `recipes` decides what can be
-    /// served.
+    /// The state of the kitchen after an action of an agent; `None` if the action is not available. The argument
+    /// `recipes` decides what can be served.
     pub fn act(&self, state: State, recipes: &Recipes, agent: Agent, action: ButtonAction) -> Option<State> {
         let hand = self.hands[agent.index()];
         let held = state.content(hand);
@@ -94,7 +94,7 @@ impl Kitchen {
         Some(next)
     }
 
-    /// Contents of hand and location after a press of the location's button: picked up, put down or stacked.
+    /// Contents of hand and location after a press of the location's button picked up, put down or stacked an item.
     #[inline]
     fn exchanged(&self, location: LocationId, held: ContentId, there: ContentId) -> Option<(ContentId, ContentId)> {
         match (held.is_empty(), there.is_empty()) {
@@ -108,7 +108,7 @@ impl Kitchen {
         }
     }
 
-    /// The ordered dishes with their order locations.
+    /// The ordered dishes with the locations of their orders.
     pub fn wanted(&self, state: State) -> impl Iterator<Item = (LocationId, DishId)> + '_ {
         self.orders.iter().filter_map(move |&order| match state.order(order) {
             OrderContent::Dish(dish) => Some((order, dish)),
@@ -116,7 +116,7 @@ impl Kitchen {
         })
     }
 
-    /// The first location whose content is not allowed there; `None` if there is none.
+    /// The first location that holds a content which is not allowed there; `None` if there is none.
     pub fn misplaced(&self, state: State) -> Option<LocationId> {
         let is_misplaced = |location: LocationId| match self.location(location).kind {
             LocationKind::Order => usize::from(state.code(location)) >= self.dishes.len() + 2,

@@ -1,4 +1,4 @@
-//! The task state, and believed recipes, in compact form, because they are copied and hashed millions of times.
+//! The state of the task, and believed recipes, in compact form, because they are copied and hashed millions of times.
 
 use super::content::ContentId;
 use super::dish::DishId;
@@ -14,19 +14,19 @@ pub const MAX_DISHES: usize = 16;
 #[repr(align(16))]
 pub struct State([u8; MAX_LOCATIONS]);
 
-/// What an order location shows: no order, an ordered dish, or that the order was served.
+/// Content of an order location: no order, an ordered dish, or that the order was served.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum OrderContent {
     /// The location shows no order.
     None,
     /// The order was served a moment ago.
     Served,
-    /// An order for a dish; only the final product is shown.
+    /// The location shows an order for a dish: the finished dish, not its recipe.
     Dish(DishId),
 }
 
 impl OrderContent {
-    /// The order's byte in a [`State`].
+    /// The byte that stands for this order content in a [`State`].
     pub const fn code(self) -> u8 {
         match self {
             OrderContent::None => 0,
@@ -58,31 +58,31 @@ impl State {
         self.0[location.index() & (MAX_LOCATIONS - 1)] = content.0;
     }
 
-    /// What an order location shows.
+    /// What an order location shows in this state.
     #[inline]
     pub fn order(self, location: LocationId) -> OrderContent {
         OrderContent::from_code(self.code(location))
     }
 
-    /// Sets the content of an order location.
+    /// Sets what an order location shows.
     #[inline]
     pub fn set_order(&mut self, location: LocationId, content: OrderContent) {
         self.set_code(location, content.code());
     }
 
-    /// The byte of a location, whatever its kind: the value of its state aspect.
+    /// The byte of a location in the state, whatever its kind: the value of its state aspect.
     #[inline]
     pub fn code(self, location: LocationId) -> u8 {
         self.0[location.index() & (MAX_LOCATIONS - 1)]
     }
 
-    /// Sets the byte of a location: that of [`OrderContent::code`] for orders, a [`ContentId`] for other locations.
+    /// Sets the byte of a location: [`OrderContent::code`] for orders, a [`ContentId`] for other locations.
     #[inline]
     pub fn set_code(&mut self, location: LocationId, code: u8) {
         self.0[location.index() & (MAX_LOCATIONS - 1)] = code;
     }
 
-    /// The contents of all locations as one number, for hashing.
+    /// The contents of all locations as one number, used for hashing.
     #[inline]
     pub fn bits(self) -> u128 {
         u128::from_le_bytes(self.0)
@@ -101,7 +101,7 @@ impl Recipes {
         ContentId(self.0[dish.index() & (MAX_DISHES - 1)])
     }
 
-    /// All recipes as one number, for hashing.
+    /// All recipes as one number, used for hashing.
     #[inline]
     pub fn bits(self) -> u128 {
         u128::from_le_bytes(self.0)

@@ -3,14 +3,14 @@
 
 use super::content::ContentId;
 
-/// Transition tables over contents, computed once per kitchen.
+/// Transition tables over contents, computed once for each kitchen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransitionTables {
-    /// Number of contents: the width of the tables' rows.
+    /// Number of contents in the kitchen, which is the width of the tables' rows.
     pub(super) width: usize,
     /// `accepts[location * width + content]`: whether the location, when empty, accepts the content.
     pub(super) accepts: Vec<bool>,
-    /// `stacks[a * width + b]`: the stack of a and b; 0 if they cannot be stacked.
+    /// `stacks[a * width + b]`: the stack of contents a and b; 0 if they cannot be stacked.
     pub(super) stacks: Vec<ContentId>,
     /// `becomes[process * width + content]`: the result of the processing step; 0 if it does not apply to the content.
     pub(super) becomes: Vec<ContentId>,

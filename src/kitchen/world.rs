@@ -7,7 +7,7 @@ use super::state::{Recipes, State};
 /// One complete hypothesis of kitchen state and recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct World {
-    /// The content of every location.
+    /// The content of every location in the hypothesis.
     pub state: State,
     /// For every dish, the stack of items that is believed to be its recipe.
     pub recipes: Recipes,
@@ -16,7 +16,7 @@ pub struct World {
 /// A world with its weight: a probability (`f64`) or a number of draws (`u32`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WeightedWorld<W = f64> {
-    /// The hypothesis of state and recipes.
+    /// The world: one hypothesis of state and recipes.
     pub world: World,
     /// The world's probability, or its number of draws.
     pub weight: W,
@@ -25,7 +25,7 @@ pub struct WeightedWorld<W = f64> {
 /// A set of weighted worlds, which approximates a belief (a weighted particle set). Probabilities sum to 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WeightedWorlds<W = f64> {
-    /// The worlds with their weights, each world once.
+    /// The worlds with their weights; each world occurs once.
     pub all: Vec<WeightedWorld<W>>,
 }
 
@@ -35,7 +35,7 @@ impl World {
         World { state, recipes: kitchen.true_recipes() }
     }
 
-    /// The world with an empty kitchen and the true recipes, as a start from which a hypothesis is set.
+    /// The world with an empty kitchen and the true recipes, from which a hypothesis is built.
     pub fn empty(kitchen: &Kitchen) -> World {
         World::with_true_recipes(kitchen, kitchen.empty_state())
     }
@@ -48,20 +48,20 @@ impl World {
 }
 
 impl WeightedWorlds {
-    /// The set with a single world: a belief without uncertainty.
+    /// The set with a single world, which is a belief without uncertainty.
     pub fn certain(world: World) -> WeightedWorlds {
         WeightedWorlds { all: vec![WeightedWorld { world, weight: 1.0 }] }
     }
 }
 
 impl WeightedWorlds<u32> {
-    /// Copies another set of worlds, reusing this set's memory.
+    /// Copies another set of weighted worlds into this one, reusing this set's memory.
     pub fn copy_from(&mut self, other: &WeightedWorlds<u32>) {
         self.all.clear();
         self.all.extend_from_slice(&other.all);
     }
 
-    /// Adds a world with its number of draws.
+    /// Adds a world with its number of draws to the set.
     pub fn add(&mut self, world: World, draws: u32) {
         match self.all.iter_mut().find(|one| one.world == world) {
             Some(one) => one.weight += draws,
@@ -69,12 +69,12 @@ impl WeightedWorlds<u32> {
         }
     }
 
-    /// Total number of draws of all worlds.
+    /// Total number of draws of all worlds in the set.
     pub fn draws(&self) -> u32 {
         self.all.iter().map(|one| one.weight).sum()
     }
 
-    /// Merges equal worlds; the first of them keeps its place.
+    /// Merges equal worlds of the set; the first of them keeps its place.
     pub fn merge(&mut self) {
         let mut kept = 0;
         for index in 0..self.all.len() {

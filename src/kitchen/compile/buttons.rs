@@ -12,12 +12,12 @@ use crate::kitchen::location::{Location, LocationId};
 use crate::kitchen::process::ProcessingStep;
 use crate::kitchen::recipe::RecipesSpec;
 
-/// Largest length of the name of a button's area, in characters.
+/// Largest length of the name of an area of buttons on the table, in characters.
 const MAX_AREA: usize = 40;
-/// Largest number of a gamepad button; no gamepad or button box has more.
+/// Largest number of a gamepad button; no gamepad or button box has more buttons.
 const MAX_GAMEPAD: u8 = 63;
 
-/// The buttons of both agents, in the order: own storages, places, processing steps, own trash, orders.
+/// The buttons of both agents, each in the order: own storages, places, processing steps, own trash, orders.
 pub(super) fn buttons(
     layout: &LayoutSpec,
     spec: &RecipesSpec,
@@ -120,7 +120,7 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
     Ok(Button { name, action, at_m, key, gamepad, colour: spec.colour, area: area(spec)? })
 }
 
-/// The checked name of the button's area on the table.
+/// The checked name of the button's area on the table; `None` if the layout names none.
 fn area(spec: &ButtonSpec) -> Result<Option<String>> {
     let Some(area) = &spec.area else { return Ok(None) };
     let name = area.get_ref();

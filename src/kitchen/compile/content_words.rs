@@ -1,4 +1,4 @@
-//! Reads how contents are worded on screens, from the tables `[words]` of the recipe file.
+//! Reads the words of screens for contents, from the tables `[words]` of the recipe file.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,8 @@ use crate::kitchen::content::Content;
 use crate::kitchen::content_wording::{KitchenWords, SCREEN_LANGUAGE};
 use crate::kitchen::recipe::RecipesSpec;
 
-/// Largest length of the wording of a content, in characters: longer ones would not fit under a place on the screen.
+/// Largest length of the wording of a content, in characters: a longer wording would not fit under a place on the
+/// screen.
 const MAX_WORDING: usize = 40;
 
 /// The wordings of contents in all languages: those of the recipe file and, in the screens' language, a default for
@@ -52,7 +53,7 @@ fn default_wording(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> 
     ingredient.states.get(items.state[item]).map_or(name.clone(), |state| format!("{} {name}", state.get_ref()))
 }
 
-/// Checks that no two items, and no two dishes, are worded alike: they could not be told apart on a screen.
+/// Checks that no two items, and no two dishes, have the same wording: they could not be told apart on a screen.
 fn check_distinct(
     spec: &RecipesSpec,
     items: &IngredientItems,
@@ -72,7 +73,7 @@ fn check_distinct(
     Ok(())
 }
 
-/// Sets the wording of each content for screens.
+/// Sets the wording of each content for screens of the program.
 pub(super) fn word(contents: &mut [Content], words: &KitchenWords) {
     let wordings: Vec<String> =
         contents.iter().map(|content| words.content(SCREEN_LANGUAGE, content, contents)).collect();

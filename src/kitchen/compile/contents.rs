@@ -1,5 +1,5 @@
 //! Enumerates the contents of a kitchen: the items (ingredients in their states), and the stacks that can be made of
-//! them.
+//! items.
 
 use toml::Spanned;
 
@@ -12,12 +12,12 @@ use crate::kitchen::recipe::{DishSpec, RecipesSpec};
 const MAX_CONTENTS: usize = 255;
 const TOO_MANY: &str = "at most 255 items and stacks: fewer ingredients, states or slots";
 
-/// The items, which are ingredients in a state ("rice cooked"), with their names and ids.
+/// The items (ingredients in a state, such as "rice cooked") of the recipe file, with their names and ids.
 pub(super) struct IngredientItems {
     pub(super) names: Vec<String>,
     /// For each item, its ingredient, as an index into the recipe file's list.
     pub(super) ingredient: Vec<usize>,
-    /// For each item, its state, as an index into the states of its ingredient.
+    /// For each item, its state, as an index into the list of states of its ingredient.
     pub(super) state: Vec<usize>,
 }
 
@@ -64,7 +64,7 @@ impl IngredientItems {
     }
 }
 
-/// All contents: empty, all items, then all stacks, pairs first.
+/// All contents of the kitchen: empty, all items, then all stacks, pairs first.
 pub(super) fn contents(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Content>> {
     let item_sets = (0..items.names.len()).map(|index| vec![ContentId(index as u8 + 1)]);
     let mut sets: Vec<Vec<ContentId>> = std::iter::once(Vec::new()).chain(item_sets).collect();
@@ -98,7 +98,7 @@ fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result
     looks.get(items.state[item]).map(|text| look(KitchenFileKind::Recipes, text)).transpose()
 }
 
-/// All stacks of two or more items, small ones first.
+/// All stacks of two or more items, smaller stacks first.
 fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<ContentId>>> {
     let mut stacks: Vec<Vec<ContentId>> = vec![Vec::new()];
     let mut of_slots: Vec<ContentId> = Vec::new();
@@ -145,8 +145,8 @@ pub(super) fn dish_names(spec: &RecipesSpec, items: &IngredientItems) -> Result<
     spec.dish.iter().map(one).collect()
 }
 
-/// The contents that look like this one: the same content with one ingredient replaced by an ingredient that looks like
-/// it.
+/// The contents that look like this content: the same content with one ingredient replaced by one that looks like the
+/// ingredient.
 fn look_alikes(
     spec: &RecipesSpec,
     items: &IngredientItems,

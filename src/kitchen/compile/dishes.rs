@@ -109,7 +109,7 @@ fn variants(
 }
 
 /// Checks that every dish can be made: each item comes from a storage, and every processing step has an agent who can
-/// do it.
+/// do the step.
 pub(super) fn check_obtainable(
     spec: &RecipesSpec,
     layout: &LayoutSpec,

@@ -1,8 +1,8 @@
 //! Compiles a [`Kitchen`] from a layout file and a recipe file: contents, buttons, recipe variants and state aspects.
 //!
-//! The steps in their order: `contents` (items and stacks), `content_words`, `places` (locations and storages),
-//! `dishes` (processing steps, dishes, variants), `buttons`; transition tables and aspects follow in this file. All
-//! steps share the errors of `spec_error`.
+//! The steps of compiling in their order: `contents` (items and stacks), `content_words`, `places` (locations and
+//! storages), `dishes` (processing steps, dishes, variants), `buttons`; transition tables and aspects follow in this
+//! file. All steps share the errors of `spec_error`.
 
 mod buttons;
 mod content_words;
@@ -31,10 +31,10 @@ use super::recipe::RecipesSpec;
 use super::state::OrderContent;
 use super::transition_tables::TransitionTables;
 
-/// Largest number of joint contents of all locations other than orders: the keys of the cost-to-go cache have a fixed
-/// size.
+/// Largest number of joint contents of all locations other than orders, since the keys of the cost-to-go cache have a
+/// fixed size.
 const MAX_STATES: u128 = 1 << 39;
-/// Largest number of places where items are processed.
+/// Largest number of places where items are processed (stations).
 const MAX_STATIONS: usize = 8;
 
 impl Kitchen {
@@ -64,7 +64,7 @@ impl Kitchen {
     }
 
     /// Compiles a kitchen from parsed files. Errors name the file and the position, what was found, and what would be
-    /// right.
+    /// right there.
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
         let items = IngredientItems::read(recipes)?;
         let mut contents = contents::contents(recipes, &items)?;
@@ -194,7 +194,7 @@ fn tables(
     Ok(TransitionTables { width, accepts, stacks, becomes })
 }
 
-/// Marks in `row` the contents that a word of a place's `accepts` list allows there.
+/// Marks in `row` the contents that one word of a place's list `accepts` allows at the place.
 fn accept(
     name: &Spanned<String>,
     spec: &RecipesSpec,
@@ -231,7 +231,7 @@ fn aspects(
         let dishes = (0..dishes.len()).map(|index| OrderContent::Dish(DishId(index as u8)).code());
         [OrderContent::None.code(), OrderContent::Served.code()].into_iter().chain(dishes).collect()
     };
-    // The name and the wording of a value of an aspect.
+    // The name and the wording of one possible value of a state aspect.
     let said = |kind: LocationKind, code: u8| match (kind, OrderContent::from_code(code)) {
         (LocationKind::Order, OrderContent::None) => ["none", "none"],
         (LocationKind::Order, OrderContent::Served) => ["served", "served"],

@@ -1,4 +1,4 @@
-//! Builds locations and storages from the layout file, and checks that an eye tracker can tell them apart on the
+//! Builds locations and storages from the layout file, and checks that an eye tracker can tell locations apart on the
 //! display.
 
 use toml::Spanned;
@@ -12,7 +12,7 @@ use crate::kitchen::location::{DisplayArea, IngredientStorage, Location, Locatio
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
 
-/// Largest number of simultaneous orders; the cost to go is exact for one and for two.
+/// Largest number of simultaneous orders; the cost to go is exact for one and for two orders.
 pub const MAX_ORDERS: usize = 2;
 /// Least distance between locations on the display, in metres, so that gaze can tell them apart.
 pub const MIN_GAP_M: f64 = 0.15;
@@ -117,7 +117,7 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
     Ok(())
 }
 
-/// Checks that no key is assigned to the signals about two locations, and that none is the space bar.
+/// Checks that no key sends the signals about two locations, and that no signal's key is the space bar.
 pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
     let mut seen: Vec<(&str, char)> = Vec::new();
     for (name, key) in layout.signal_keys() {

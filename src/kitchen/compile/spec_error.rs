@@ -1,4 +1,4 @@
-//! Errors in a layout or recipe file, with their position and remedy.
+//! Errors in a layout or recipe file, with the position of the error and a remedy.
 
 use std::ops::Range;
 
@@ -6,12 +6,12 @@ use toml::Spanned;
 
 use crate::kitchen::look::Appearance;
 
-/// The file of a kitchen in which an error is: layout or recipes.
+/// The file of a kitchen that contains an error: layout or recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KitchenFileKind {
-    /// The layout file.
+    /// The layout file of a kitchen.
     Layout,
-    /// The recipe file.
+    /// The recipe file of a kitchen.
     Recipes,
 }
 
@@ -19,17 +19,17 @@ pub enum KitchenFileKind {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{found}")]
 pub struct KitchenFileError {
-    /// The file that the error is in.
+    /// The file that contains the error.
     pub file: KitchenFileKind,
-    /// Position of the error in the file's text, in bytes.
+    /// Position of the error in the file's text, in bytes; `None` for the file as a whole.
     pub span: Option<Range<usize>>,
-    /// What the file contains at that position.
+    /// What the file contains at the position of the error.
     pub found: String,
-    /// What the file would have to contain instead.
+    /// What the file would have to contain there instead.
     pub remedy: String,
 }
 
-/// Result of a step of the compilation of a kitchen.
+/// Result of a step that compiles a kitchen from its files.
 pub(super) type Result<T> = std::result::Result<T, KitchenFileError>;
 
 /// An error at a position in a layout or recipe file.

@@ -1,5 +1,5 @@
-//! All moves that can free a hand or a place, as alternatives where the cost-to-go planner deviates from its greedy
-//! plan.
+//! All moves that can free a hand or a place: the alternatives at a step where the cost-to-go planner deviates from its
+//! greedy plan.
 
 use super::moves::{ClearingMove, ClearingMoves};
 use super::needs::TargetNeeds;
@@ -21,7 +21,7 @@ impl PressPlan<'_> {
         moves
     }
 
-    /// Adds the moves that empty an agent's hand.
+    /// Adds the moves that empty the hand of an agent.
     fn empty(&self, wants: &TargetNeeds, agent: usize, moves: &mut ClearingMoves) {
         let hand = self.ground.hands[agent];
         let wanted = wants.hand(agent);
@@ -44,7 +44,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Adds the moves that empty a place.
+    /// Adds the moves that empty a place of the kitchen.
     fn take_away(&self, wants: &TargetNeeds, from: usize, moves: &mut ClearingMoves) {
         for hand in self.ground.hands.into_iter().filter(|&hand| self.state[hand] == 0) {
             let Some((task, _)) = self.task_at(from) else {
@@ -72,8 +72,8 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Adds items that can be taken from a storage early and put on a free place on their way to the board, so that the
-    /// hand is free later.
+    /// Adds moves that take an item from a storage early and put it on a free place on its way to the board, so that
+    /// the hand is free later.
     fn fetch(&self, moves: &mut ClearingMoves) {
         let (ground, goal) = (self.ground, self.goal);
         for (task, of) in self.tasks().filter(|(_, task)| task.at == STORAGE) {

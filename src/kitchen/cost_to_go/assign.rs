@@ -1,4 +1,4 @@
-//! Assigns the items in the kitchen to the parts of the dishes that are still to be served (targets).
+//! Assigns the items in the kitchen to the parts of the dishes that are still to be served (target dishes).
 
 use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::demand::PressDemand;
@@ -13,7 +13,7 @@ pub const MAX_TASKS: usize = 16;
 /// An assignment of items to all target dishes, in the order in which the dishes will be served.
 #[derive(Clone, Copy, Debug)]
 pub struct Assignment {
-    /// The tasks; only the first [`Self::count`] are valid.
+    /// The tasks of the assignment; only the first [`Self::count`] are valid.
     pub tasks: [AssemblyTask; MAX_TASKS],
     /// Number of valid tasks in the assignment.
     pub count: usize,
@@ -21,18 +21,18 @@ pub struct Assignment {
     pub order: [usize; MAX_TARGETS],
     /// Locations whose content the assignment uses, one bit each.
     used: u32,
-    /// Requirements of the tasks, from which the lower bound of the cost to go follows.
+    /// Requirements of all tasks, from which the lower bound of the cost to go follows.
     pub demand: PressDemand,
 }
 
 impl Assignment {
-    /// Assigns items greedily, target dish by target dish, by the presses that an item saves compared with a fresh one
-    /// from a storage.
+    /// Assigns items greedily, target dish by target dish, by the number of presses that an item saves compared with a
+    /// fresh item from a storage.
     ///
-    /// Known limit: a usable stack on the board is always taken. Where a larger stack of the same target lies
-    /// elsewhere, clearing the board for that stack can be shorter, and the search, which the lower bound guides, does
-    /// not find that way. With nori on the board, nori and salmon on the counter and rice on the plate, salmon maki
-    /// takes 8 presses (the robot takes the nori away and keeps it), and 10 are found.
+    /// Known limit: a usable stack on the board is always taken. Where a larger stack of the same target dish lies
+    /// elsewhere, clearing the board for the larger stack can be shorter, and the search, which the lower bound guides,
+    /// does not find that way. With nori on the board, nori and salmon on the counter and rice on the plate, salmon
+    /// maki takes 8 presses (the robot takes the nori away and keeps it), and 10 are found.
     pub fn choose(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -65,8 +65,8 @@ impl Assignment {
         PressDemand::from_tasks(ground, goal, state, self.tasks[..self.count].iter().copied())
     }
 
-    /// If both hands hold the same content and only one of the two is used: uses the other hand's, if fewer obstacles
-    /// have to be cleared then.
+    /// If both hands hold the same content and only one of the two is used: uses the content of the other hand instead,
+    /// if fewer obstacles have to be cleared then.
     fn change_hands(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
         let [one, other] = ground.hands;
         let both = 1 << one | 1 << other;
@@ -124,9 +124,9 @@ impl Assignment {
         }
     }
 
-    /// Exchanges items between two target dishes where that saves presses.
+    /// Exchanges items between two target dishes where an exchange saves presses.
     fn exchange(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
-        // Only items that both target dishes can use can be exchanged.
+        // Exchanges are possible only for items that both target dishes can use.
         let (mut stored, mut shared) = (0u32, 0u32);
         for (index, task) in self.tasks[..self.count].iter().enumerate().filter(|(_, task)| task.bits.count_ones() == 1)
         {
@@ -145,7 +145,7 @@ impl Assignment {
         let wanted = ones(stored & is_first).fold(0, |wanted, index| wanted | needs(index)) & 3;
         let fits = |task: &AssemblyTask, at: u8| goal.fits(state, task, at);
         let presses = |task: &AssemblyTask, at: u8| u32::from(goal.way(state, task, at).0);
-        // The hand that the first target dish needs should become free first; a stack on the board stays there.
+        // The hand that the first target dish needs should become free first; a stack on the board stays on the board.
         let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
         for first in ones((stored | shared) & is_first) {
             for second in ones((stored | shared) & !is_first) {
@@ -190,12 +190,12 @@ impl Assignment {
         tasks.filter(|task| usize::from(task.target) == target && task.at == STORAGE).map(|task| task.bits).sum()
     }
 
-    /// The same assignment with the serving order reversed.
+    /// The same assignment of items with the serving order of the target dishes reversed.
     pub fn reversed(&self) -> Assignment {
         Assignment { order: [self.order[1], self.order[0]], ..*self }
     }
 
-    /// Bit set of all tasks of the assignment.
+    /// Bit set of all tasks of this assignment.
     pub fn all(&self) -> u32 {
         (1 << self.count) - 1
     }

@@ -1,4 +1,4 @@
-//! Caches of fixed size for costs to go. Evicted values are recomputed, so a full cache costs time but never
+//! Caches of fixed size for costs to go. Values that were evicted are recomputed, so a full cache costs time but never
 //! correctness.
 
 use crate::base::rng::mix;
@@ -10,16 +10,16 @@ pub const MAX_BUTTONS: usize = 40;
 /// Number of low bits of a cache key that tell the kind of value; all kinds of value of one state share a bucket.
 pub const KIND_BITS: u32 = 2;
 
-/// Marks an empty cache entry; larger than any key. All entries are written at creation, so that the memory is mapped
-/// before use.
+/// Marks an empty cache entry, and is larger than any key. All entries are written at creation, so that the memory is
+/// mapped before use.
 const EMPTY: u64 = u64::MAX;
 
-/// Eight cache entries: each a key with the value in the lowest byte, or [`EMPTY`].
+/// Bucket of eight cache entries; an entry is a key with the value in the lowest byte, or [`EMPTY`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Bucket([u64; 8]);
 
-/// One-byte values by keys below 2^56 - 1, in buckets of eight entries, one cache line each.
+/// Cache of one-byte values by keys below 2^56 - 1, in buckets of eight entries; a bucket is one cache line.
 #[derive(Clone, Debug)]
 pub struct ValueCache {
     buckets: Vec<Bucket>,
@@ -29,7 +29,7 @@ pub struct ValueCache {
 }
 
 impl ValueCache {
-    /// A cache of 2^`bits` values.
+    /// A cache with room for 2^`bits` values.
     pub fn new(bits: u32) -> ValueCache {
         let buckets = 1usize << (bits - 3);
         ValueCache { buckets: vec![Bucket([EMPTY; 8]); buckets], mask: buckets as u64 - 1, turn: 0 }
@@ -40,14 +40,14 @@ impl ValueCache {
         (mix(key >> KIND_BITS) & self.mask) as usize
     }
 
-    /// Prefetches the bucket of a key. Callers with several keys prefetch all of them first; the result must be passed
-    /// to a black box so that the compiler keeps the load.
+    /// Prefetches the bucket of a key from memory. Callers with several keys prefetch all of them first; the result
+    /// must be passed to a black box so that the compiler keeps the load.
     #[inline]
     pub fn fetch(&self, key: u64) -> u64 {
         self.buckets[self.bucket(key)].0[0]
     }
 
-    /// The cached value of this key, if any.
+    /// The cached value of this key; `None` if the cache does not hold it.
     #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
         let Bucket(bucket) = &self.buckets[self.bucket(key)];
@@ -55,7 +55,7 @@ impl ValueCache {
         Some((entry & 0xff) as u32)
     }
 
-    /// Caches a value under this key; it may evict another value.
+    /// Caches a value under this key, which may evict another value.
     pub fn insert(&mut self, key: u64, value: u32) {
         let bucket = self.bucket(key);
         let Bucket(bucket) = &mut self.buckets[bucket];
@@ -68,7 +68,7 @@ impl ValueCache {
     }
 }
 
-/// Costs to go of one decision: of the state, and after each button of an agent.
+/// Costs to go for one decision: of the present state, and after each button of an agent.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct DecisionCosts {
@@ -77,7 +77,7 @@ pub struct DecisionCosts {
     question: u32,
     /// Cost to go of the present state.
     pub here: u8,
-    /// Cost to go after each button; equal to `here` where the press has no effect.
+    /// Cost to go after each button; equal to `here` where the button's press has no effect.
     pub after: [u8; MAX_BUTTONS],
 }
 
@@ -89,7 +89,7 @@ pub struct DecisionCache {
 }
 
 impl DecisionCache {
-    /// A cache for 2^`bits` decisions.
+    /// A cache with room for 2^`bits` decisions.
     pub fn new(bits: u32) -> DecisionCache {
         let empty = DecisionCosts { state: State::default(), question: u32::MAX, here: 0, after: [0; MAX_BUTTONS] };
         DecisionCache { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
@@ -108,7 +108,7 @@ impl DecisionCache {
         self.lines[self.index(state, question)].question
     }
 
-    /// Index of a decision's line, and whether the decision is stored there.
+    /// Index of a decision's cache line, and whether the decision is stored there.
     #[inline]
     pub fn find(&self, state: State, question: u32) -> (usize, bool) {
         let index = self.index(state, question);
@@ -116,7 +116,7 @@ impl DecisionCache {
         (index, line.question == question && line.state == state)
     }
 
-    /// The cache entry at this index, whatever decision it holds.
+    /// The cache entry at this index, whichever decision it holds.
     #[inline]
     pub fn get(&self, index: usize) -> &DecisionCosts {
         &self.lines[index]

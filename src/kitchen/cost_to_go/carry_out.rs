@@ -4,13 +4,13 @@ use super::classes::ContentClasses;
 use super::demand::PressDemand;
 use super::partial_plan::{BLOCKED, PressPlan};
 
-/// Largest number of steps of a plan, a guard against endless loops.
+/// Largest number of steps of a plan, as a guard against endless loops.
 const MAX_STEPS: usize = 40;
 
 impl PressPlan<'_> {
-    /// Length of the whole plan in presses; [`BLOCKED`] if it gets stuck or exceeds `limit`. Obstacles are cleared
-    /// greedily; with `second_thought`, one deviation from the greedy choice is tried (Harvey and Ginsberg 1995,
-    /// Limited Discrepancy Search).
+    /// Length of the whole plan in presses; [`BLOCKED`] if the plan gets stuck or exceeds `limit`. Obstacles are
+    /// cleared greedily; with `second_thought`, one deviation from the greedy choice is tried (Harvey and Ginsberg
+    /// 1995, Limited Discrepancy Search).
     pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
         if limit < BLOCKED && self.choice.demand.bound(self.ground, &self.state) > limit {
             return BLOCKED;
@@ -31,7 +31,8 @@ impl PressPlan<'_> {
             if self.steps == MAX_STEPS {
                 return best;
             }
-            // Bringing a part to the board costs the presses of the assignment; only clearing obstacles costs more.
+            // Bringing a part to the board costs the presses of the assignment; only clearing obstacles costs
+            // additional presses.
             if self.bring_part(target) {
                 continue;
             }
@@ -69,7 +70,7 @@ impl PressPlan<'_> {
 
     /// Does the presses that are certainly optimal: serves a complete stack if the way is free, processes parts where
     /// they are, and brings the parts of the stack on the board as long as nothing is in the way. Returns the number of
-    /// presses, the state after them, and the target dish if one was served.
+    /// presses, the state after these presses, and the target dish that was served, if any.
     pub fn settle(mut self) -> (u32, ContentClasses, Option<usize>) {
         let order = self.choice.order;
         loop {
@@ -85,7 +86,8 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Commits the board to a target dish: number of presses and state after its first part was brought there.
+    /// Commits the board to a target dish: returns number of presses and state after the dish's first part was brought
+    /// there.
     pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
         let begins = self.begun().is_none() && self.bring_part(target);
         begins.then_some((self.presses, self.state))

@@ -1,4 +1,4 @@
-//! The greedy choice of a move that clears an obstacle: throw it away, pick it up, or put it aside.
+//! The greedy choice of a move that clears an obstacle: throw the obstacle away, pick it up, or put it aside.
 
 use super::moves::ClearingMove;
 use super::needs::TargetNeeds;
@@ -20,7 +20,7 @@ impl PressPlan<'_> {
         best.is_some()
     }
 
-    /// Puts down the content of a hand that is needed, at a place on the content's way to the board.
+    /// Puts down the content of a hand that has to be free, at a place on the content's way to the board.
     fn put_down(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let wanted = (0..2).filter(|&agent| wants.hand(agent));
         wanted.into_iter().find_map(|agent| {
@@ -32,12 +32,12 @@ impl PressPlan<'_> {
         })
     }
 
-    /// Throws away a useless content of a hand that is needed, or of one of two full hands.
+    /// Throws away a useless content of a hand that has to be free, or of one of two full hands.
     fn throw_away(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let hands = self.ground.hands;
         let useless = |agent: usize| self.state[hands[agent]] != 0 && self.task_at(hands[agent]).is_none();
         let needed = (0..2).find(|&agent| wants.needs & (1 << agent) != 0 && useless(agent));
-        // A hand that is needed later is emptied first; the other hand may keep its content to the end.
+        // A hand that is needed later is emptied first; the other hand may keep its content until the plan's end.
         let full = (0..2).filter(|&agent| wants.hands_full && useless(agent));
         let full = full.max_by_key(|&agent| (wants.later & (1 << agent) != 0, agent == 0));
         needed.or(full).map(|agent| ClearingMove::Throw { hand: hands[agent] })
@@ -55,7 +55,8 @@ impl PressPlan<'_> {
             (true, true) => robot,
         };
         let blocking = ground.places().filter(|&location| self.blocks(wants, location));
-        // Order: contents that move on along their own way, useless contents, contents that have to be put aside.
+        // Order of preference: contents that move on along their own way, useless contents, contents that have to be
+        // put aside.
         let ranked = blocking.filter_map(|from| match self.task_at(from) {
             None => Some((1, ClearingMove::PickUp { from, hand })),
             Some((task, _)) => {
@@ -66,8 +67,8 @@ impl PressPlan<'_> {
         ranked.min_by_key(|&(rank, _)| rank).map(|(_, made)| made)
     }
 
-    /// Moves a part out of the way: along its own way, into a hand, or to another place; returns the additional presses
-    /// and the move.
+    /// Moves a part out of the way: along the part's own way, into a hand, or to another place; returns the additional
+    /// presses and the move.
     fn put_aside(&self, wants: &TargetNeeds, task: usize, hand: usize) -> Option<(u32, ClearingMove)> {
         let of = self.choice.tasks[task];
         let from = usize::from(of.at);
@@ -103,7 +104,7 @@ impl PressPlan<'_> {
         })
     }
 
-    /// Puts down the content of a hand that is needed, or throws it away if there is no place for it.
+    /// Puts down the content of a hand that has to be free, or throws the content away if there is no place for it.
     fn empty_hand(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let mut best: Option<(u32, ClearingMove)> = None;
         let mut consider = |rest: u32, made: ClearingMove| {
@@ -118,7 +119,7 @@ impl PressPlan<'_> {
             }
             if of.bits.count_ones() == 1 {
                 let (fresh, _) = self.goal.fresh[usize::from(of.target)][of.bits.trailing_zeros() as usize];
-                // One press to throw the item away, plus the presses of a fresh item.
+                // Throwing the item away costs one press, plus the presses of a fresh item.
                 consider((u32::from(fresh) + 1).saturating_sub(self.least(&of)), ClearingMove::Discard { task });
             }
         }

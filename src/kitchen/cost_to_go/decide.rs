@@ -1,7 +1,7 @@
 //! Decisions: the cost to go of a state together with the costs to go after every button of an agent.
 //!
-//! A press lowers the cost to go by at most 1; a press that another press can undo raises it by at most 1. Together
-//! with the lower bound this decides most buttons without a plan.
+//! A press lowers the cost to go by at most 1; a press that another press can undo raises the cost by at most 1.
+//! Together with the lower bound this decides most buttons without a plan.
 
 use super::cache::{DecisionCosts, MAX_BUTTONS};
 use super::classes::MAX_TARGETS;
@@ -10,7 +10,8 @@ use super::store::{CacheSlot, CostToGo, SLOT_BITS, SuccessorState, UNREACHABLE};
 use crate::kitchen::{Agent, ButtonAction, ContentId, LocationId, Recipes, State};
 
 impl CostToGo {
-    /// Cost to go of the state and after every button of `agent`: one cache look-up if it was computed before.
+    /// Cost to go of the state and after every button of `agent`; one cache look-up if the decision was computed
+    /// before.
     #[inline]
     pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
         self.decision_with(Fidelity::Exact, state, recipes, agent)
@@ -85,7 +86,7 @@ impl CostToGo {
         alike
     }
 
-    /// Computes a decision and stores it in the cache.
+    /// Computes the costs to go for a decision and stores them in the cache.
     fn decide(
         &mut self,
         index: usize,
@@ -104,7 +105,7 @@ impl CostToGo {
         self.decisions.set(index, state, question, here, after);
     }
 
-    /// Computes the values of a decision independently, one by one.
+    /// Computes the costs to go of a decision independently, one by one.
     fn each(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);
@@ -117,7 +118,7 @@ impl CostToGo {
         (here, after)
     }
 
-    /// Computes the values of a decision together, from bounds and plans.
+    /// Computes the costs to go of a decision together, from bounds and plans.
     fn close(&mut self, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let mut nexts = self.nexts(state, kept, recipes, agent);
@@ -166,7 +167,7 @@ impl CostToGo {
         nexts
     }
 
-    /// The cache key of a state, computed incrementally from that of another state with the same orders.
+    /// The cache key of a state, computed incrementally from the key of another state with the same orders.
     #[inline]
     fn moved(&self, slot: usize, key: u64, from: State, to: State) -> u64 {
         let Some(goal) = &self.goals[slot] else { return key };
@@ -182,7 +183,7 @@ impl CostToGo {
         moved
     }
 
-    /// Whether one further press of the agent can undo this action.
+    /// Whether one further press of the same agent can undo this action.
     fn can_be_undone(&self, state: State, agent: Agent, action: ButtonAction) -> bool {
         let held = state.content(self.kitchen.hands[agent.index()]);
         match action {
@@ -190,7 +191,7 @@ impl CostToGo {
             ButtonAction::Trash => self.takes[agent.index()][held.index()],
             ButtonAction::Use(location) => {
                 let there = state.content(location);
-                // Stacking cannot be undone; a pick-up can, if the place accepts the item.
+                // Stacking cannot be undone; a pick-up can be undone if the place accepts the item.
                 there.is_empty() || held.is_empty() && self.kitchen.accepts(location, there)
             }
             ButtonAction::Process(_) | ButtonAction::Serve(_) => false,
@@ -198,7 +199,7 @@ impl CostToGo {
     }
 }
 
-/// Hash of a request: target dishes in the order of the orders, fidelity, agent.
+/// Hash of a request for a decision: target dishes in the order of the orders, fidelity, agent.
 #[inline]
 fn question(targets: &[ContentId; MAX_TARGETS], fidelity: Fidelity, agent: Agent) -> u32 {
     u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (fidelity as u32) << 17

@@ -1,5 +1,5 @@
-//! The lower bound of the cost to go: least number of presses for a set of tasks, from the journeys of the items and
-//! from clearing obstacles.
+//! The lower bound of the cost to go: least number of presses for a set of tasks, from the items' journeys to the board
+//! and from clearing obstacles.
 
 use super::classes::ContentClasses;
 use super::goal::ServingGoal;
@@ -7,25 +7,25 @@ use super::ground::KitchenTables;
 use super::journeys::JourneyNeeds;
 use super::task::{AssemblyTask, STORAGE};
 
-/// Requirements of a set of tasks: presses, places, target dishes.
+/// Requirements of a set of tasks: presses, places and target dishes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PressDemand {
-    /// Number of presses if there were no obstacles.
+    /// Number of presses that the tasks would take without obstacles.
     presses: u32,
     /// Bit set of the locations whose content the tasks use.
     used: u32,
-    /// Free hands and places that the journeys of the items require.
+    /// Free hands and places that the items' journeys to the board require.
     needs: JourneyNeeds,
-    /// By processing place (station): free hands and places that the journeys through this station require.
+    /// For each processing place (station): free hands and places that the journeys through this station require.
     station_needs: [JourneyNeeds; 8],
     /// Bit set of the target dishes that have to be assembled on the board.
     assembled: u32,
-    /// Whether anything but the last press (serving) remains to be done.
+    /// Whether anything remains to be done before the last press (serving).
     is_busy: bool,
 }
 
 impl PressDemand {
-    /// The requirements of these tasks, with their items at their present places.
+    /// The requirements of these tasks, with the tasks' items at their present places.
     pub fn from_tasks(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -65,7 +65,7 @@ impl PressDemand {
         }
     }
 
-    /// Lower bound of the number of presses: those of the journeys plus those for clearing obstacles.
+    /// Lower bound of the number of presses: presses of the journeys plus presses for clearing obstacles.
     pub fn bound(&self, ground: &KitchenTables, state: &ContentClasses) -> u32 {
         let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
         let mut in_the_way = 0;

@@ -3,13 +3,13 @@
 /// How exactly a cost to go is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fidelity {
-    /// The exact cost to go: a search decides where the lower bound and the best plan differ.
+    /// The cost to go is exact: a search decides where the lower bound and the best plan differ.
     Exact,
-    /// Bounds and plans without a search, for human decisions. A single value is the length of the best plan, an upper
-    /// bound (a search decides if no plan reaches the goal). In a decision, a few values are wrong by a press or two,
-    /// mostly those of presses that lead away from the goal.
+    /// The cost to go comes from bounds and plans without a search, for human decisions. A single value is the length
+    /// of the best plan, an upper bound (a search decides if no plan reaches the goal). In a decision, a few values are
+    /// wrong by a press or two, mostly those of presses that lead away from the goal.
     PlanBound,
-    /// The lower bound of the cost to go: mostly exact, else a press or two too low. Used for worlds with little
+    /// The cost to go is its lower bound: mostly exact, else a press or two too low. Used for worlds with little
     /// weight.
     LowerBound,
 }

@@ -1,7 +1,7 @@
 //! A goal of the cost to go: the dishes that are still to be served (targets), with tables of the use of every content
-//! for them.
+//! for these dishes.
 //!
-//! Only the use of a content for the goal matters: all useless contents are one class, obstacles.
+//! Only the use of a content for the goal matters: all useless contents form one class, the obstacles.
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
 
@@ -10,14 +10,14 @@ use super::ground::KitchenTables;
 use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
 use super::task::{AssemblyTask, STORAGE};
 
-/// Value of an item at its place for one target dish, packed into one number so that the maximum of many is found
-/// without branches: a larger gain is better, ties go to the first location.
+/// Value of an item at its place for one target dish, packed into one number so that the maximum of many values is
+/// found without branches: a larger gain is better, ties go to the first location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ItemValue(u32);
 
 impl ItemValue {
-    /// Packs the value: `gain`, in half presses, is the presses saved compared with a fresh item from a storage, plus
-    /// the value of freeing the item's location.
+    /// Packs the value of an item: `gain`, in half presses, is the number of presses saved compared with a fresh item
+    /// from a storage, plus the value of freeing the item's location.
     fn new(gain: u16, location: u8, fills: u8) -> ItemValue {
         ItemValue(u32::from_be_bytes([(gain >> 8) as u8, gain as u8, !location, fills]))
     }
@@ -35,14 +35,14 @@ impl ItemValue {
     }
 }
 
-/// A set of target dishes with their tables over classes of contents.
+/// A goal: a set of target dishes with tables over classes of contents.
 #[derive(Clone, Debug)]
 pub struct ServingGoal {
-    /// The stacks to be served, in ascending order of their ids.
+    /// The stacks (dishes) to be served, in ascending order of their ids.
     pub targets: Vec<ContentId>,
     /// The equivalence class of each content.
     pub class_of: Vec<u8>,
-    /// For each class, one content that belongs to it.
+    /// For each class of contents, one content that belongs to the class.
     pub content: Vec<ContentId>,
     /// Representative of each content: the first content of the same class that allows the same presses.
     pub stands_for: Vec<ContentId>,
@@ -52,14 +52,14 @@ pub struct ServingGoal {
     pub ready: [Vec<u8>; MAX_TARGETS],
     /// `[target][location * classes + class]`: number of presses that bring the item to the board without obstacles.
     pub near: [Vec<u8>; MAX_TARGETS],
-    /// `[target][location * classes + class]`: free hands and places that these presses require.
+    /// `[target][location * classes + class]`: free hands and places that the presses in `near` require.
     pub near_needs: [Vec<JourneyNeeds>; MAX_TARGETS],
     /// `[target][location * classes + class]`: value of the item for the target dish.
     pub offers: [Vec<ItemValue>; MAX_TARGETS],
-    /// `[target][j]`: number of presses that bring the j-th item from a storage to the board, and free hands and places
-    /// required.
+    /// `[target][j]`: number of presses that bring the target's j-th item from a storage to the board, and free hands
+    /// and places required for that.
     pub fresh: [Vec<(u8, JourneyNeeds)>; MAX_TARGETS],
-    /// For each target dish, the component index of its j-th item.
+    /// For each target dish, the component index of its j-th item (see `journeys`).
     pub components: [Vec<usize>; MAX_TARGETS],
     /// For each target dish, the bit set of all its items.
     pub complete: [u8; MAX_TARGETS],
@@ -67,21 +67,21 @@ pub struct ServingGoal {
     pub target_class: [u8; MAX_TARGETS],
     /// `[target][bits]`: the class of a stack of these items of the target dish.
     pub part_class: [Vec<u8>; MAX_TARGETS],
-    /// By class, whether more than one target dish can use it.
+    /// For each class, whether more than one target dish can use its contents.
     pub is_shared: Vec<bool>,
-    /// Classes of the items in the storages, by agent.
+    /// For each agent, the classes of the items in the agent's storages.
     pub takes: [Vec<u8>; 2],
-    /// `[process][class]`: the class after the processing step, if it is useful, else 0.
+    /// `[process][class]`: the class after the processing step if it is a useful class, else 0.
     pub becomes: Vec<Vec<u8>>,
-    /// `[below * classes + above]`: the class of the stack, if it is useful, else 0.
+    /// `[below * classes + above]`: the class of the stack if it is a useful class, else 0.
     pub stacks: Vec<u8>,
-    /// The first physical location, and one past the last one.
+    /// Index of the first physical location, and of one past the last.
     first: usize,
     last: usize,
-    /// `[(location - first) * contents + content]`: the content's class times the location's stride; the sum over the
-    /// locations is the state's key.
+    /// `[(location - first) * contents + content]`: the content's class times the location's stride; the sum over all
+    /// locations is the state's cache key.
     key_by_content: Vec<u64>,
-    /// `[(location - first) * classes + class]`: the class times the location's stride.
+    /// `[(location - first) * classes + class]`: the class times the location's stride in the cache key.
     key_by_class: Vec<u64>,
 }
 
@@ -162,7 +162,7 @@ impl ServingGoal {
         matches!(self.targets[..], [first, second] if first != second)
     }
 
-    /// Number of presses of a task if its item is at `at`, and free hands and places required for that.
+    /// Number of presses of a task if its item is at location `at`, and free hands and places required for that.
     #[inline]
     pub fn way(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> (u8, JourneyNeeds) {
         let target = usize::from(task.target);
@@ -174,19 +174,19 @@ impl ServingGoal {
     }
 
     /// Number of presses that bring an item of a class from a location onto the board for a target dish, without
-    /// obstacles.
+    /// obstacles in the way.
     #[inline]
     pub fn presses_from(&self, target: u8, location: usize, class: u8) -> u8 {
         self.near[usize::from(target)][location * self.content.len() + usize::from(class)]
     }
 
-    /// Whether the content at `at` is the item of a task or can become it.
+    /// Whether the content at location `at` is the item of a task or can become that item.
     #[inline]
     pub fn fits(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> bool {
         at == STORAGE || self.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
     }
 
-    /// Whether a task's item is on the board in its final form.
+    /// Whether a task's item is on the board in its final (processed) form.
     #[inline]
     pub fn is_ready(&self, ground: &KitchenTables, state: &ContentClasses, task: &AssemblyTask) -> bool {
         let at = usize::from(task.at);
@@ -272,13 +272,13 @@ impl ServingGoal {
         rows.map(|(row, parts)| parts[state.content(LocationId((self.first + row) as u8)).index()]).sum()
     }
 
-    /// Contribution of a content at a physical location to the state's key.
+    /// Contribution of a content at a physical location to the state's cache key.
     #[inline]
     pub fn key_part(&self, location: LocationId, content: ContentId) -> u64 {
         self.key_by_content[(location.index() - self.first) * self.class_of.len() + content.index()]
     }
 
-    /// Cache key of a state that is given by classes.
+    /// Cache key of a state that is given by classes of contents.
     #[inline]
     pub fn key_of_classes(&self, state: &ContentClasses) -> u64 {
         let rows = self.key_by_class.chunks_exact(self.content.len());
@@ -301,7 +301,7 @@ impl ServingGoal {
     }
 }
 
-/// Bit set of the target dish's items that a content is, or can become.
+/// Bit set of the target dish's items that a content already is, or can become.
 fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content: usize) -> u8 {
     let candidate = &kitchen.contents[content];
     if candidate.is_stack() {
@@ -316,7 +316,7 @@ fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content
     bits.sum()
 }
 
-/// Bit set of the target dish's items in a content; 0 if the content also has other items.
+/// Bit set of the target dish's items that a content consists of; 0 if the content also has other items.
 fn ready(kitchen: &Kitchen, target: ContentId, content: ContentId) -> u8 {
     let wanted = &kitchen.content(target).items;
     let bit = |item: &ContentId| wanted.iter().position(|other| other == item).map(|bit| 1 << bit);
@@ -324,7 +324,7 @@ fn ready(kitchen: &Kitchen, target: ContentId, content: ContentId) -> u8 {
 }
 
 /// For each content, the first content of the same class that the same locations accept, the same processes change and
-/// the same contents stack with. All presses then lead to the same classes and costs to go.
+/// the same contents stack with. Presses with either content then lead to the same classes and costs to go.
 fn stands_for(kitchen: &Kitchen, class_of: &[u8]) -> Vec<ContentId> {
     let contents = || (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
     let locations = || (kitchen.orders.len()..kitchen.locations.len()).map(|index| LocationId(index as u8));

@@ -10,7 +10,7 @@ use super::journeys::{FreeMask, JourneyTables};
 /// Tables of one kitchen for the cost to go that hold for all goals.
 #[derive(Clone, Debug)]
 pub struct KitchenTables {
-    /// Lengths of the ways of items through processing steps onto the board.
+    /// Numbers of presses that bring items through processing steps onto the board.
     pub journeys: JourneyTables,
     /// Index of the first physical location.
     pub first: usize,
@@ -24,17 +24,17 @@ pub struct KitchenTables {
     pub plate: usize,
     /// Places where any content can be put down temporarily.
     spare: Vec<usize>,
-    /// Value of freeing each location, in half presses.
+    /// Value of freeing each location, in half presses, when items are compared.
     pub in_the_way: Vec<u16>,
-    /// All actions other than taking from a storage and serving, once each.
+    /// All actions except taking from a storage and serving, each action once.
     pub moves: Vec<(Agent, ButtonAction)>,
-    /// Location of each processing step; `None` for one in the hand.
+    /// Location of each processing step; `None` for a step that is done in the hand.
     pub process_place: Vec<Option<usize>>,
     /// `[location * contents + content]`: whether the location, when empty, accepts the content.
     accepts: Vec<bool>,
     contents: usize,
     is_hand: Vec<bool>,
-    /// By location, the number of presses that serve a complete stack from there, without obstacles.
+    /// For each location, the number of presses that serve a complete stack from there, without obstacles.
     last_presses: Vec<u32>,
 }
 
@@ -87,7 +87,7 @@ impl KitchenTables {
         }
     }
 
-    /// The physical locations: all but the orders.
+    /// Index range of the physical locations: all locations but the orders.
     #[inline]
     pub fn places(&self) -> Range<usize> {
         self.first..self.last
@@ -99,7 +99,7 @@ impl KitchenTables {
         self.is_hand[location]
     }
 
-    /// Whether an empty `location` accepts `content`.
+    /// Whether the location `location`, when empty, accepts the content `content`.
     #[inline]
     pub fn accepts(&self, location: usize, content: ContentId) -> bool {
         self.accepts[location * self.contents + content.index()]
@@ -111,7 +111,7 @@ impl KitchenTables {
         self.last_presses[location]
     }
 
-    /// Mask of the free hands and places in a state.
+    /// Bit mask of the free hands and places in a state.
     #[inline]
     pub fn free(&self, state: &ContentClasses) -> FreeMask {
         let mut free = 0;
@@ -127,8 +127,8 @@ impl KitchenTables {
     }
 }
 
-/// All actions other than taking from a storage and serving, each once: an action at a place has the same effect for
-/// both agents.
+/// All actions except taking from a storage and serving, each once: an action at a place has the same effect for both
+/// agents.
 fn moves(kitchen: &Kitchen) -> Vec<(Agent, ButtonAction)> {
     let mut moves: Vec<(Agent, ButtonAction)> = Vec::new();
     for agent in Agent::BOTH {

@@ -1,17 +1,17 @@
 //! Journeys: number of presses that bring one item from its place to the board in the form that a recipe needs, for
-//! every combination of free hands and places. One breadth-first search per component and combination, when a kitchen
-//! is loaded.
+//! every combination of free hands and places. One breadth-first search per component and combination fills the tables
+//! when a kitchen is loaded.
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
 
-/// Marks an impossible journey of an item.
+/// Marks an item's journey that is impossible.
 pub const NEVER: u8 = u8::MAX;
 
-/// Bit mask of what is free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per processing place, and a
-/// last bit for any place where an item can be put down temporarily.
+/// Bit mask of hands and places that are free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per
+/// processing place, and a last bit for any place where an item can be put down temporarily.
 pub type FreeMask = usize;
 
-/// Tables of journey lengths over (free mask, component, location, content).
+/// Tables of the lengths of items' journeys to the board, over (free mask, component, location, content).
 #[derive(Clone, Debug)]
 pub struct JourneyTables {
     /// Places where items are processed, in the order of their mask bits from bit 2 on.
@@ -20,21 +20,21 @@ pub struct JourneyTables {
     pub bit: Vec<FreeMask>,
     /// The mask bit for a place where an item can be put down temporarily.
     pub spare_bit: FreeMask,
-    /// The mask in which all hands and places are free.
+    /// The free mask in which all hands and places are free.
     pub all_free: FreeMask,
     /// The components: items that are part of a dish.
     pub components: Vec<ContentId>,
     contents: usize,
     locations: usize,
     /// `[((mask * components + component) * locations + location) * contents + content]`: number of presses of the
-    /// journey.
+    /// journey to the board.
     presses: Vec<u8>,
     /// `[mask * components + component]`: number of presses for an item that is still in a storage, including the press
-    /// that takes it.
+    /// that takes the item.
     storage_presses: Vec<u8>,
 }
 
-/// Bit mask of the free hands and places without which the journey of an item is impossible.
+/// Bit mask of the hands and places that must be free for an item's journey to be possible.
 pub type JourneyNeeds = u16;
 
 impl JourneyTables {
@@ -74,13 +74,13 @@ impl JourneyTables {
         journeys
     }
 
-    /// The index of an item among the components.
+    /// The index of an item among the components (items of dishes); `None` if no dish contains the item.
     pub fn component(&self, item: ContentId) -> Option<usize> {
         self.components.iter().position(|&component| component == item)
     }
 
-    /// Number of presses until `content`, now at `location`, lies on the board as this component. `free` must include
-    /// the item's own place.
+    /// Number of presses until `content`, now at `location`, lies on the board as this component. The mask `free` must
+    /// include the item's own place.
     #[inline]
     pub fn presses(&self, free: FreeMask, component: usize, location: usize, content: u8) -> u8 {
         let row = (free * self.components.len() + component) * self.locations + location;
@@ -129,12 +129,12 @@ impl JourneyTables {
         }
     }
 
-    /// Index of an item at a location; the last location is the spare place.
+    /// Index of an item at a location in the search's tables; the last location is the spare place.
     fn place(&self, location: usize, item: ContentId) -> usize {
         location * self.contents + item.index()
     }
 
-    /// All single presses with these hands and places free, from place to place; they are the same for all components.
+    /// All single presses with these hands and places free, from place to place, which are the same for all components.
     fn steps(&self, kitchen: &Kitchen, free: FreeMask) -> Vec<(usize, usize)> {
         let mut steps = Vec::new();
         for location in 0..=self.locations {
@@ -147,13 +147,13 @@ impl JourneyTables {
         steps
     }
 
-    /// Backwards from the component in a hand beside the board, by place.
+    /// Searches backwards from the component in a hand beside the board: number of presses by place.
     fn search(&self, kitchen: &Kitchen, steps: &[(usize, usize)], component: ContentId) -> Vec<u8> {
         let mut presses = vec![NEVER; (self.locations + 1) * self.contents];
         for hand in kitchen.hands {
             presses[self.place(hand.index(), component)] = 1;
         }
-        // Journeys are short, so relaxing all steps until nothing changes is fast enough.
+        // Journeys are short, so relaxing all steps until nothing changes any more is fast enough.
         loop {
             let mut changed = false;
             for &(from, to) in steps {
@@ -171,7 +171,7 @@ impl JourneyTables {
         presses
     }
 
-    /// Locations to which one press can bring an item from `location`.
+    /// Locations to which one press can bring an item that is at `location`.
     fn successors<'a>(
         &'a self,
         kitchen: &'a Kitchen,

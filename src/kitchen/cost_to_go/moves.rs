@@ -1,4 +1,4 @@
-//! Moves of a cost-to-go plan that free a hand or a place.
+//! Moves of a cost-to-go plan that free a hand or a place of the kitchen.
 
 use super::partial_plan::PressPlan;
 use super::task::STORAGE;
@@ -9,42 +9,42 @@ const MAX_MOVES: usize = 32;
 /// A move of one or two presses in a cost-to-go plan that frees a hand or a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClearingMove {
-    /// Throws away a useless content of a hand.
+    /// The move throws away a useless content of a hand.
     Throw {
         /// The location index of the hand.
         hand: usize,
     },
-    /// Picks up a useless content from its place.
+    /// The move picks up a useless content from its place.
     PickUp {
         /// The location index of the content.
         from: usize,
-        /// The location index of the hand that picks it up.
+        /// The location index of the hand that picks the content up.
         hand: usize,
     },
-    /// Brings the item of a task to a place or into a hand.
+    /// The move brings the item of a task to a place or into a hand.
     Bring {
         /// The index of the task whose item is brought.
         task: usize,
-        /// The location index that the item is brought to.
+        /// The location index to which the item is brought.
         to: usize,
     },
-    /// Throws away the item of a task, which can be taken anew from a storage.
+    /// The move throws away the item of a task, which can be taken anew from a storage.
     Discard {
         /// The index of the task whose item is thrown away.
         task: usize,
     },
-    /// Takes an item of this class from a storage early and brings it to a place on its way to the board.
+    /// The move takes an item of this class from a storage early and brings it to a place on its way to the board.
     Fetch {
-        /// The index of the task that the item is for.
+        /// The index of the task for which the item is taken.
         task: usize,
         /// The equivalence class of the item that is taken.
         class: u8,
-        /// The location index of the hand that takes it.
+        /// The location index of the hand that takes the item.
         hand: usize,
-        /// The location index that the item is brought to.
+        /// The location index to which the item is brought.
         to: usize,
     },
-    /// Two tasks exchange their items, without a press.
+    /// Two tasks exchange their items in the assignment, without a press.
     Exchange {
         /// The indices of the two tasks that exchange their items.
         tasks: [usize; 2],
@@ -79,13 +79,13 @@ impl ClearingMoves {
 }
 
 impl PressPlan<'_> {
-    /// Applies a move to the plan and counts its presses.
+    /// Applies a move to the plan and adds the move's presses.
     pub(super) fn make(&mut self, made: ClearingMove) {
         let ground = self.ground;
         self.presses += match made {
             ClearingMove::Throw { .. } | ClearingMove::PickUp { .. } | ClearingMove::Discard { .. } => 1,
             ClearingMove::Bring { task, to } => {
-                // Moving an item between two places needs a hand.
+                // Moving an item between two places needs a free hand.
                 let from = usize::from(self.choice.tasks[task].at);
                 if ground.is_hand(from) || ground.is_hand(to) { 1 } else { 2 }
             }

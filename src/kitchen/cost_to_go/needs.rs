@@ -1,4 +1,5 @@
-//! Hands and places that the work on a target dish requires, the obstacles to it, and places for putting them aside.
+//! Hands and places that the work on a target dish requires, the obstacles to that work, and places for putting
+//! obstacles aside.
 
 use super::journeys::FreeMask;
 use super::partial_plan::PressPlan;
@@ -8,25 +9,25 @@ use super::partial_plan::PressPlan;
 pub struct TargetNeeds {
     /// The index of the target dish.
     pub target: usize,
-    /// Whether parts of the dish still have to be brought to the board.
+    /// Whether parts of the target dish still have to be brought to the board.
     pub assembling: bool,
-    /// Free hands and places that the parts of the dish require.
+    /// Mask of free hands and places that the parts of the dish require.
     pub needs: FreeMask,
-    /// Free hands and places that all remaining tasks require.
+    /// Mask of free hands and places that all remaining tasks require.
     pub later: FreeMask,
     /// Whether both agents' hands hold something.
     pub hands_full: bool,
 }
 
 impl TargetNeeds {
-    /// Whether the hand of this agent should be empty.
+    /// Whether the hand of this agent should be empty for the work on the target dish.
     pub fn hand(&self, agent: usize) -> bool {
         self.hands_full || self.needs & (1 << agent) != 0
     }
 }
 
 impl PressPlan<'_> {
-    /// The present requirements of the work on a target dish.
+    /// The present requirements of the work on a target dish: hands, places, and whether parts are missing.
     pub(super) fn wants(&self, target: usize) -> TargetNeeds {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
@@ -49,7 +50,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// The place where a part can be put down with the least additional presses: (additional presses, place).
+    /// The place where a part can be put down with the fewest additional presses: (additional presses, place).
     pub(super) fn best_place(&self, index: usize, needs: FreeMask, through: bool) -> Option<(u32, usize)> {
         let ground = self.ground;
         let task = self.choice.tasks[index];
@@ -82,7 +83,7 @@ impl PressPlan<'_> {
         best.map(|(detour, _, place)| (detour, place))
     }
 
-    /// The occupied place to which the single item of a task has to go next.
+    /// The occupied place to which the single item of a task has to go next; `None` if its way is free.
     pub(super) fn blocked_by(&self, task: usize) -> Option<usize> {
         let ground = self.ground;
         let from = usize::from(self.choice.tasks[task].at);
@@ -92,7 +93,7 @@ impl PressPlan<'_> {
         blocked.find(|&place| self.leads(task, from, place))
     }
 
-    /// Whether moving the single item of a task from one location to another shortens its journey.
+    /// Whether moving the single item of a task from one location to another shortens the item's journey.
     pub(super) fn leads(&self, task: usize, from: usize, to: usize) -> bool {
         let of = self.choice.tasks[task];
         let class = self.state[usize::from(of.at)];

@@ -1,5 +1,5 @@
 //! A cost-to-go plan under construction: places of its tasks' items, and the presses that bring, process and serve
-//! them.
+//! these items.
 
 use super::assign::Assignment;
 use super::classes::ContentClasses;
@@ -17,7 +17,7 @@ pub struct PressPlan<'a> {
     pub(super) goal: &'a ServingGoal,
     pub(super) state: ContentClasses,
     pub(super) choice: Assignment,
-    /// Bit set of the remaining tasks.
+    /// Bit set of the tasks that remain in the plan.
     pub(super) open: u32,
     pub(super) presses: u32,
     /// Number of dishes that the plan has served so far.
@@ -26,7 +26,7 @@ pub struct PressPlan<'a> {
 }
 
 impl<'a> PressPlan<'a> {
-    /// A plan that begins in this state and follows this assignment.
+    /// A plan that begins in this state and follows this assignment of items.
     pub fn new(
         ground: &'a KitchenTables,
         goal: &'a ServingGoal,
@@ -36,7 +36,7 @@ impl<'a> PressPlan<'a> {
         PressPlan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
     }
 
-    /// Processes all parts at their present places as far as possible.
+    /// Processes all parts of dishes at their present places as far as possible.
     pub(super) fn process_all(&mut self) {
         for index in 0..self.choice.count {
             let at = self.choice.tasks[index].at;
@@ -80,7 +80,7 @@ impl<'a> PressPlan<'a> {
         self.open &= !(1 << index);
     }
 
-    /// Serves the target dish if its stack is complete and the way is free.
+    /// Serves the target dish if its stack is complete and the way to the plate is free.
     pub(super) fn serve(&mut self, target: usize) -> bool {
         let ground = self.ground;
         let complete = self.goal.complete[target];
@@ -100,7 +100,7 @@ impl<'a> PressPlan<'a> {
         can
     }
 
-    /// Whether a task's item is on the board in its final form.
+    /// Whether a task's item is on the board in its final (processed) form.
     pub(super) fn is_ready(&self, task: &AssemblyTask) -> bool {
         self.goal.is_ready(self.ground, &self.state, task)
     }
@@ -178,7 +178,7 @@ impl<'a> PressPlan<'a> {
         true
     }
 
-    /// Merges a part with the stack on the board.
+    /// Merges a part that was brought with the stack on the board.
     fn take_in(&mut self, target: usize, index: usize) {
         let board = self.ground.board;
         let task = self.choice.tasks[index];
@@ -199,7 +199,7 @@ impl<'a> PressPlan<'a> {
         self.state[board] = self.goal.part_class[target][usize::from(bits)];
     }
 
-    /// Number of presses of a task while these hands and places are free.
+    /// Number of presses of a task while the hands and places of this mask are free.
     pub(super) fn bring(&self, task: &AssemblyTask, free: FreeMask) -> u8 {
         let (ground, goal) = (self.ground, self.goal);
         let target = usize::from(task.target);
@@ -219,17 +219,17 @@ impl<'a> PressPlan<'a> {
         ground.journeys.presses(free | ground.journeys.bit[at], component, at, content)
     }
 
-    /// Number of presses of a task without obstacles.
+    /// Number of presses of a task if there were no obstacles.
     pub(super) fn least(&self, task: &AssemblyTask) -> u32 {
         u32::from(self.goal.way(&self.state, task, task.at).0)
     }
 
-    /// Free hands and places that the rest of a task requires.
+    /// Mask of free hands and places that the rest of a task requires.
     pub(super) fn needs(&self, task: &AssemblyTask) -> FreeMask {
         usize::from(self.goal.way(&self.state, task, task.at).1)
     }
 
-    /// The task whose item is at a location.
+    /// The task whose item is at this location; `None` if there is none.
     pub(super) fn task_at(&self, location: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.at) == location)
     }
@@ -242,7 +242,7 @@ impl<'a> PressPlan<'a> {
         self.process(index, place);
     }
 
-    /// Processes a part at its place as far as possible.
+    /// Processes a part of a dish at its place as far as possible.
     pub(super) fn process(&mut self, index: usize, place: usize) {
         let task = self.choice.tasks[index];
         if task.bits.count_ones() != 1 || self.ground.is_hand(place) {

@@ -1,4 +1,4 @@
-//! Lower and upper bound of a state's cost to go, without a search.
+//! Lower and upper bound of a state's cost to go, computed without a search.
 
 use super::assign::Assignment;
 use super::classes::{ContentClasses, MAX_TARGETS};
@@ -15,7 +15,7 @@ pub struct CostToGoBounds {
 }
 
 impl CostToGoBounds {
-    /// The assignments of items in this state, and the lower bound of the cost to go that follows from them.
+    /// The assignments of items in this state, and the lower bound of the cost to go that follows from the assignments.
     pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> CostToGoBounds {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
@@ -31,24 +31,24 @@ impl CostToGoBounds {
         }
     }
 
-    /// The lower bound of the cost to go alone.
+    /// The lower bound of the cost to go alone, without the assignments.
     pub fn bound(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let of_order = |order| Assignment::choose(ground, goal, state, order).demand.bound(ground, state);
         let forwards = of_order([0, 1]);
         if order_counts(goal, state) { forwards.min(of_order([1, 0])) } else { forwards }
     }
 
-    /// The assignments, the one with the smaller lower bound first.
+    /// The assignments of items, the one with the smaller lower bound of the cost to go first.
     pub fn choices(&self) -> &[Assignment] {
         &self.choices[..self.count]
     }
 
-    /// The assignment with the smaller lower bound.
+    /// The assignment of items with the smaller lower bound of the cost to go.
     pub fn best_choice(&self) -> &Assignment {
         &self.choices[0]
     }
 
-    /// Items that the dishes which may be served first need from the storages: a bit set of items for each target dish.
+    /// Items that dishes which may be served first need from the storages: a bit set of items for each target dish.
     pub fn wanted(&self) -> [u8; MAX_TARGETS] {
         let mut wanted = [0; MAX_TARGETS];
         for choice in self.choices() {
@@ -58,13 +58,13 @@ impl CostToGoBounds {
         wanted
     }
 
-    /// Length of the best plan; [`BLOCKED`] if no plan ends within `most` presses.
+    /// Length of the best plan in presses; [`BLOCKED`] if no plan ends within `most` presses.
     pub fn upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses, most: u32) -> u32 {
         self.best_plan(ground, goal, state, most, false)
     }
 
-    /// Length of the best plan, where plans that do not reach the lower bound are tried again with one deviation from
-    /// the greedy choice (discrepancy).
+    /// Length of the best plan in presses, where plans that do not reach the lower bound are tried again with one
+    /// deviation (discrepancy) from the greedy choice.
     pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let upper = self.upper(ground, goal, state, BLOCKED);
         if upper <= self.lower {

@@ -1,5 +1,5 @@
-//! The bounded best-first search over single presses, for states whose cost to go bounds and plans do not decide. It
-//! stops at states with a known value and wherever a plan reaches the lower bound.
+//! The bounded best-first search over single presses, for states whose cost to go bounds and plans do not decide. The
+//! search stops at states with a known value and wherever a plan reaches the lower bound.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -20,40 +20,40 @@ use crate::kitchen::{ContentId, State};
 pub struct SearchLimits {
     /// Largest number of states that the search expands.
     expansions: usize,
-    /// Whether items may be taken from a storage before their way to the board is free.
+    /// Whether the search takes items from a storage before their way to the board is free.
     takes: bool,
 }
 
-/// Limits of the first search: sufficient for 99 % of the states met in sessions and 95 % of those after random
+/// Limits of the first search: enough for 99 % of the states met in sessions and for 95 % of states after random
 /// presses.
 pub const NEAR: SearchLimits = SearchLimits { expansions: 48, takes: false };
-/// Limits of the second search, for states whose result is still two or more presses above the lower bound.
+/// Limits of the second search, for states whose first result is still two or more presses above the lower bound.
 pub const FAR: SearchLimits = SearchLimits { expansions: 24, takes: true };
 
-/// Initial capacity of the search's tables: most searches meet fewer states.
+/// Initial capacity of the search's tables, since most searches meet fewer states.
 const ROOM: usize = 200;
 
 /// Marks a state of the search whose plan has not been computed yet.
 const UNSEEN: u32 = u32::MAX;
 
-/// Ranks a state of the search behind all others with the same bound whose plans are known.
+/// Ranks a state of the search behind all states with the same bound whose plans are known.
 const LAST: u32 = UNSEEN - 1;
 
 /// An open state (node) of the best-first search.
 struct Open {
-    /// Number of presses so far plus lower bound of the remaining ones.
+    /// Number of presses so far plus lower bound of the remaining presses.
     bound: u32,
     /// Number of presses by which the state's plan exceeds the lower bound, or [`UNSEEN`].
     gap: u32,
-    /// Number of the state in order of discovery.
+    /// Number of the state in the search's order of discovery.
     met: usize,
-    /// Number of presses from the start state to this one.
+    /// Number of presses from the search's start state to this state.
     presses: u32,
     state: ContentClasses,
 }
 
 impl Open {
-    /// Order of expansion: smallest bound first, then smallest gap of the plan, then latest discovery.
+    /// Order in which states are expanded: smallest bound first, then smallest gap of the plan, then latest discovery.
     fn rank(&self) -> (Reverse<u32>, Reverse<u32>, usize) {
         (Reverse(self.bound), Reverse(self.gap), self.met)
     }
@@ -84,15 +84,15 @@ pub struct BestFirstSearch<'a> {
     costs: &'a mut CostToGo,
     slot: usize,
     goal: &'a ServingGoal,
-    /// Length of the best solution so far.
+    /// Length of the best solution found so far, in presses.
     best: u32,
     open: BinaryHeap<Open>,
-    /// Number of states added so far.
+    /// Number of states added to the search so far.
     met: usize,
-    /// Least number of presses to each state, by key.
+    /// Least number of presses found to each state, by the state's key.
     seen: FxHashMap<u64, u32>,
     reach: SearchLimits,
-    /// Whether the first solution below `best` ends the search.
+    /// Whether the search ends at the first solution below `best`.
     any: bool,
 }
 
@@ -134,12 +134,12 @@ impl<'a> BestFirstSearch<'a> {
         BestFirstSearch { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
     }
 
-    /// Runs the search; it stops once `lower` is reached.
+    /// Runs the search, which stops once a solution reaches `lower`; returns the best solution's length.
     fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
         let rating = CostToGoBounds::new(&self.costs.ground, self.goal, start);
         self.fidelity(start, rating, 0, lower);
-        // The presses that a plan settles first are nearly always right: the start state itself is expanded last among
-        // equal bounds.
+        // The presses that a plan settles first are nearly always right: therefore the start state itself is expanded
+        // last among states with equal bounds.
         self.keep(lower, LAST, 0, start);
         let mut expansions = 0;
         while let Some(next) = self.open.pop() {
@@ -184,7 +184,7 @@ impl<'a> BestFirstSearch<'a> {
         }
     }
 
-    /// Whether the state with this key is reached with fewer presses than before.
+    /// Whether the state with this key is now reached with fewer presses than before.
     fn is_new(&mut self, key: u64, presses: u32) -> bool {
         if self.seen.get(&key).is_some_and(|&seen| seen <= presses) {
             return false;
@@ -193,7 +193,7 @@ impl<'a> BestFirstSearch<'a> {
         true
     }
 
-    /// Handles a state that is reached after `presses` presses.
+    /// Handles a state that the search reaches after `presses` presses.
     fn meet(&mut self, state: &ContentClasses, presses: u32, bound: u32) {
         let key = self.costs.key(self.slot, self.goal, state);
         if !self.is_new(key, presses) {
@@ -218,7 +218,7 @@ impl<'a> BestFirstSearch<'a> {
         self.fidelity(state, rating, presses, bound);
     }
 
-    /// Computes the plan of a state, from the state after all certainly optimal presses.
+    /// Computes the plan of a state, from the state after all presses that are certainly optimal.
     fn fidelity(&mut self, state: &ContentClasses, mut rating: CostToGoBounds, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());

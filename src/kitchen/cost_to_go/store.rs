@@ -1,4 +1,4 @@
-//! The data of [`CostToGo`]: tables of the kitchen, goals, and caches by state keys.
+//! The data of [`CostToGo`]: tables of the kitchen, tables of goals, and caches by state keys.
 
 use std::sync::Arc;
 
@@ -9,12 +9,13 @@ use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, OrderContent, Recipes, State};
 
-/// The value of states from which the goal cannot be reached.
+/// The cost to go of states from which the goal cannot be reached.
 pub const UNREACHABLE: u32 = 255;
-/// Cache sizes: 2^18 values and 2^15 decisions, 2 MiB each. Larger caches were slower without more hits.
+/// Number of bits of the cache sizes: 2^18 values and 2^15 decisions, 2 MiB each. Larger caches were slower without
+/// more hits.
 const CACHE_BITS: u32 = 18;
 const DECISION_BITS: u32 = 15;
-/// Number of bits of a cache key for the goal and the kind of value.
+/// Number of bits of a cache key for the goal and the kind of value together.
 pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
 
 /// Computes costs to go of a kitchen's states, with caches.
@@ -31,7 +32,7 @@ pub struct CostToGo {
     pub(super) counts: EvaluationCounts,
     /// `[agent][content]`: whether an agent can take the content again after throwing it away.
     pub(super) takes: [Vec<bool>; 2],
-    /// By agent, whether it has a trash button.
+    /// For each agent, whether the agent has a trash button.
     pub(super) trashes: [bool; 2],
 }
 
@@ -42,22 +43,22 @@ pub struct EvaluationCounts {
     pub decisions_missed: u64,
     /// Number of requests for the cost to go of a single state.
     pub values: u64,
-    /// Values that had to be computed, because no cache held them.
+    /// Number of values that had to be computed, because no cache held them.
     pub values_missed: u64,
-    /// Number of values for which bounds and plans differed.
+    /// Number of values for which a search was needed, because bounds and plans differed.
     pub searches: u64,
 }
 
 /// Cache slot of a state's cost to go.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CacheSlot {
-    /// The slot of the goal, and the key of the state.
+    /// The slot of the goal, and the key of the state in that slot.
     At(usize, u64),
     /// No slot: the cost to go is constant, because there are no orders or an order cannot be served.
     Always(u32),
 }
 
-/// A state after a press, with bounds of its cost to go.
+/// A state after one press, with bounds of its cost to go.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SuccessorState {
     pub(super) button: usize,
@@ -96,7 +97,7 @@ impl CostToGo {
         self.counts
     }
 
-    /// The stacks that the present orders want, in the order of the orders, and their number.
+    /// The stacks (dishes) that the present orders want, in the order of the orders, and their number.
     #[inline]
     pub(super) fn targets(&self, state: State, recipes: &Recipes) -> ([ContentId; MAX_TARGETS], usize) {
         let mut targets = [ContentId::EMPTY; MAX_TARGETS];
@@ -110,7 +111,7 @@ impl CostToGo {
         (targets, count)
     }
 
-    /// The slot of the target dishes (at least one) and the key of the state.
+    /// The cache slot of the target dishes (at least one) and the key of the state.
     #[inline]
     pub(super) fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
         targets.sort_unstable();

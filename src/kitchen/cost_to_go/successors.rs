@@ -1,4 +1,4 @@
-//! Successor states of single presses, over classes of contents.
+//! Successor states: the states after single presses, over classes of contents.
 
 use crate::kitchen::{Agent, ButtonAction};
 
@@ -38,7 +38,7 @@ pub fn successors(
                 match (held, there) {
                     (0, 0) => continue,
                     (0, _) => (next[hand], next[location]) = (there, 0),
-                    // Useless contents are thrown away rather than put down.
+                    // Useless contents are thrown away rather than put down somewhere.
                     (USELESS, _) => continue,
                     (_, 0) => {
                         if !ground.accepts(location, goal.content[usize::from(held)]) {

@@ -1,5 +1,5 @@
 //! Cost to go of single states: number of presses until all orders or one order are served, and whether that number is
-//! below a limit, which bounds mostly decide.
+//! below a limit, which bounds mostly decide without a search.
 
 use super::fidelity::Fidelity;
 use super::partial_plan::BLOCKED;
@@ -9,8 +9,8 @@ use super::store::{CacheSlot, CostToGo, UNREACHABLE};
 use crate::kitchen::{ContentId, LocationId, OrderContent, Recipes, State};
 
 impl CostToGo {
-    /// C(s, recipes): number of presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if they
-    /// cannot be served.
+    /// C(s, recipes): number of presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if the
+    /// orders cannot be served.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
         self.cost(Fidelity::Exact, state, &mut targets[..count])
@@ -29,7 +29,7 @@ impl CostToGo {
         }
     }
 
-    /// Whether the order's cost to go is below `limit`, where `limit` is at most one press above it; cheaper than
+    /// Whether the order's cost to go is below `limit`, where `limit` is at most one press above the cost; cheaper than
     /// computing the cost to go.
     pub fn order_is_below(
         &mut self,
@@ -68,7 +68,8 @@ impl CostToGo {
         }
     }
 
-    /// The lower bound of a state's cost to go and, if that is at most `most`, the length of its best plan.
+    /// The lower bound of a state's cost to go and, if the bound is at most `most`, the length of the state's best
+    /// plan.
     pub(super) fn bracket(&mut self, state: State, kept: CacheSlot, most: u32) -> (u32, Option<u32>) {
         let (slot, key) = match kept {
             CacheSlot::At(slot, key) => (slot, key),
@@ -97,7 +98,7 @@ impl CostToGo {
         (lower, Some(self.keep(Fidelity::PlanBound, key, upper)))
     }
 
-    /// Whether the cost to go of a state is below `limit`, which is at most one press above it.
+    /// Whether the cost to go of a state is below `limit`, which is at most one press above the cost.
     pub(super) fn is_below(&mut self, limit: u32, state: State, kept: CacheSlot) -> bool {
         if limit == 0 {
             return false;

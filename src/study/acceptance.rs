@@ -8,8 +8,8 @@ use super::trial_statistics::{QuestionnaireAnswer, TrialStatistics, mean};
 use crate::session::plan::QuestionnaireItemKind;
 use crate::session::study_arm::StudyArm;
 
-/// Acceptance of the assistance: each participant's mean answer, after assisted trials, to the items about acceptance,
-/// from 0 (none) to 1 (full). Answers to items in which agreement means rejection are reversed.
+/// Acceptance of the assistance: each participant's mean answer, after assisted trials, to the questionnaire items
+/// about acceptance, from 0 (none) to 1 (full). Answers to items in which agreement means rejection are reversed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Acceptance {
     /// Number of participants with high acceptance: a mean answer above 2/3.
@@ -22,22 +22,22 @@ pub struct Acceptance {
     pub low: u64,
     /// Number of participants without answers to items about acceptance.
     pub not_reported: u64,
-    /// Mean acceptance over all participants, from 0 to 1.
+    /// Mean acceptance over all participants, from 0 to 1; null without answers.
     pub mean: Option<f64>,
 }
 
 /// Answers to one questionnaire item in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ItemSummary {
-    /// The questionnaire's name.
+    /// Name of the questionnaire to which the item belongs.
     pub questionnaire: String,
-    /// Identifier of the item.
+    /// Identifier of the questionnaire item.
     pub item: String,
-    /// Statement of the item.
+    /// Statement of the questionnaire item, as participants read it.
     pub text: String,
     /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
-    /// Whether agreement with the statement counts against the construct.
+    /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
     /// Kind of answer that the item takes.
     pub kind: QuestionnaireItemKind,
@@ -45,26 +45,26 @@ pub struct ItemSummary {
     pub condition: Option<StudyArm>,
     /// Number of points of the rating scale; `None` for other kinds of item.
     pub points: Option<u8>,
-    /// Number of answers at each scale point, from 1, or with each option, in the order of the options.
+    /// Number of answers at each scale point, from 1, or with each option, in the order of the item's options.
     pub counts: Vec<u64>,
-    /// Texts of the item's options, in their order.
+    /// Texts of the item's answer options, in their order.
     pub options: Vec<String>,
     /// Number of answers to the item.
     pub answers: u64,
     /// Number of participants' questionnaires in which the item was left without an answer.
     pub left_out: u64,
-    /// Mean of the answers that are numbers, not reversed.
+    /// Mean of the item's answers that are numbers; reversed items are not reversed here.
     pub mean: Option<f64>,
 }
 
-/// Scores of one questionnaire in one condition.
+/// Scores of one questionnaire after trials of one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScoreSummary {
-    /// The questionnaire's name.
+    /// Name of the questionnaire that was scored.
     pub questionnaire: String,
     /// Condition of the trial after which the questionnaire was asked; `None` if it was asked before the trials.
     pub condition: Option<StudyArm>,
-    /// Scores of the occasions on which a participant answered every item.
+    /// Scores of the occasions on which a participant answered every item of the questionnaire.
     pub scores: Vec<f64>,
     /// Mean of the questionnaire's scores.
     pub mean: Option<f64>,
@@ -77,13 +77,13 @@ fn asked_after(trial: &TrialStatistics, answered: &QuestionnaireAnswer) -> Optio
     (!answered.before).then_some(trial.study_arm)
 }
 
-/// Scores of all questionnaires by condition, in the order in which they occur.
+/// Scores of all questionnaires by condition, in the order in which questionnaires and conditions occur.
 pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
     let mut found: Vec<ScoreSummary> = Vec::new();
     for trial in trials {
         let mut occasions: Vec<(&str, bool)> = Vec::new();
         for answered in &trial.answers {
-            // Every item of an occasion has the occasion's score, so that only one of them is taken.
+            // Every answer of an occasion has the occasion's score, so the score is taken from one answer only.
             let occasion = (answered.questionnaire.as_str(), answered.before);
             let Some(score) = answered.score.filter(|_| !occasions.contains(&occasion)) else { continue };
             occasions.push(occasion);
@@ -109,14 +109,14 @@ pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
     found
 }
 
-/// Standard deviation of a sample; `None` below two values.
+/// Standard deviation of a sample of values; `None` with fewer than two values.
 fn sample_sd(values: &[f64]) -> Option<f64> {
     let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
     let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
     Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
-/// Answers to all questionnaires' items by condition, in the order in which they occur.
+/// Answers to the items of all questionnaires by condition, in the order in which items and conditions occur.
 pub(super) fn items(trials: &[&TrialStatistics]) -> Vec<ItemSummary> {
     let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
     for trial in trials {
@@ -176,7 +176,7 @@ impl ItemSummary {
     }
 }
 
-/// Acceptance from the answers in assisted trials; `None` without answers.
+/// Acceptance of the assistance from the answers after assisted trials; `None` without answers.
 pub(super) fn acceptance(trials: &[&TrialStatistics]) -> Option<Acceptance> {
     let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {
@@ -189,7 +189,7 @@ pub(super) fn acceptance(trials: &[&TrialStatistics]) -> Option<Acceptance> {
         return None;
     }
     let means: Vec<Option<f64>> = by_participant.into_values().map(|shares| mean(shares.into_iter())).collect();
-    // Twelfths are rounded so that means of whole scale points fall on the right side of a limit.
+    // The means are rounded in twelfths, so that means of whole scale points fall on the right side of a limit.
     let twelfths: Vec<f64> = means.iter().flatten().map(|mean| (12.0 * mean * 1e6).round() / 1e6).collect();
     let count = |is: fn(f64) -> bool| twelfths.iter().filter(|&&twelfths| is(twelfths)).count() as u64;
     Some(Acceptance {

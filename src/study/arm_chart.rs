@@ -1,11 +1,11 @@
-//! Chart of the ratios of rates between study arms.
+//! Chart of the ratios of rates (of the primary outcome) between study arms.
 
 use maud::Markup;
 
 use super::arm_comparison::StudyArmContrast;
 use super::svg::{PlotAxis, SvgChart};
 
-/// Ratios up to this value are drawn to scale; longer intervals end at the border of the chart.
+/// Largest ratio that is drawn to scale; longer intervals end at the border of the chart.
 const LARGEST: f64 = 4.0;
 
 /// Chart of ratios of rates with their confidence intervals; a line marks equal rates.

@@ -3,7 +3,7 @@
 //!
 //! The primary model is a linear mixed model of log((count + 0.5) / presses), with the participant as random effect,
 //! and arm and period as fixed effects ([`super::linear_mixed_model`]). A mixed negative binomial model with log
-//! presses as offset is reported beside it. A mixed Poisson model would assume that errors are independent, but they
+//! presses as offset is reported beside it. A mixed Poisson model would assume that errors are independent, but errors
 //! come in runs. Contrasts are ratios of rates; their p values are corrected together (Holm 1979). With three or more
 //! arms, a model with the effect of the previous arm (carry-over) is a sensitivity analysis.
 
@@ -21,15 +21,15 @@ use crate::session::study_arm::StudyArm;
 /// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmComparison {
-    /// Primary outcome: the event whose rate is compared between arms.
+    /// Primary outcome: the event whose rate is compared between study arms.
     pub outcome: PrimaryOutcome,
-    /// Number of participants in the comparison.
+    /// Number of participants in the comparison of arms.
     pub participants: usize,
-    /// Number of trials in the comparison.
+    /// Number of trials in the comparison of arms.
     pub trials: usize,
     /// Numbers of trials, events and presses of each arm, in the order of tables.
     pub arms: Vec<StudyArmOutcome>,
-    /// Standard deviations of log rates: between participants, and residual.
+    /// Standard deviations of log rates: between participants, and residual (within participants).
     pub standard_deviations: [f64; 2],
     /// Contrasts of the primary model: arms against the arm without signals and against the wizard.
     pub contrasts: Vec<StudyArmContrast>,
@@ -44,40 +44,40 @@ pub struct StudyArmComparison {
     pub groups: Vec<GroupOrder>,
 }
 
-/// Counts over the trials of one study arm.
+/// Counts of trials, events and presses of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmOutcome {
     /// Study arm of the counts.
     pub arm: StudyArm,
-    /// Number of trials of the arm.
+    /// Number of trials in this study arm.
     pub trials: usize,
-    /// Number of events of the primary outcome.
+    /// Number of events of the primary outcome in this study arm.
     pub events: u64,
-    /// Number of the human's presses.
+    /// Number of the human's presses in this study arm.
     pub presses: u64,
 }
 
 impl StudyArmOutcome {
-    /// Events per 100 presses of the human, over all trials together.
+    /// Events of the primary outcome per 100 presses of the human, over all trials of the arm together.
     pub fn per_100(&self) -> f64 {
         100.0 * self.events as f64 / self.presses as f64
     }
 }
 
-/// Comparison of one arm with another in the primary model.
+/// Comparison of one study arm with another in the primary model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmContrast {
     /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Study arm that it is compared with.
+    /// Study arm with which `arm` is compared.
     pub against: StudyArm,
     /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
-    /// 95 % confidence interval of the ratio.
+    /// 95 % confidence interval of the ratio of rates.
     pub interval: [f64; 2],
     /// p value after Holm's correction over all contrasts.
     pub p_holm: f64,
-    /// Contrast of the log rates.
+    /// Contrast (difference) of the log rates, with its t test.
     #[serde(flatten)]
     pub contrast: MixedModelContrast,
 }
@@ -94,18 +94,18 @@ pub struct NegativeBinomialComparison {
     pub contrasts: Vec<NegativeBinomialContrast>,
 }
 
-/// Comparison of one arm with another in the negative binomial model.
+/// Comparison of one study arm with another in the negative binomial model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NegativeBinomialContrast {
     /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Study arm that it is compared with.
+    /// Study arm with which `arm` is compared.
     pub against: StudyArm,
     /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
-    /// p value after Holm's correction over all contrasts.
+    /// p value after Holm's correction over all contrasts of the negative binomial model.
     pub p_holm: f64,
-    /// Contrast of the log rates.
+    /// Contrast (difference) of the log rates, with its Wald test.
     #[serde(flatten)]
     pub contrast: WaldContrast,
 }
@@ -115,13 +115,13 @@ pub struct NegativeBinomialContrast {
 pub struct NonInferiority {
     /// Study arm of the assistant.
     pub arm: StudyArm,
-    /// Study arm of the wizard.
+    /// Study arm of the wizard, with which the assistant's arm is compared.
     pub against: StudyArm,
     /// Largest ratio of rates that is acceptable (non-inferiority margin).
     pub margin: f64,
-    /// Ratio of the assistant's rate to the wizard's.
+    /// Ratio of the assistant's rate of the primary outcome to the wizard's.
     pub ratio: f64,
-    /// Upper end of the one-sided 97.5 % confidence interval of the ratio.
+    /// Upper end of the one-sided 97.5 % confidence interval of the ratio of rates.
     pub upper: f64,
     /// One-sided p value of the hypothesis that the ratio is at or above the margin.
     pub p: f64,
@@ -129,7 +129,7 @@ pub struct NonInferiority {
     pub holds: bool,
 }
 
-/// Number of events of the outcome in a trial; `None` if that is unknown for the trial.
+/// Number of events of the primary outcome in a trial; `None` if that number is unknown for the trial.
 fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
     match outcome {
         PrimaryOutcome::Errors => Some(trial.errors),
@@ -138,7 +138,8 @@ fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
     }
 }
 
-/// The trials that have a period and the outcome. If a participant repeated a period, the last trial counts.
+/// The trials that have a period and a known primary outcome. If a participant repeated a period, its last trial
+/// counts.
 fn counted(trials: &[&TrialStatistics], outcome: PrimaryOutcome) -> Vec<StudyArmTrial> {
     let mut rows: Vec<(&TrialStatistics, StudyArmTrial)> = Vec::new();
     for trial in trials.iter().copied().filter(|trial| trial.human_presses > 0) {
@@ -184,8 +185,8 @@ fn count_comparison(design: &StudyArmDesign) -> Option<NegativeBinomialCompariso
     Some(NegativeBinomialComparison { between_sd: model.between_sd, size, contrasts })
 }
 
-/// Holm's correction of p values for multiple tests: each p value is multiplied by the number of those that are not
-/// smaller, and made no smaller than the corrected one before.
+/// Holm's correction of p values for multiple tests: each p value is multiplied by the number of p values that are not
+/// smaller, and made no smaller than the corrected p value before it.
 pub fn holm(p: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..p.len()).collect();
     order.sort_by(|a, b| p[*a].total_cmp(&p[*b]));
@@ -206,14 +207,14 @@ pub fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
 }
 
 /// Compares the arms of these trials, which must be ordered by participant and period; `None` unless participants have
-/// trials in different arms, or where the model cannot be estimated. Outcome and margin are set by the plan.
+/// trials in different arms, or where the model cannot be estimated. The plan sets outcome and margin.
 pub fn compare_arms(trials: &[&TrialStatistics]) -> Option<StudyArmComparison> {
     let aims = trials.iter().find_map(|trial| trial.aims).unwrap_or_default();
     let compared = compare_counts(counted(trials, aims.outcome), aims)?;
     Some(StudyArmComparison { groups: group_orders(trials), ..compared })
 }
 
-/// Compares arms by counts of the primary outcome that these aims set; without starting groups.
+/// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups.
 pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
     let design = StudyArmDesign::new(trials);
     if !design.is_within() {

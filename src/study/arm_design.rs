@@ -15,7 +15,7 @@ pub struct StudyArmTrial {
     pub arm: StudyArm,
     /// Number of events of the primary outcome.
     pub events: u64,
-    /// Number of the human's presses; above 0.
+    /// Number of the human's presses in the trial; above 0.
     pub presses: u64,
 }
 
@@ -34,8 +34,8 @@ pub struct StudyArmDesign {
     periods: Vec<u32>,
 }
 
-/// The pairs of arms that are compared: every arm with the one without signals, and every other one with the wizard. If
-/// neither exists, all others are compared with the first arm.
+/// The pairs of study arms that are compared: every arm with the one without signals, and every other one with the
+/// wizard's. If neither exists, all others are compared with the first arm.
 pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
     let mut pairs = Vec::new();
     for against in [StudyArm::None, StudyArm::Wizard] {
@@ -64,12 +64,12 @@ impl StudyArmDesign {
         &self.trials
     }
 
-    /// The arms that occur in the trials, in the order of tables.
+    /// The study arms that occur in the trials, in the order of tables.
     pub fn arms(&self) -> &[StudyArm] {
         &self.arms
     }
 
-    /// Whether a participant has trials in different arms, so that arms can be compared within participants.
+    /// Whether any participant has trials in different arms, so that arms can be compared within participants.
     pub fn is_within(&self) -> bool {
         self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
     }
@@ -80,8 +80,8 @@ impl StudyArmDesign {
         (before.participant == self.trials[index].participant).then_some(before.arm)
     }
 
-    /// Row of fixed effects of a trial: intercept, arms without the first, periods without the first and, with
-    /// `carry_over`, previous arms without the first.
+    /// Row of fixed effects of a trial in the design matrix: intercept, arms without the first, periods without the
+    /// first and, with `carry_over`, previous arms without the first.
     fn effects(&self, index: usize, carry_over: bool) -> Vec<f64> {
         let (trial, before) = (&self.trials[index], self.before(index));
         let is = |holds: bool| f64::from(u8::from(holds));
@@ -91,8 +91,8 @@ impl StudyArmDesign {
         std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
     }
 
-    /// The primary model, with `carry_over` including the effect of the previous arm; `None` where it cannot be
-    /// estimated.
+    /// The primary (linear mixed) model, with `carry_over` including the effect of the previous arm; `None` where the
+    /// model cannot be estimated.
     pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
         let measurement = |(index, trial): (usize, &StudyArmTrial)| MixedModelMeasurement {
             participant: trial.participant,
@@ -102,7 +102,7 @@ impl StudyArmDesign {
         LinearMixedModel::fit(&self.trials.iter().enumerate().map(measurement).collect::<Vec<_>>())
     }
 
-    /// The negative binomial model of counts; `None` where it cannot be estimated.
+    /// The negative binomial model of counts; `None` where the model cannot be estimated.
     pub fn counts(&self) -> Option<NegativeBinomialModel> {
         let count = |(index, trial): (usize, &StudyArmTrial)| CountObservation {
             participant: trial.participant,

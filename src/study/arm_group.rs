@@ -11,9 +11,9 @@ use crate::session::settings::ArmKind;
 pub struct RobotArmGroup {
     /// Kind of the robot's arm: timed or physical.
     pub kind: ArmKind,
-    /// Number of trials.
+    /// Number of trials with this kind of robot arm.
     pub trials: u64,
-    /// Sums of the robot statistics over the trials.
+    /// Sums of the robot statistics over these trials.
     #[serde(flatten)]
     pub robot: RobotEventSummary,
 }

@@ -18,16 +18,16 @@ const SEED: u64 = 1;
 pub struct StudyArmStatistic {
     /// The statistic over all trials of the arm; null where it cannot be computed.
     pub value: Option<f64>,
-    /// Confidence interval of the statistic; null with fewer than five participants.
+    /// Confidence interval of the arm's statistic; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Row of the table of arms: rates of one study arm.
+/// Row of the table of study arms: rates of one arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmRow {
     /// Study arm of the row.
     pub arm: StudyArm,
-    /// Number of trials of the arm.
+    /// Number of trials of the study arm.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: StudyArmStatistic,
@@ -35,11 +35,11 @@ pub struct StudyArmRow {
     pub related_per_100: StudyArmStatistic,
     /// Mean number of errors in a sequence that follows from the same false belief.
     pub sequence_length: StudyArmStatistic,
-    /// Orders served per minute.
+    /// Orders served per minute of the arm's trials.
     pub orders_per_minute: StudyArmStatistic,
     /// Signals per 100 presses of the human.
     pub signals_per_100: StudyArmStatistic,
-    /// Share of the trials' time with a signal on the display.
+    /// Share of the arm's trial time with a signal on the display.
     pub signal_time: StudyArmStatistic,
 }
 
@@ -48,17 +48,18 @@ pub struct StudyArmRow {
 pub struct StudyArmTable {
     /// Name of the study plan.
     pub plan: String,
-    /// Checksum of plan and settings with this seed.
+    /// Checksum of the study plan and settings with this seed.
     pub digest: String,
     /// Version of the program that simulated the trials.
     pub program: String,
-    /// Seed of all random numbers.
+    /// Seed of all random numbers of the simulation.
     pub seed: u64,
-    /// Number of participants.
+    /// Number of simulated participants.
     pub participants: u32,
-    /// One row per arm, in the order of tables.
+    /// One row per study arm, in the order of tables.
     pub arms: Vec<StudyArmRow>,
-    /// Comparisons of arms by errors and by errors from false beliefs; those that cannot be estimated are left out.
+    /// Comparisons of arms by errors and by errors from false beliefs; comparisons that cannot be estimated are left
+    /// out.
     pub comparisons: Vec<StudyArmComparison>,
 }
 
@@ -122,7 +123,7 @@ impl StudyArmTable {
     }
 }
 
-/// The pool's trials in their arms, with counts of the outcome, for the comparison of arms.
+/// The pool's trials in their study arms, with counts of the primary outcome, for the comparison of arms.
 fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<StudyArmTrial> {
     let persons = pool.persons.iter().enumerate();
     let trials = persons.flat_map(|(participant, person)| {

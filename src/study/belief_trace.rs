@@ -1,5 +1,5 @@
 //! Everything in a trial that can change or show the participant's beliefs, in order: changes of the kitchen, looks,
-//! signals and the participant's presses. Neither estimates nor recorded beliefs are part of it.
+//! signals and the participant's presses. Neither estimates nor recorded beliefs are part of this trace.
 
 use crate::analysis::looks::LocationDwells;
 use crate::base::time::SessionTime;
@@ -11,9 +11,9 @@ use crate::session::{Event, Session, TimestampedEvent};
 /// Event of a trial that can change or show the participant's belief.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BeliefTraceEvent {
-    /// The trial starts in a state that the participant knows.
+    /// The trial starts in a state of the kitchen that the participant knows.
     Started {
-        /// State at the start: the empty kitchen.
+        /// State of the kitchen at the trial's start: empty.
         state: State,
     },
     /// Somebody other than the participant changes the kitchen: the robot, a new order, or the wizard's correction.
@@ -25,10 +25,10 @@ pub enum BeliefTraceEvent {
     },
     /// The gaze has rested on a location long enough to read its present content; noted once for each look and content.
     Looked {
-        /// The location that was looked at.
+        /// The location at which the participant looked.
         location: LocationId,
     },
-    /// A signal tells the true value of these state aspects.
+    /// A signal tells the participant the true value of these state aspects.
     Told {
         /// The state aspects that the signal is about.
         aspects: Vec<AspectId>,
@@ -37,7 +37,7 @@ pub enum BeliefTraceEvent {
     Pressed {
         /// Sequence number of the press in the log.
         seq: u64,
-        /// The press with the states before and after it.
+        /// The press with the states of the kitchen before and after it.
         press: Press,
     },
 }
@@ -56,7 +56,7 @@ impl BeliefTrace {
     /// Adds an event that has just been applied to the session.
     pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, session: &Session) {
         if !session.is_running() && change.states().is_none() {
-            // Participants do not read the display in a pause.
+            // Participants do not read the display during a pause, so looks end.
             self.looks.interrupted();
             return;
         }
@@ -96,7 +96,7 @@ impl BeliefTrace {
         }
     }
 
-    /// Whether the trial has any look; without gaze data it is unknown what the participant saw.
+    /// Whether the trial has any look of the participant; without gaze data it is unknown what the participant saw.
     pub fn has_looks(&self) -> bool {
         self.events.iter().any(|(_, event)| matches!(event, BeliefTraceEvent::Looked { .. }))
     }

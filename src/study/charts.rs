@@ -1,4 +1,4 @@
-//! Charts of the report, modelled on the figures of the paper.
+//! Charts of the study report, modelled on the figures of the paper.
 
 use maud::Markup;
 
@@ -13,8 +13,8 @@ use crate::communication::concept::ConceptName;
 use crate::measures::detection::CalibrationBin;
 use crate::session::study_arm::StudyArm;
 
-/// Chart of errors by condition and participant (after the paper's figure, top left); lines join a participant's two
-/// trials, means are black.
+/// Chart of errors by condition and participant (after the paper's figure, top left); lines join the two trials of a
+/// participant, means are black.
 pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
@@ -44,7 +44,7 @@ pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
 }
 
 /// Chart of improvements from the first to the second trial by starting group (after the paper's figure, top right);
-/// the difference of the means is twice the effect of assistance.
+/// the difference of the groups' means is twice the effect of assistance.
 pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     if pairs.is_empty() {
@@ -62,7 +62,7 @@ pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
         }
         if let Some(mean) = mean(of_group.iter().map(|pair| percent(pair.improvement()))) {
             chart.line("mean", &[(x - 0.25, mean), (x + 0.25, mean)]);
-            // A mean that rounds to 0.0 has no sign.
+            // A mean that rounds to 0.0 is written without a sign.
             let words = if mean.abs() < 0.05 { "0.0".to_string() } else { minus(&format!("{mean:+.1}")) };
             chart.words("strong", x + 0.25, mean, true, &words);
         }
@@ -71,7 +71,7 @@ pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
 }
 
 /// Chart of the time between presses of the human, in seconds, by trial and condition (after the paper's figure,
-/// bottom), which indicates experience.
+/// bottom); this time indicates experience.
 pub fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
     let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
     let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
@@ -104,7 +104,7 @@ pub fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
     Some(chart.finish("Seconds between presses by trial and condition"))
 }
 
-/// Length of the longest error sequences with a bar of their own; longer ones share the last bar.
+/// Length of the longest error sequences that have a bar of their own; longer sequences share the last bar.
 const LONGEST_BAR: usize = 12;
 
 /// Chart of the number of error sequences per trial by length and condition.
@@ -140,7 +140,7 @@ pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> 
     Some(chart.finish("Lengths of error sequences by condition"))
 }
 
-/// Chart of the receiver operating characteristics of the concepts, with confidence bands.
+/// Chart of the receiver operating characteristics (ROC) of the communication concepts, with confidence bands.
 pub fn roc(figures: &StudySummary) -> Option<Markup> {
     let points = || figures.roc.iter().flat_map(|roc| &roc.points);
     points().next()?;
@@ -157,7 +157,7 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
     Some(chart.finish("Receiver operating characteristics of communication concepts"))
 }
 
-/// Upper end of the axis for signals per 100 human presses; points beyond it are not drawn.
+/// Upper end of the axis for signals per 100 human presses; points beyond this end are not drawn.
 pub const MOST_SIGNALS: f64 = 25.0;
 
 /// Chart of prevented errors against signals per 100 human presses.
@@ -172,7 +172,7 @@ pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     Some(chart.finish("Errors prevented by number of signals"))
 }
 
-/// Draws the points of a concept with x up to `to`, and the line through them.
+/// Draws the points of a concept's curve with x up to `to`, and the line through these points.
 fn curve(chart: &mut SvgChart, roc: &ConceptRocCurve, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
     let class = class_of(roc.concept);
     let is_drawn = |point: &&RocPoint| of(point).0 <= to;
@@ -186,8 +186,8 @@ fn curve(chart: &mut SvgChart, roc: &ConceptRocCurve, to: f64, of: fn(&RocPoint)
     }
 }
 
-/// Calibration chart of the belief estimate, by answers to freeze probes; `None` if no prediction is in the calibrated
-/// range.
+/// Calibration chart of the belief estimate, by answers to freeze probes; `None` if no predicted probability is in the
+/// calibrated range.
 pub fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
     let filled: Vec<&CalibrationBin> = found.detection.calibration.bins.iter().filter(|bin| bin.n > 0).collect();
     filled.first()?;
@@ -204,7 +204,7 @@ pub fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
     Some(chart.finish("Calibration of the estimate by answers to probes"))
 }
 
-/// CSS class with the concept's colour.
+/// CSS class with the colour of the communication concept.
 pub fn class_of(concept: ConceptName) -> &'static str {
     match concept {
         ConceptName::TomCom => "tom-com",

@@ -1,6 +1,6 @@
 //! Columns of tables for other programs: one row per observation, one column per variable (Wickham 2014, "Tidy Data").
-//! Each column is declared once with name, unit, meaning and value; header line, rows and data dictionary are generated
-//! from the declaration.
+//! Each column is declared once with name, unit, meaning and value; the header line, the rows and the data dictionary
+//! are generated from these declarations.
 
 use std::borrow::Cow;
 
@@ -9,34 +9,34 @@ use serde::Serialize;
 /// Tables that the analysis of a study writes as CSV files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CsvTable {
-    /// A row for each participant.
+    /// Table with a row for each participant.
     Participants,
-    /// A row for each trial.
+    /// Table with a row for each trial.
     Trials,
-    /// A row for each answer to a questionnaire's item.
+    /// Table with a row for each answer to a questionnaire's item.
     Questionnaires,
-    /// A row for each question of a tutorial.
+    /// Table with a row for each question of a tutorial.
     Tutorial,
-    /// A row for each unassisted trial, concept and value of its parameter.
+    /// Table with a row for each unassisted trial, concept and value of the concept's parameter.
     Concepts,
-    /// A row for each press of the human or the robot.
+    /// Table with a row for each press of the human or the robot.
     Actions,
-    /// A row for each signal that was sent, or would have been.
+    /// Table with a row for each signal that was sent, or that a concept would have sent.
     Communications,
-    /// A row for each offer that a wizard could see.
+    /// Table with a row for each offer that a wizard could see.
     Offers,
-    /// A row for each press of the human and state aspect.
+    /// Table with a row for each press of the human and each state aspect.
     Beliefs,
-    /// A row for each run of gaze samples on one location.
+    /// Table with a row for each run of gaze samples on one location.
     Gaze,
-    /// A row for each question of a probe.
+    /// Table with a row for each question of a freeze probe.
     Probes,
-    /// A row for each column of every table: its unit and meaning.
+    /// Table with a row for each column of every table: the column's unit and meaning.
     Dictionary,
 }
 
 impl CsvTable {
-    /// All tables.
+    /// All CSV tables of a study.
     pub const ALL: [CsvTable; 12] = [
         CsvTable::Participants,
         CsvTable::Trials,
@@ -51,11 +51,11 @@ impl CsvTable {
         CsvTable::Probes,
         CsvTable::Dictionary,
     ];
-    /// Tables whose rows are events of a trial.
+    /// CSV tables whose rows are events of a trial.
     pub const OF_EVENTS: [CsvTable; 5] =
         [CsvTable::Actions, CsvTable::Communications, CsvTable::Offers, CsvTable::Beliefs, CsvTable::Gaze];
 
-    /// File name of the table without `.csv`.
+    /// File name of the CSV table without `.csv`.
     pub fn name(self) -> &'static str {
         match self {
             CsvTable::Participants => "participants",
@@ -74,15 +74,15 @@ impl CsvTable {
     }
 }
 
-/// Type from which the rows of a table are made.
+/// Type of a table's row, from which the row's cells are made.
 pub trait CsvRow: Sized {
-    /// Table that the row belongs to.
+    /// Table to which a row of this type belongs.
     const TABLE: CsvTable;
 
-    /// Columns of the table, in file order.
+    /// Columns of the table, in the order of the file.
     fn columns() -> Vec<CsvColumn<Self>>;
 
-    /// Declares a column with its name, unit (empty for none), meaning, and function from row to value.
+    /// Declares a column with its name, unit (empty for none), meaning, and the function from row to value.
     fn column(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,
@@ -92,7 +92,7 @@ pub trait CsvRow: Sized {
         CsvColumn { name: name.into(), unit, meaning: meaning.into(), value: Box::new(value) }
     }
 
-    /// Cells of this row, one per column.
+    /// Cells of this row of the table, one per column.
     fn cells(&self) -> Vec<CsvCell<'_>> {
         Self::columns().iter().map(|column| column.cell(self)).collect()
     }
@@ -102,7 +102,7 @@ pub trait CsvRow: Sized {
 pub struct CsvColumn<Row> {
     /// Name of the column.
     pub name: Cow<'static, str>,
-    /// Unit of the column; empty for none.
+    /// Unit of the column's values; empty if they have none.
     pub unit: &'static str,
     /// Meaning of the column, for the data dictionary.
     pub meaning: Cow<'static, str>,
@@ -110,13 +110,13 @@ pub struct CsvColumn<Row> {
 }
 
 impl<Row> CsvColumn<Row> {
-    /// Value of the column in a row.
+    /// Value of the column in a row of the table.
     pub fn cell<'a>(&self, row: &'a Row) -> CsvCell<'a> {
         (self.value)(row)
     }
 }
 
-/// Value of one table column in one row.
+/// Value of one column of a table in one row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum CsvCell<'a> {

@@ -1,4 +1,4 @@
-//! Data dictionary of all table columns, generated from their declarations.
+//! Data dictionary of all columns of the study's tables, generated from the columns' declarations.
 
 use std::borrow::Cow;
 
@@ -18,13 +18,13 @@ use super::trial_statistics::TrialStatistics;
 /// Data dictionary entry of one table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataDictionaryRow {
-    /// Table of the column.
+    /// Table that has the column.
     pub table: CsvTable,
     /// Name of the column.
     pub column: Cow<'static, str>,
-    /// Unit of the column; empty for none.
+    /// Unit of the column's values; empty if they have none.
     pub unit: &'static str,
-    /// Meaning of the column.
+    /// Meaning of the column, in words.
     pub meaning: Cow<'static, str>,
 }
 

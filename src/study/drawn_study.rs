@@ -1,11 +1,11 @@
-//! Studies drawn from a pool of simulated participants: each participant is drawn with replacement, with all of their
-//! trials.
+//! Studies drawn from a pool of simulated participants: each participant is drawn with replacement, with all trials of
+//! that participant.
 //!
 //! Two kinds of study are drawn. *As simulated*: participants are drawn within their order of arms, with what they did
 //! in these arms. *With a ratio*: participants are drawn from the whole pool with what they did without signals, and
 //! are assigned to the study's orders, so that arms are exchangeable within every participant; each event in an arm
-//! other than the reference is then kept with a probability equal to the ratio (binomial thinning), and presses stay.
-//! With the ratio 1, the null hypothesis holds exactly, even in a small pool.
+//! other than the reference is then kept with a probability equal to the ratio (binomial thinning), and presses are not
+//! changed. With the ratio 1, the null hypothesis holds exactly, even in a small pool.
 //!
 //! The random stream is named by size, pool and number of the study, not by the ratio: with a smaller ratio, the same
 //! participants have a subset of the same events.
@@ -22,16 +22,17 @@ use crate::base::rng::{Stream, stream};
 use crate::session::plan::orders;
 use crate::session::study_arm::StudyArm;
 
-/// Least number of participants in each order of arms: drawing from a single one would give no variance between
+/// Least number of participants in each order of arms: drawing from a single participant would give no variance between
 /// participants.
 const FEWEST: usize = 2;
 
 /// Effect of the arms in the studies that are drawn from a pool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnEffect {
-    /// The effect that the arms had in the simulation.
+    /// The arms of drawn studies have the effect that they had in the simulation.
     AsSimulated,
-    /// Ratio of the rate of events in every arm but the reference to the unassisted rate: above 0, at most 1.
+    /// The arms of drawn studies get this ratio of the rate of events (in every arm but the reference) to the
+    /// unassisted rate: above 0, at most 1.
     Ratio(f64),
 }
 
@@ -48,30 +49,30 @@ pub enum SignificanceTestMethod {
 /// A statistical test of one study arm against another, whose power is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PowerTest {
-    /// Statistical method by which the test is computed.
+    /// Statistical method that computes the test.
     pub method: SignificanceTestMethod,
     /// Study arm that is tested.
     pub arm: StudyArm,
-    /// Study arm that it is tested against.
+    /// Study arm against which `arm` is tested.
     pub against: StudyArm,
 }
 
 /// Result of one test in one drawn study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignificanceTestResult {
-    /// Two-sided p value, corrected for the number of contrasts.
+    /// Two-sided p value, corrected for the number of contrasts in the study.
     pub p: f64,
-    /// Two-sided p value without the correction.
+    /// Two-sided p value without the correction for several contrasts.
     pub p_uncorrected: f64,
 }
 
-/// The reference arm that all others are compared with: the one without signals, or else the first in the order of
+/// The reference arm with which all other arms are compared: the arm without signals, or else the first in the order of
 /// tables.
 pub fn reference(conditions: &[StudyArm]) -> StudyArm {
     StudyArm::ALL.into_iter().find(|arm| conditions.contains(arm)).unwrap_or_default()
 }
 
-/// Tests of a study with these conditions, the primary one first. With two conditions of which one is unassisted: the
+/// Tests of a study with these conditions, the primary test first. With two conditions of which one is unassisted: the
 /// paper's test, then the contrast of the mixed model; otherwise the contrasts of the mixed model.
 pub fn tests(conditions: &[StudyArm]) -> Vec<PowerTest> {
     let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
@@ -116,16 +117,16 @@ fn papers_p(study: &[StudyArmTrial]) -> Option<f64> {
 #[derive(Clone, Debug)]
 pub struct StudySampler<'a> {
     pool: &'a SimulationPool,
-    /// Orders of arms in the plan's design.
+    /// Orders in which the plan's design assigns the arms.
     orders: Vec<Vec<StudyArm>>,
-    /// Indices of participants, for each order.
+    /// Indices of the pool's participants, for each order of arms.
     by_order: Vec<Vec<usize>>,
     /// Number of the bootstrap resample of the pool; 0 is the pool itself.
     number: u64,
 }
 
 impl<'a> StudySampler<'a> {
-    /// All participants of a pool.
+    /// A sampler over all participants of a pool.
     ///
     /// # Errors
     /// An order of the conditions has too few participants; the error says how many.
@@ -153,8 +154,8 @@ impl<'a> StudySampler<'a> {
         StudySampler { by_order: self.by_order.iter().map(again).collect(), number, ..self.clone() }
     }
 
-    /// Study `number` with `size` participants: one row per trial, ordered by participant and period. Orders of arms
-    /// are as equally frequent as the size allows. Empty if the pool was not simulated for this effect.
+    /// Study with the number `number` and `size` participants: one row per trial, ordered by participant and period.
+    /// Orders of arms are as equally frequent as the size allows. Empty if the pool was not simulated for this effect.
     pub fn study(&self, size: usize, effect: DrawnEffect, number: u64) -> Vec<StudyArmTrial> {
         let name = format!("study of {size} from pool {}", self.number);
         let mut random = stream(self.pool.header.seed, &name, number);
@@ -173,7 +174,7 @@ impl<'a> StudySampler<'a> {
         study
     }
 
-    /// Trial with this index of a drawn participant, in this order of arms.
+    /// Trial with this index of a drawn participant, who has this order of arms.
     fn trial(
         &self,
         (participant, person): (usize, usize),
@@ -201,7 +202,7 @@ impl<'a> StudySampler<'a> {
     }
 }
 
-/// Draws one of these simulated participants.
+/// Draws one of these simulated participants at random.
 fn drawn(persons: &[usize], random: &mut Stream) -> usize {
     persons[random.random_range(0..persons.len())]
 }

@@ -23,32 +23,32 @@ pub struct TrialPair {
     pub participant: String,
     /// Whether the second trial is the assisted one.
     pub assisted_second: bool,
-    /// Values of the measure in the first and in the second trial; lower is better.
+    /// Values of the measure in the participant's first and second trial; lower is better.
     pub values: [f64; 2],
 }
 
 impl TrialPair {
-    /// Improvement from the first to the second trial: first value minus second value.
+    /// Improvement of the participant from the first to the second trial: first value minus second value.
     pub fn improvement(&self) -> f64 {
         self.values[0] - self.values[1]
     }
 
-    /// Values of the unassisted and of the assisted trial, in this order.
+    /// Values of the measure in the unassisted and in the assisted trial, in this order.
     pub fn by_condition(&self) -> [f64; 2] {
         if self.assisted_second { self.values } else { [self.values[1], self.values[0]] }
     }
 }
 
-/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. It is a column of
-/// the table of trials, two columns of the table of participants, and a line of the report's tests.
+/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. The measure is a
+/// column of the table of trials, two columns of the table of participants, and a line of the report's tests.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyMeasure {
-    /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and
-    /// `_2`.
+    /// Name of the measure: its column in the table of trials, and its key in the summary; the table of participants
+    /// adds the suffixes `_1` and `_2`.
     pub name: &'static str,
-    /// Unit of the measure's columns.
+    /// Unit of the columns with the measure.
     pub unit: &'static str,
-    /// Definition of the measure for the data dictionary; empty if the unit suffices.
+    /// Definition of the measure for the data dictionary; empty if the unit says enough.
     pub meaning: &'static str,
     /// Meaning of the columns `_1` and `_2` in the table of participants; `{}` stands for "first" or "second".
     pub meaning_in: &'static str,
@@ -56,11 +56,11 @@ pub struct StudyMeasure {
     pub title: &'static str,
     /// Number of decimals of the measure in the report.
     pub digits: usize,
-    /// Value of the measure for a trial; `None` if the trial does not have it.
+    /// Value of the measure for a trial; `None` if the trial has no such value.
     pub value: fn(&TrialStatistics) -> Option<f64>,
 }
 
-/// Measures are equal if their names are; names are unique, since they are columns of one table.
+/// Two measures are equal if their names are; names are unique, since they are columns of one table.
 impl PartialEq for StudyMeasure {
     fn eq(&self, other: &StudyMeasure) -> bool {
         self.name == other.name
@@ -76,16 +76,16 @@ impl Serialize for StudyMeasure {
 /// Estimates and tests of the effect of assistance on one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssistanceEffect {
-    /// Measure that is compared between assisted and unassisted trials.
+    /// Measure on which assisted and unassisted trials are compared.
     pub measure: StudyMeasure,
-    /// Number of participants whose second trial was assisted, and number of those whose first trial was.
+    /// Number of participants whose second trial was assisted, and number of participants whose first trial was.
     pub groups: [usize; 2],
     /// Mean improvement of each starting group from the first to the second trial.
     pub improvements: [Option<f64>; 2],
-    /// Mixed analysis of variance: period within, starting group between; assistance is the interaction.
+    /// Mixed analysis of variance with period within and starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
-    /// Mixed analysis of variance in the paper's coding: condition within, starting group between; assistance is the
-    /// within factor.
+    /// Mixed analysis of variance in the paper's coding, with condition within and starting group between; assistance
+    /// is the factor within.
     pub by_condition: MixedAnova,
     /// Correlation of starting group (1: assisted second) and improvement; positive if assistance helps.
     pub pearson: Option<Correlation>,
@@ -111,7 +111,7 @@ impl AssistanceEffect {
 
 /// Pairs of one assisted and one unassisted trial that the analysis includes and that have this measure, in the order
 /// of participant codes. If a participant repeated a period, its last trial counts. Empty where the trials have more
-/// than two arms, which are compared together ([`super::arm_comparison`]).
+/// than two arms, which are compared together instead ([`super::arm_comparison`]).
 pub fn pairs(trials: &[TrialStatistics], measure: StudyMeasure) -> Vec<TrialPair> {
     let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.study_arm).collect();
     arms.sort_unstable();
@@ -139,7 +139,7 @@ fn pair(code: &str, trials: &[TrialStatistics], measure: StudyMeasure) -> Option
     Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
-/// Computes the effect of assistance on a measure; `seed` seeds the sampled permutations.
+/// Computes the effect of assistance on a measure; `seed` seeds the random permutations.
 pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> AssistanceEffect {
     let group = |pair: &TrialPair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Settings and circumstances of recordings, for the report's methods paragraph.
+//! Settings and circumstances of recordings, for the paragraph on methods in the report.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, 
 use crate::session::{LogHeader, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
-/// Settings and circumstances by key, from one or several recordings; every value that occurred is kept.
+/// Settings and circumstances by name (key), from one or several recordings; every value that occurred is kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RecordingFacts {
     found: BTreeMap<String, BTreeSet<String>>,
@@ -74,7 +74,7 @@ impl RecordingFacts {
         }
     }
 
-    /// All values of a key as text; `None` if it has none.
+    /// All values of a setting or circumstance as text; `None` if there are none.
     pub fn all(&self, key: &str) -> Option<String> {
         let values: Vec<&str> = self.found.get(key)?.iter().map(String::as_str).collect();
         let (last, others) = values.split_last()?;
@@ -84,13 +84,13 @@ impl RecordingFacts {
         })
     }
 
-    /// Whether a key has a value.
+    /// Whether a setting or circumstance has a value.
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
     }
 }
 
-/// Parameters as text, by their names in session files.
+/// Parameters of a setting as text, by their names in session files.
 fn parameters(of: &impl Serialize) -> String {
     let mut all = Vec::new();
     // Parameters are numbers, and lists and tables of numbers, which can always be serialised.

@@ -1,4 +1,4 @@
-//! Summary of a study: the statistics that `tomcom study` prints and the report shows.
+//! Summary of a study: the statistics that `tomcom study` prints and that the report shows.
 
 use std::collections::BTreeMap;
 
@@ -31,17 +31,17 @@ use crate::session::event::TrialEndReason;
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::study_arm::StudyArm;
 
-/// Seed of sampled permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
+/// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;
 
 /// Summary of a study, as `tomcom study` prints it. Unknown values are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudySummary {
-    /// Title of the report.
+    /// Title of the study report.
     pub title: String,
     /// Whether any participant was simulated.
     pub simulated_participants: bool,
-    /// Number of trials in the analysis.
+    /// Number of trials that the analysis counts.
     pub trials: u64,
     /// Number of participants with at least one trial in the analysis.
     pub participants: u64,
@@ -50,9 +50,9 @@ pub struct StudySummary {
     pub totals: TrialTotals,
     /// Number of trials by the reason why they ended.
     pub ended: BTreeMap<TrialEndReason, u64>,
-    /// Counts of robot events by kind of robot arm.
+    /// Counts of robot events, by kind of robot arm.
     pub robot: Vec<RobotArmGroup>,
-    /// Agreement of the study with its frozen plan; absent if none was given.
+    /// Agreement of the study with its frozen (preregistered) plan; absent if no frozen plan was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preregistration: Option<PreregistrationCheck>,
     /// Summary of the trials in each condition.
@@ -61,29 +61,29 @@ pub struct StudySummary {
     pub anova: Option<FTest>,
     /// Correlation of the starting group with the improvement in errors per press of the human.
     pub pearson: Option<Correlation>,
-    /// Two-sided p value of a permutation test comparing that improvement between the starting groups.
+    /// Two-sided p value of a permutation test that compares the improvement in errors between the starting groups.
     pub permutation_p: Option<f64>,
     /// Effects of assistance on all compared measures, starting with errors per press.
     pub effects: Vec<AssistanceEffect>,
     /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
     /// arms.
     pub arms: Option<StudyArmComparison>,
-    /// The receiver operating characteristic of each concept.
+    /// The receiver operating characteristic (ROC) of each communication concept.
     pub roc: Vec<ConceptRocCurve>,
     /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
     /// share trials.
     pub live: Vec<LiveStudyArm>,
-    /// Source of what participants believed in the trials for the comparison of concepts; with several, the least
-    /// reliable.
+    /// Source of what participants believed in the trials for the comparison of concepts; of several sources, the least
+    /// reliable one.
     pub roc_beliefs_from: Option<BeliefSource>,
     /// Number of participants in the comparison of concepts.
     pub roc_participants: u64,
     /// Number of unassisted trials in the comparison of concepts.
     pub roc_trials: u64,
-    /// Largest false positive rate that all concepts reach.
+    /// Largest false positive rate that all compared concepts reach.
     pub roc_common_fpr: Option<f64>,
-    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones, over trials in which the
-    /// wizard did not see the assistant's recommendations; null without such trials.
+    /// Similarity of the wizard's signals (first lane) and the signals that the assistant would have sent, over trials
+    /// in which the wizard did not see the assistant's recommendations; null without such trials.
     pub similarity: Option<Similarity>,
     /// Similarity over trials in which the wizard saw the assistant's recommendations, which are not part of
     /// `similarity`; null without such trials.
@@ -92,8 +92,8 @@ pub struct StudySummary {
     pub similarity_by_trial: Vec<TrialSimilarity>,
     /// Performance of the wizards, over all trials with a wizard.
     pub wizard: Option<WizardMeasures>,
-    /// Source of what participants believed in the trials with a wizard; with several, the least reliable. Null where
-    /// `wizard` has no hits.
+    /// Source of what participants believed in the trials with a wizard; of several sources, the least reliable one.
+    /// Null where `wizard` has no hits.
     pub wizard_beliefs_from: Option<BeliefSource>,
     /// Offers that wizards could see in trials in which they could send signals; null without such offers.
     pub offers: Option<OfferSummary>,
@@ -101,9 +101,9 @@ pub struct StudySummary {
     pub acceptance: Option<Acceptance>,
     /// Answers to questionnaires, by item and condition.
     pub questionnaires: Vec<ItemSummary>,
-    /// Scores of those questionnaires that define one, by condition.
+    /// Scores of the questionnaires that define a score, by condition.
     pub questionnaire_scores: Vec<ScoreSummary>,
-    /// Answers to the questions of tutorials; absent if none was answered.
+    /// Answers to the questions of tutorials; absent if no question was answered.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<TutorialSummary>,
     /// Results of freeze probes: what participants knew, and the accuracy of the estimate; absent without answers.
@@ -115,11 +115,11 @@ pub struct StudySummary {
     pub shared_beliefs: Option<FalseBeliefAgreement>,
     /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
     pub consensus: BTreeMap<String, u64>,
-    /// Consensus codes that are ignored, since a rater changed a code afterwards.
+    /// Consensus codes of two raters that are ignored, since a rater changed a code afterwards.
     pub stale_consensus: Vec<StaleConsensus>,
-    /// Trials that are excluded from the analysis, with the reasons.
+    /// Trials that are excluded from the analysis, each with the reason.
     pub left_out: Vec<ExcludedTrial>,
-    /// Number of practice recordings, which are not analysed as trials.
+    /// Number of practice recordings (familiarisations), which are not analysed as trials.
     pub practice: u64,
 }
 
@@ -128,12 +128,12 @@ pub struct StudySummary {
 pub struct StudyConditionSummary {
     /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
     pub condition: StudyArm,
-    /// Number of trials.
+    /// Number of trials in the condition.
     pub trials: u64,
-    /// Sums and means over the trials.
+    /// Sums and means over the trials of the condition.
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// Mean number of errors per trial.
+    /// Mean number of the human's errors per trial.
     pub mean_errors: Option<f64>,
     /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
     pub mean_order_s: Option<f64>,
@@ -141,28 +141,28 @@ pub struct StudyConditionSummary {
     pub mean_additional_presses_per_order: Option<f64>,
     /// Mean over trials of the median time between presses of the human, in seconds.
     pub mean_press_s: Option<f64>,
-    /// Number of error sequences by their length: with 1, 2, 3, … errors.
+    /// Number of error sequences by their length: sequences with 1, 2, 3, … errors.
     pub sequence_lengths: Vec<u64>,
 }
 
 /// Similarity of wizard and assistant in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialSimilarity {
-    /// The recording's folder.
+    /// Folder of the trial's recording.
     pub recording: String,
     /// Whether the wizard saw the assistant's recommendations.
     pub wizard_saw_advice: bool,
-    /// Number of signals of the wizard.
+    /// Number of signals that the wizard sent in the trial.
     pub of_n: u64,
-    /// Number of the assistant's hypothetical communications.
+    /// Number of communications that the assistant would have sent in the trial.
     pub with_n: u64,
-    /// Number of communications of both with the same signal and target (matches).
+    /// Number of communications of both senders with the same signal and target (matches).
     pub matched: u64,
     /// The share of the wizard's signals that have a match.
     pub recall: Option<f64>,
 }
 
-/// A consensus of two raters that no longer holds, since a code changed.
+/// A consensus of two raters that no longer holds, since one of them changed a code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StaleConsensus {
     /// Folder of the recording.
@@ -174,11 +174,11 @@ pub struct StaleConsensus {
 /// A trial that is excluded from the analysis, with the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcludedTrial {
-    /// The recording's folder.
+    /// Folder of the excluded trial's recording.
     pub recording: String,
     /// The participant's code.
     pub participant: String,
-    /// Reason for the exclusion.
+    /// Reason for excluding the trial.
     pub reason: String,
 }
 
@@ -247,7 +247,7 @@ impl StudySummary {
         }
     }
 
-    /// Adds the study's agreement with its frozen plan, if one was given.
+    /// Adds the study's agreement with its frozen plan, if a frozen plan was given.
     pub fn with_preregistration(self, preregistration: Option<PreregistrationCheck>) -> StudySummary {
         StudySummary { preregistration, ..self }
     }
@@ -269,12 +269,12 @@ fn probed<'a>(trials: &[&'a TrialStatistics]) -> impl Iterator<Item = (&'a str, 
     trials.iter().filter_map(|trial| Some((trial.participant.as_str(), trial.probes.as_ref()?)))
 }
 
-/// The least reliable source of beliefs among these trials.
+/// The least reliable source of participants' beliefs among these trials.
 fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> Option<BeliefSource> {
     trials.filter_map(|trial| trial.beliefs.as_ref()).map(|beliefs| beliefs.basis).max()
 }
 
-/// Summary of the offers in wizard trials; `None` if there was none.
+/// Summary of the offers in wizard trials; `None` if no trial had offers.
 fn offers(trials: &[&TrialStatistics]) -> Option<OfferSummary> {
     let wizards = trials.iter().filter(|trial| trial.condition == Condition::Wizard);
     let all: Vec<&TimedOffer> = wizards.filter_map(|trial| trial.offers.as_ref()).flatten().collect();
@@ -312,7 +312,7 @@ fn conditions(trials: &[&TrialStatistics]) -> Vec<StudyConditionSummary> {
     StudyArm::ALL.into_iter().filter_map(of).collect()
 }
 
-/// Compares concepts over the trials in which they were evaluated; the trials are ordered by participant.
+/// Compares concepts over the trials in which concepts were evaluated; the trials are ordered by participant.
 fn concepts(trials: &[&TrialStatistics]) -> ConceptComparison {
     let tried: Vec<&TrialStatistics> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
     let of_participant = |of_one: &[&TrialStatistics]| {
@@ -352,7 +352,7 @@ fn similarity_of_trial(trial: &TrialStatistics) -> Option<TrialSimilarity> {
     Some(TrialSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
 }
 
-/// Number of trials with the consensus of two raters, by pair of raters.
+/// Number of trials that use the consensus of two raters, by pair of raters.
 fn consensus(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
     let mut settled = BTreeMap::new();
     for raters in trials.iter().filter_map(|trial| trial.settled_by.as_ref()) {
@@ -366,7 +366,7 @@ fn stale(trial: &TrialStatistics) -> Option<StaleConsensus> {
     Some(StaleConsensus { recording: trial.recording.clone(), reason })
 }
 
-/// Agreement of the raters over all trials.
+/// Agreement of the raters' codes over all trials.
 fn agreement(trials: &[&TrialStatistics]) -> Option<RaterAgreement> {
     let mut table = AgreementTable::default();
     let coded: Vec<&[RaterCodes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();

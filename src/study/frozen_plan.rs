@@ -1,4 +1,4 @@
-//! The frozen plan of a study (preregistration): study plan, definitions of the measures, and analysis, as written
+//! The frozen plan of a study (preregistration): study plan, definitions of the measures, and analysis, as written down
 //! before the study begins.
 
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ const METHODS: [&str; 5] = [
     "Non-inferiority of an assistant to the wizard: the upper end of the one-sided interval of 97.5 % of the ratio of rates is below the margin.",
 ];
 
-/// A term of the report with its definition, as it is frozen.
+/// A term of the report with its definition, as the frozen plan has it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenDefinition {
@@ -47,15 +47,15 @@ pub struct FrozenDefinition {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenAnalysis {
-    /// Version of the program that does the analysis.
+    /// Version of the program that will do the analysis.
     pub program: String,
     /// Primary outcome of the study.
     pub outcome: PrimaryOutcome,
-    /// Contrasts: each an arm, and the arm that it is compared with.
+    /// Contrasts that the analysis computes: each an arm, and the arm with which it is compared.
     pub contrasts: Vec<[StudyArm; 2]>,
-    /// Margin of non-inferiority, as a ratio of rates.
+    /// Margin of non-inferiority, as a ratio of rates (assistant to wizard).
     pub margin: f64,
-    /// Confidence level of the analysis's intervals.
+    /// Confidence level of the intervals in the analysis.
     pub level: f64,
     /// Statistical methods that compare the conditions.
     pub methods: Vec<String>,
@@ -67,11 +67,11 @@ pub struct FrozenAnalysis {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenPlan {
-    /// Version of the file format.
+    /// Version of the file format of frozen plans.
     pub frozen_plan: u32,
     /// Name of the study plan.
     pub plan: String,
-    /// Checksum of plan and settings, which every recording of the plan contains.
+    /// Checksum of study plan and settings, which every recording of the plan contains.
     pub plan_digest: String,
     /// Seed from which starting groups and trials follow.
     pub seed: u64,
@@ -81,11 +81,11 @@ pub struct FrozenPlan {
     pub groups: Vec<String>,
     /// Number of recordings of the plan that existed when the plan was frozen.
     pub recordings_before: u64,
-    /// The analysis, as frozen.
+    /// The analysis of the study, as frozen before the study.
     pub analysis: FrozenAnalysis,
-    /// Definitions of the report's terms, as frozen.
+    /// Definitions of the report's terms, as frozen before the study.
     pub definitions: Vec<FrozenDefinition>,
-    /// The table `[plan]`, the settings of its trials, and the questionnaires, tutorial and kitchen files.
+    /// The table `[plan]`, the settings of the plan's trials, and the questionnaires, tutorial and kitchen files.
     pub settings: Value,
 }
 

@@ -1,4 +1,4 @@
-//! Starting groups of a study with their orders of conditions, which the letters of a group's name stand for.
+//! Starting groups of a study with their orders of conditions; the letters of a group's name stand for conditions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,15 +7,15 @@ use serde::Serialize;
 use super::trial_statistics::TrialStatistics;
 use crate::session::study_arm::StudyArm;
 
-/// A starting group with its order of conditions, as its trials show it.
+/// A starting group with its order of conditions, as the group's trials show it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct GroupOrder {
-    /// Name of the group, with a letter for each trial: "BAC".
+    /// Name of the starting group, with a letter for each trial: "BAC".
     pub group: String,
-    /// Condition of each trial, from the plan if there is one, otherwise from what was done; `None` for a missing
-    /// trial.
+    /// Condition of each trial of the group: from the plan if there is one, otherwise as carried out; `None` for a
+    /// missing trial.
     pub order: Vec<Option<StudyArm>>,
-    /// Number of participants in the group.
+    /// Number of participants in the starting group.
     pub participants: usize,
 }
 
@@ -37,7 +37,7 @@ pub fn group_orders(trials: &[&TrialStatistics]) -> Vec<GroupOrder> {
 }
 
 impl GroupOrder {
-    /// The group as text: "BAC: wizard, unassisted, ToM-Com (2)".
+    /// The starting group as text: "BAC: wizard, unassisted, ToM-Com (2)".
     pub fn describe(&self) -> String {
         let order: Vec<&str> = self.order.iter().map(|arm| arm.map_or("?", StudyArm::title)).collect();
         format!("{}: {} ({})", self.group, order.join(", "), self.participants)

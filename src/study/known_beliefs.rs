@@ -18,27 +18,27 @@ use crate::measures::sequences::FalseBeliefEpisode;
 /// Known false beliefs of a participant in one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownFalseBeliefs {
-    /// Source of the false beliefs: recorded beliefs, or raters.
+    /// Source from which the false beliefs are known: recorded beliefs, or raters.
     pub basis: BeliefSource,
-    /// Target of the false belief behind each error that follows from one, by sequence number of the press.
+    /// For each error that follows from a false belief, the belief's target, by sequence number of the press.
     pub targets: BTreeMap<u64, FalseBeliefTarget>,
-    /// False belief episodes; for people, only those that led to errors.
+    /// False belief episodes of the trial; for people, only episodes that led to errors.
     pub episodes: Vec<FalseBeliefEpisode>,
 }
 
-/// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes of each alone.
+/// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes that each gave alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FalseBeliefAgreement {
     /// Number of errors that both raters attribute to the same false belief.
     pub same: u64,
     /// Number of errors that the raters attribute to different false beliefs.
     pub differing: u64,
-    /// Number of errors that only one of the raters attributes to a false belief.
+    /// Number of errors that only one of the two raters attributes to a false belief.
     pub of_one: u64,
 }
 
 impl KnownFalseBeliefs {
-    /// The false beliefs that a simulated participant recorded; `judged` are the participant's presses.
+    /// The false beliefs that a simulated participant recorded; `judged` are the participant's judged presses.
     pub fn recorded(judged: &[JudgedPress], episodes: Vec<FalseBeliefEpisode>) -> KnownFalseBeliefs {
         let target = |press: &JudgedPress| match press.cause {
             Some(ErrorCause::Belief { target, .. }) => Some((press.seq, target)),
@@ -78,7 +78,7 @@ impl KnownFalseBeliefs {
 }
 
 impl FalseBeliefAgreement {
-    /// Counts the agreement over errors that both raters coded.
+    /// Counts the agreement of two raters over errors that both coded.
     pub fn count([one, other]: &[RaterCodes; 2]) -> FalseBeliefAgreement {
         let mut shared = FalseBeliefAgreement::default();
         for (press, code) in &one.0 {

@@ -4,8 +4,8 @@
 //! The criterion is profiled over the ratio of the variances (Bates et al. 2015, Journal of Statistical Software 67,
 //! section 3), so that the search is one-dimensional. Degrees of freedom follow from the observed information of the
 //! two variances (Kuznetsova, Brockhoff and Christensen 2017, Journal of Statistical Software 82, section 2); where the
-//! participants' variance is estimated as zero, they are those of the residuals. `tests/outside/arms.py` compares
-//! everything with statsmodels and, where they are installed, with lme4 and lmerTest.
+//! participants' variance is estimated as zero, they are those of the residuals. `tests/outside/arms.py` compares all
+//! results with statsmodels and, where they are installed, with lme4 and lmerTest.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -25,7 +25,7 @@ pub struct MixedModelMeasurement {
     pub participant: usize,
     /// Row of fixed effects in the design matrix.
     pub effects: Vec<f64>,
-    /// The measured value.
+    /// The measured value of the dependent variable.
     pub value: f64,
 }
 
@@ -40,7 +40,7 @@ pub struct LinearMixedModel {
     pub between: f64,
     /// Variance of the residuals within participants.
     pub within: f64,
-    /// V^-1 X, with one row per measurement.
+    /// The product V^-1 X, with one row per measurement.
     weighted: DMatrix<f64>,
     /// Index of the participant, for each measurement.
     participants: Vec<usize>,
@@ -57,21 +57,21 @@ pub struct MixedModelContrast {
     pub standard_error: f64,
     /// Satterthwaite's degrees of freedom of the t test.
     pub df: f64,
-    /// Estimate divided by its standard error.
+    /// t statistic: the estimate divided by its standard error.
     pub t: f64,
     /// Two-sided p value of the t test.
     pub p: f64,
 }
 
 impl MixedModelContrast {
-    /// Confidence interval of the estimate; `level` is between 0 and 1.
+    /// Confidence interval of the estimate; the confidence level `level` is between 0 and 1.
     pub fn interval(&self, level: f64) -> [f64; 2] {
         let quantile = StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + level / 2.0));
         let half = quantile * self.standard_error;
         [self.estimate - half, self.estimate + half]
     }
 
-    /// One-sided p value for the estimate being below `bound`.
+    /// One-sided p value for the hypothesis that the estimate is below `bound`.
     pub fn p_below(&self, bound: f64) -> f64 {
         let t = (self.estimate - bound) / self.standard_error;
         StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |distribution| distribution.cdf(t))
@@ -80,12 +80,12 @@ impl MixedModelContrast {
 
 /// Sums over the measurements, from which the REML criterion follows for every ratio of variances.
 struct Sums {
-    /// Number of measurements.
+    /// Number of measurements, as a float.
     n: f64,
     xx: DMatrix<f64>,
     xy: DVector<f64>,
     yy: f64,
-    /// For each participant: number of measurements, and sums of effects and values.
+    /// For each participant: number of measurements, and sums of effects and of values.
     groups: Vec<(f64, DVector<f64>, f64)>,
 }
 
@@ -94,9 +94,9 @@ struct Solution {
     estimates: DVector<f64>,
     /// Unscaled covariance of the fixed effects: (X' W^-1 X)^-1, with W = V / v.
     inverse: DMatrix<f64>,
-    /// Variance of the residuals.
+    /// Variance of the residuals within participants.
     within: f64,
-    /// REML criterion, up to a constant.
+    /// REML criterion (deviance), up to a constant.
     deviance: f64,
 }
 
@@ -125,7 +125,7 @@ impl Sums {
     }
 
     /// Solves for one ratio gamma of variances: W^-1 subtracts, from each participant's block, gamma / (1 + n gamma)
-    /// times its sums.
+    /// times the block's sums.
     fn solve(&self, ratio: f64) -> Option<Solution> {
         let (mut xx, mut xy, mut yy, mut log_det) = (self.xx.clone(), self.xy.clone(), self.yy, 0.0);
         for (n, x, y) in &self.groups {
@@ -139,7 +139,7 @@ impl Sums {
         let estimates = factor.solve(&xy);
         let df = self.n - xy.len() as f64;
         let within = (yy - estimates.dot(&xy)) / df;
-        // Without residual variance the criterion is undefined: the fixed effects explain the values completely.
+        // Without residual variance the criterion is undefined, since the fixed effects explain the values completely.
         let is_noise = within > 1e-12 * (self.yy / self.n).max(f64::MIN_POSITIVE);
         let deviance = df * within.ln() + log_det + 2.0 * factor.l().diagonal().map(f64::ln).sum();
         is_noise.then(|| Solution { estimates, inverse: factor.inverse(), within, deviance })
@@ -177,8 +177,8 @@ fn golden_section(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f6
 }
 
 impl LinearMixedModel {
-    /// Fits the model by REML; `None` if the fixed effects are collinear, or no degrees of freedom are left for the
-    /// variances.
+    /// Fits the mixed model by REML; `None` if the fixed effects are collinear, or no degrees of freedom are left for
+    /// the variances.
     pub fn fit(measurements: &[MixedModelMeasurement]) -> Option<LinearMixedModel> {
         let effects = measurements.first()?.effects.len();
         let sums = Sums::new(measurements);
@@ -216,7 +216,7 @@ impl LinearMixedModel {
         })
     }
 
-    /// Linear combination of the fixed effects with these weights.
+    /// Contrast: the linear combination of the model's fixed effects with these weights.
     pub fn contrast(&self, weights: &[f64]) -> Option<MixedModelContrast> {
         let weights = DVector::from_column_slice(weights);
         let estimate = weights.dot(&self.estimates);

@@ -1,9 +1,10 @@
 //! Concepts that sent signals by themselves in simulated trials, compared with each other and with what the analysis of
-//! unassisted trials (offline) predicts for them.
+//! unassisted trials (offline) predicts for the concepts.
 //!
-//! Arms are compared over the trials that all of them have: the same seed, participant and period. In such trials
-//! orders, participants and random streams are the same, so the differences are within a trial. Offline, a signal
-//! changes nothing that follows; live, the trial continues differently after a signal, so the two columns differ.
+//! Arms are compared over the trials that all arms have: the same seed, participant and period. In such trials orders,
+//! participants and random streams are the same, so the differences are within a trial. Offline, a signal changes
+//! nothing that follows; live, the trial continues differently after a signal, so the predicted and the live results
+//! differ.
 
 use std::collections::BTreeSet;
 
@@ -14,38 +15,38 @@ use super::roc::ConceptRocCurve;
 use super::trial_statistics::{TrialStatistics, mean_length};
 use crate::session::settings::ParticipantKind;
 
-/// Results of one sender of signals over the simulated trials that all arms have.
+/// Results of one sender of signals over the simulated trials that all compared arms have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LiveStudyArm {
-    /// Sender of the signals, with the parameter of its concept.
+    /// Sender of the signals, with the parameter of the sender's concept.
     #[serde(flatten)]
     pub arm: ActingStudyArm,
-    /// Number of trials.
+    /// Number of trials that are compared.
     pub trials: u64,
     /// Errors that follow from false beliefs, per 100 presses of the human.
     pub belief_related_per_100: Option<f64>,
-    /// Sequences of such errors per 100 presses of the human.
+    /// Error sequences (errors from the same false belief) per 100 presses of the human.
     pub sequences_per_100: Option<f64>,
     /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
-    /// Number of orders served.
+    /// Number of orders served in the trials.
     pub orders: u64,
-    /// Orders served per minute.
+    /// Orders served per minute of the trials.
     pub orders_per_minute: Option<f64>,
     /// Interruptions by signals per 100 presses of the human; a proposal of several presses is one interruption.
     pub interruptions_per_100: Option<f64>,
-    /// Contents of signals per 100 presses of the human; a proposal of k presses has k contents.
+    /// Pieces of content that signals told per 100 presses of the human; a proposal of k presses has k contents.
     pub contents_per_100: Option<f64>,
     /// Useless signals per 100 presses of the human, judged by simulating each trial without the signal; null where a
-    /// trial was not judged.
+    /// trial was not judged in this way.
     pub useless_per_100: Option<f64>,
-    /// Share of useless signals; null without signals, or where a trial was not judged.
+    /// Share of useless signals among all signals; null without signals, or where a trial was not judged.
     pub useless_share: Option<f64>,
-    /// Share by which errors from false beliefs per press are fewer than in the arm without signals; null without that
-    /// arm.
+    /// Share by which errors from false beliefs per press are fewer than in the arm without signals; null if there is
+    /// no such arm.
     pub prevented: Option<f64>,
     /// Share of errors that the analysis of unassisted trials predicts to be prevented with the same parameter; null
-    /// where that parameter value was not analysed.
+    /// where that value of the parameter was not analysed.
     pub prevented_offline: Option<f64>,
     /// Interruptions per 100 presses of the human that the analysis of unassisted trials predicts.
     pub interruptions_per_100_offline: Option<f64>,
@@ -58,7 +59,7 @@ fn key(trial: &TrialStatistics) -> TrialKey {
     (trial.seed, trial.participant.clone(), trial.period)
 }
 
-/// Results of all arms over the trials that all of them have; empty unless at least two arms share trials.
+/// Results of all arms over the trials that all of the arms have; empty unless at least two arms share trials.
 pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<LiveStudyArm> {
     let simulated = |trial: &&TrialStatistics| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
     let mut groups: Vec<(ActingStudyArm, Vec<&TrialStatistics>)> = Vec::new();

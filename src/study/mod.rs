@@ -1,24 +1,24 @@
-//! Analysis of a study: from single trials to summary, tables and report. This module does no input or output.
+//! Analysis of a study: from single trials to summary, tables and report. The module reads and writes no files.
 //!
 //! A `TrialStatistics` holds the counts, medians, sequences and answers of one recording; everything else is computed
 //! from trials. Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of
 //! communication are applied to the same benefits; ToM's thresholds are applied to the same estimate. Causes of errors
 //! come from the recorded beliefs of simulated participants; for people from two raters' codes if both coded every
-//! error, else from the estimate. The summary names the source (`beliefs_from`).
+//! error, else from the belief estimate. The summary names the source of the causes (`beliefs_from`).
 //!
-//! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`figures`] summarizes them with [`effect`], [`roc`] and
-//!   [`statistics`].
+//! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`figures`] summarizes
+//!   them with [`effect`], [`roc`] and [`statistics`].
 //! - [`arm_comparison`] compares any number of arms, by a [linear mixed model](linear_mixed_model) and a
 //!   [negative binomial one](negative_binomial_model), after an [`arm_design`].
-//! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts what their tests find, [`power_answer`] says how many participants are
-//!   needed; [`arm_table`] compares the arms of a pool.
-//! - [`frozen_plan`] is what is frozen before a study, [`preregistration`] whether the study is that one.
+//! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts in how many of these studies tests find
+//!   an effect, [`power_answer`] says how many participants are needed; [`arm_table`] compares the arms of a pool.
+//! - [`frozen_plan`] is the plan that is frozen before a study; [`preregistration`] compares the study with that plan.
 //! - [`study_part`] is what a shard of a study's recordings hands to the joined analysis.
-//! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
-//!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
-//!   in the table of trials ([`tables::trials`]); its columns in the table of participants and its line in the report are
-//!   generated.
-//! - [`report`] builds the page, with [`charts`] and [`arm_chart`].
+//! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and
+//!   value. Header lines, rows and [`dictionary`] are generated. A measure that is compared between assisted and
+//!   unassisted trials is declared as such in the table of trials ([`tables::trials`]); the measure's columns in the
+//!   table of participants and its line in the report are generated.
+//! - [`report`] builds the page of the report, with [`charts`] and [`arm_chart`].
 
 pub mod acceptance;
 pub mod acting_arm;

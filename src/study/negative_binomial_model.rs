@@ -1,24 +1,24 @@
 //! A mixed negative binomial model of counts: y ~ NB(mu, size), log mu = log exposure + X beta + b, b ~ N(0, v_b) per
-//! participant; variance mu + mu^2 / size. Errors come in runs, so that their variance exceeds the mean.
+//! participant; variance mu + mu^2 / size. Errors come in runs, so that the variance of counts exceeds their mean.
 //!
 //! Maximum likelihood with Laplace's approximation of the integral over b (Brooks et al. 2017, The R Journal 9, section
-//! 2), by Newton's method with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares it with
-//! glmmTMB where that is installed, and the likelihood with numeric integration.
+//! 2), by Newton's method with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares the
+//! model with glmmTMB where that is installed, and the likelihood with numeric integration.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::function::gamma::ln_gamma;
 
-/// Bounds of the logarithms of the participants' standard deviation and of the size parameter; at the bounds,
+/// Bounds of the logarithms of the participants' standard deviation and of the size parameter; at these bounds,
 /// participants do not differ, or counts follow a Poisson distribution.
 const LOG_SD: [f64; 2] = [-7.0, 3.0];
 const LOG_SIZE: [f64; 2] = [-5.0, 12.0];
-/// Step of numeric derivatives.
+/// Step size of numeric derivatives of the likelihood.
 const STEP: f64 = 1e-4;
-/// Newton's method ends when a step gains less than this, in nats.
+/// Gain of a step, in nats, below which Newton's method ends.
 const GAIN: f64 = 1e-10;
-/// Largest number of Newton steps.
+/// Largest number of steps of Newton's method.
 const MOST_STEPS: usize = 200;
 
 /// The count of events in one trial, for the negative binomial model.
@@ -28,7 +28,7 @@ pub struct CountObservation {
     pub participant: usize,
     /// Row of fixed effects in the design matrix.
     pub effects: Vec<f64>,
-    /// Number of counted events.
+    /// Number of counted events in the trial.
     pub count: u64,
     /// Exposure: the amount over which events are counted, such as presses; above 0.
     pub exposure: f64,
@@ -39,7 +39,7 @@ pub struct CountObservation {
 pub struct NegativeBinomialModel {
     /// Estimates of the fixed effects, on the log scale.
     pub estimates: Vec<f64>,
-    /// Covariance of the estimates.
+    /// Covariance of the estimates of the fixed effects.
     pub covariance: DMatrix<f64>,
     /// Standard deviation between participants, on the log scale; 0 where participants do not differ.
     pub between_sd: f64,
@@ -57,15 +57,15 @@ pub struct WaldContrast {
     pub estimate: f64,
     /// Standard error of the estimate.
     pub standard_error: f64,
-    /// Estimate divided by its standard error.
+    /// z statistic: the estimate divided by its standard error.
     pub z: f64,
     /// Two-sided p value of Wald's test.
     pub p: f64,
 }
 
 impl NegativeBinomialModel {
-    /// Fits the model by maximum likelihood; `None` if the fixed effects are collinear, or the search does not
-    /// converge.
+    /// Fits the negative binomial model by maximum likelihood; `None` if the fixed effects are collinear, or the search
+    /// does not converge.
     pub fn fit(trials: &[CountObservation]) -> Option<NegativeBinomialModel> {
         let effects = trials.first()?.effects.len();
         let rows: Vec<f64> = trials.iter().flat_map(|one| one.effects.iter().copied()).collect();
@@ -75,7 +75,7 @@ impl NegativeBinomialModel {
         if trials.len() <= effects || !is_determined || total == 0 {
             return None;
         }
-        // Least squares on the logarithms are close enough as starting values.
+        // Least squares estimates on the logarithms are close enough as starting values.
         let logs = trials.iter().map(|one| ((one.count as f64 + 0.5) / one.exposure).ln());
         let logs = DVector::from_iterator(trials.len(), logs);
         let start = (x.transpose() * &x).cholesky()?.solve(&(x.transpose() * logs));
@@ -83,7 +83,7 @@ impl NegativeBinomialModel {
         let likelihood = |at: &[f64]| log_likelihood(trials, effects, at);
         let free = climb(&likelihood, &mut at)?;
         let (_, hessian) = derivatives(&likelihood, &at, &free);
-        // Variables at a bound are treated as known.
+        // Variables that lie at a bound are treated as known.
         let covariance = (-hessian).cholesky()?.inverse().view((0, 0), (effects, effects)).into_owned();
         let [log_sd, log_size] = [at[effects], at[effects + 1]];
         Some(NegativeBinomialModel {
@@ -95,7 +95,7 @@ impl NegativeBinomialModel {
         })
     }
 
-    /// Linear combination of the fixed effects with these weights.
+    /// Contrast: the linear combination of the fixed effects with these weights.
     pub fn contrast(&self, weights: &[f64]) -> Option<WaldContrast> {
         let weights = DVector::from_column_slice(weights);
         let estimate = weights.iter().zip(&self.estimates).map(|(weight, effect)| weight * effect).sum::<f64>();
@@ -106,8 +106,8 @@ impl NegativeBinomialModel {
     }
 }
 
-/// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by
-/// Laplace's method.
+/// The log likelihood of fixed effects, log standard deviation and log size; the participants' random effects are
+/// integrated out by Laplace's method.
 fn log_likelihood(trials: &[CountObservation], effects: usize, at: &[f64]) -> f64 {
     let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
     let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);
@@ -144,22 +144,22 @@ fn log_likelihood(trials: &[CountObservation], effects: usize, at: &[f64]) -> f6
     (0..participants).map(of_participant).sum()
 }
 
-/// log of the negative binomial probability of `y` with mean exp(`log_mu`).
+/// Logarithm of the negative binomial probability of the count `y` with mean exp(`log_mu`).
 fn log_pmf(y: f64, log_mu: f64, size: f64) -> f64 {
     let mu = log_mu.exp();
     let log_share = log_mu - (size + mu).ln();
     ln_gamma(y + size) - ln_gamma(size) - ln_gamma(y + 1.0) - size * (mu / size).ln_1p() + y * log_share
 }
 
-/// Climbs to the maximum within bounds; returns the indices of the variables that are not at a bound, or `None` without
-/// convergence.
+/// Climbs to the maximum within bounds; returns the indices of the variables that do not lie at a bound, or `None`
+/// without convergence.
 fn climb(value: &impl Fn(&[f64]) -> f64, at: &mut [f64]) -> Option<Vec<usize>> {
     let effects = at.len() - 2;
     let bounds = [LOG_SD, LOG_SIZE];
     let mut now = value(at);
     for _ in 0..MOST_STEPS {
         let (gradient, hessian) = derivatives(value, at, &(0..at.len()).collect::<Vec<_>>());
-        // A variable at a bound stays there while the slope points beyond it.
+        // A variable at a bound is held there while the slope points beyond the bound.
         let is_held = |index: usize| {
             let Some([low, high]) = index.checked_sub(effects).map(|index| bounds[index]) else { return false };
             (at[index] <= low && gradient[index] <= 0.0) || (at[index] >= high && gradient[index] >= 0.0)
@@ -181,8 +181,8 @@ fn climb(value: &impl Fn(&[f64]) -> f64, at: &mut [f64]) -> Option<Vec<usize>> {
     None
 }
 
-/// Newton step; where the function is not concave, the diagonal of its second derivatives is raised until the step
-/// ascends.
+/// The step of Newton's method; where the function is not concave, the diagonal of its second derivatives is raised
+/// until the step ascends.
 fn ascent_step(curvature: DMatrix<f64>, slope: &DVector<f64>) -> Option<DVector<f64>> {
     let size = curvature.nrows();
     let mut raise = 0.0;
@@ -196,7 +196,7 @@ fn ascent_step(curvature: DMatrix<f64>, slope: &DVector<f64>) -> Option<DVector<
     None
 }
 
-/// Halves the step until it increases the function; returns the gain and the end point.
+/// Halves the step until the step increases the function; returns the gain and the end point.
 fn longest_gain(
     value: &impl Fn(&[f64]) -> f64,
     at: &[f64],
@@ -224,7 +224,7 @@ fn longest_gain(
     (0.0, at.to_vec())
 }
 
-/// Gradient and Hessian in these variables, by central differences.
+/// Gradient and Hessian of the function in the free variables, by central differences.
 fn derivatives(value: &impl Fn(&[f64]) -> f64, at: &[f64], free: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
     let moved = |moves: &[(usize, f64)]| {
         let mut next = at.to_vec();

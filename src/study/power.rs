@@ -1,5 +1,5 @@
 //! Power of the tests of a study: share of drawn studies in which a test finds an effect, with an interval that
-//! includes the error of the pool.
+//! includes the error due to the finite pool.
 //!
 //! The pool's error follows from a bootstrap over its participants: studies are drawn from resampled pools, too. The
 //! variance of the shares between pools, minus the part due to the number of studies of each pool (a one-way analysis
@@ -19,15 +19,15 @@ use super::statistics::wilson;
 
 /// Significance level of the tests in a power analysis.
 pub const ALPHA: f64 = 0.05;
-/// Power that the answer aims at.
+/// Power that a study should reach (0.8).
 pub const WANTED: f64 = 0.8;
-/// Number of bootstrap resamples of the pool.
+/// Number of bootstrap resamples of the pool of simulated participants.
 pub const POOLS: u64 = 40;
 /// Number of studies that are drawn from each resampled pool.
 pub const STUDIES_OF_POOL: u64 = 25;
 /// Number of studies that are drawn for each ratio of rates in the search for the least detectable effect.
 pub const STUDIES_OF_RATIO: u64 = 400;
-/// Number of ratios of rates in that search.
+/// Number of ratios of rates that are tried in the search for the least detectable effect.
 const RATIOS: u32 = 17;
 
 /// Ratios of rates that are tried for the least detectable effect, from the weakest effect on: 0.95, 0.90, …, 0.15.
@@ -38,13 +38,13 @@ pub fn ratios() -> Vec<f64> {
 /// Number of drawn studies in which a test rejects the null hypothesis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RejectionCount {
-    /// Number of studies in which the test can be computed.
+    /// Number of drawn studies in which the test can be computed.
     pub studies: u64,
-    /// Number of these studies with a corrected p value below the significance level.
+    /// Number of studies with a corrected p value below the significance level.
     pub rejected: u64,
-    /// Number of these studies with an uncorrected p value below the significance level.
+    /// Number of studies with an uncorrected p value below the significance level.
     pub uncorrected: u64,
-    /// Number of studies in which the test cannot be computed.
+    /// Number of drawn studies in which the test cannot be computed.
     pub unknown: u64,
 }
 
@@ -69,7 +69,8 @@ impl RejectionCount {
         }
     }
 
-    /// Share of studies in which the test rejects; a study in which it cannot be computed counts as not rejecting.
+    /// Share of studies in which the test rejects the null hypothesis; a study without a test result counts as not
+    /// rejecting.
     pub fn share(&self) -> f64 {
         self.rejected as f64 / (self.studies + self.unknown).max(1) as f64
     }
@@ -106,27 +107,27 @@ pub fn count(
 pub struct RejectionShare {
     /// Number of drawn studies.
     pub studies: u64,
-    /// Number of studies that reject the null hypothesis, with p corrected for the number of contrasts.
+    /// Number of studies that reject the null hypothesis by the p value corrected for the number of contrasts.
     pub rejected: u64,
-    /// Number of studies that reject the null hypothesis, with uncorrected p.
+    /// Number of studies that reject the null hypothesis by the uncorrected p value.
     pub rejected_uncorrected: u64,
-    /// Number of studies in which the test cannot be computed; they count as not rejecting.
+    /// Number of studies in which the test cannot be computed; these studies count as not rejecting.
     pub unknown: u64,
-    /// Share of studies that reject: the power or, without an effect, the type I error.
+    /// Share of studies that reject the null hypothesis: the power or, without an effect, the type I error.
     pub share: f64,
-    /// 95 % interval of the share, including the error of the pool.
+    /// 95 % interval of the share of rejections, including the error due to the finite pool.
     pub interval: [f64; 2],
-    /// Standard deviation of the share that is due to the finite pool.
+    /// Standard deviation of the share of rejections that is due to the finite pool.
     pub pool_sd: f64,
 }
 
 impl RejectionShare {
-    /// The share for studies from the pool; `of_pools` are the counts for studies from resampled pools.
+    /// The share of rejections in studies from the pool; `of_pools` has the counts for studies from resampled pools.
     pub fn new(count: RejectionCount, of_pools: &[RejectionCount]) -> RejectionShare {
         let (share, studies) = (count.share(), count.studies + count.unknown);
         let pool_variance = variance_between(of_pools);
         let binomial = share * (1.0 - share) / studies.max(1) as f64;
-        // Number of independent studies that would have the total variance.
+        // Number of independent studies whose share would have the total variance.
         let worth = match binomial > 0.0 {
             true => share * (1.0 - share) / (binomial + pool_variance),
             false => studies as f64,
@@ -144,8 +145,8 @@ impl RejectionShare {
     }
 }
 
-/// Variance of the share between pools, without the part due to the finite numbers of studies; 0 with fewer than two
-/// pools.
+/// Variance of the share of rejections between pools, without the part due to the finite numbers of studies; 0 with
+/// fewer than two pools.
 fn variance_between(pools: &[RejectionCount]) -> f64 {
     let n = pools.len() as f64;
     if pools.len() < 2 {
@@ -161,7 +162,7 @@ fn variance_between(pools: &[RejectionCount]) -> f64 {
 }
 
 /// Least detectable effect: the ratio of rates closest to 1 that is found with the wanted power, interpolated between
-/// the tried ratios; `None` if no ratio reaches the power. `shares` belong to [`ratios`], the weakest effect first.
+/// the tried ratios; `None` if no ratio reaches that power. `shares` belong to [`ratios`], the weakest effect first.
 pub fn least_ratio(shares: &[f64]) -> Option<f64> {
     let ratios = ratios();
     let first = shares.len() - shares.iter().rev().take_while(|share| **share >= WANTED).count();

@@ -1,4 +1,4 @@
-//! Output of `tomcom power`: the power of each test and the least effect that it detects, for each number of
+//! Output of `tomcom power`: the power of each test and the least effect that each test detects, for each number of
 //! participants, and the number of participants needed.
 
 use serde::Serialize;
@@ -10,18 +10,18 @@ use crate::base::words::count;
 use crate::session::plan::PrimaryOutcome;
 use crate::session::study_arm::StudyArm;
 
-/// Counts of rejections for one number of participants; each list has an entry per test and a last one for any
-/// contrast.
+/// Counts of rejections for one number of participants; each list has an entry per test and a last entry for any of the
+/// contrasts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleSizeRejections {
-    /// Number of participants.
+    /// Number of participants of the drawn studies.
     pub participants: usize,
-    /// Counts over studies drawn from the pool.
+    /// Counts of rejections over studies drawn from the pool.
     pub counts: Vec<RejectionCount>,
-    /// Counts over studies drawn from each resampled pool.
+    /// Counts of rejections over studies drawn from each resampled pool.
     pub of_pools: Vec<Vec<RejectionCount>>,
-    /// Counts over studies with each tried ratio of rates, the weakest effect first; empty if the least effect was not
-    /// searched for.
+    /// Counts of rejections over studies with each tried ratio of rates, the weakest effect first; empty if the least
+    /// effect was not searched for.
     pub of_ratios: Vec<Vec<RejectionCount>>,
 }
 
@@ -30,21 +30,21 @@ pub struct SampleSizeRejections {
 pub struct PowerSummary {
     /// Name of the study plan.
     pub plan: String,
-    /// Checksum of plan and settings with the pool's seed.
+    /// Checksum of study plan and settings with the pool's seed.
     pub digest: String,
     /// Version of the program that simulated the pool.
     pub program: String,
-    /// Seed of pool and drawn studies.
+    /// Seed of the pool's simulation and of the drawn studies.
     pub seed: u64,
     /// Number of simulated participants in the pool.
     pub pool: u32,
     /// Primary outcome whose rates are compared.
     pub outcome: PrimaryOutcome,
-    /// The conditions of the plan.
+    /// The conditions (study arms) of the plan.
     pub conditions: Vec<StudyArm>,
-    /// Ratio of rates that was imposed on the studies; null if the effect is that of the simulated arms.
+    /// Ratio of rates that was imposed on the drawn studies; null if the effect is that of the simulated arms.
     pub ratio: Option<f64>,
-    /// Power for each number of participants.
+    /// Power of the tests for each number of participants.
     pub sizes: Vec<SampleSizePower>,
     /// Number of participants that each test needs.
     pub needed: Vec<RequiredSampleSize>,
@@ -53,11 +53,11 @@ pub struct PowerSummary {
 /// Power of all tests for one number of participants.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SampleSizePower {
-    /// Number of participants.
+    /// Number of participants of the drawn studies.
     pub participants: usize,
     /// Power of each test; the primary test is the first.
     pub tests: Vec<TestPower>,
-    /// Share of studies in which at least one contrast rejects after correction; null with one contrast.
+    /// Share of studies in which at least one contrast rejects after correction; null if there is only one contrast.
     pub any: Option<RejectionShare>,
 }
 
@@ -67,29 +67,29 @@ pub struct TestPower {
     /// Statistical test whose power is given.
     #[serde(flatten)]
     pub test: PowerTest,
-    /// Share of studies in which the test finds an effect.
+    /// Share of drawn studies in which the test finds an effect.
     #[serde(flatten)]
     pub found: RejectionShare,
     /// Least detectable effect: the ratio of rates closest to 1 that is found with a power of 0.8; null where it was
-    /// not searched for, or no ratio is.
+    /// not searched for, or no ratio is found with that power.
     pub least_ratio: Option<f64>,
 }
 
 /// Number of participants that a test needs for a power of 0.8.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RequiredSampleSize {
-    /// Statistical test for which the number is given.
+    /// Statistical test that needs this number of participants.
     #[serde(flatten)]
     pub test: PowerTest,
-    /// Least of the tried numbers from which on the power is at least 0.8; null if it is not reached.
+    /// Least of the tried numbers of participants from which on the power is at least 0.8; null if it is not reached.
     pub participants: Option<usize>,
-    /// Least of the tried numbers from which on the lower end of the power's interval is at least 0.8; null if it is
-    /// not reached.
+    /// Least of the tried numbers of participants from which on the lower end of the power's interval is at least 0.8;
+    /// null if that is not reached.
     pub surely: Option<usize>,
 }
 
 impl PowerSummary {
-    /// The summary from the counts for each number of participants, the least number first.
+    /// The summary of power from the counts for each number of participants, the least number first.
     pub fn new(header: &PoolHeader, effect: DrawnEffect, sizes: &[SampleSizeRejections]) -> PowerSummary {
         let tests = tests(&header.conditions);
         let sizes: Vec<SampleSizePower> =
@@ -122,7 +122,7 @@ impl PowerSummary {
         }
     }
 
-    /// Whether the simulated effect is zero, so that each rejection is a type I error.
+    /// Whether the simulated effect is zero, so that each rejection of the null hypothesis is a type I error.
     pub fn is_null(&self) -> bool {
         self.ratio == Some(1.0)
     }
@@ -136,7 +136,7 @@ impl SampleSizePower {
         };
         let test_power = |(index, test): (usize, &PowerTest)| {
             let shares: Vec<f64> = size.of_ratios.iter().map(|counts| counts[index].share()).collect();
-            // The ratio is imposed between each arm and the reference arm, not between other arms.
+            // The ratio of rates is imposed between each arm and the reference arm, not between other arms.
             let is_put_in = test.against == reference(conditions) && !shares.is_empty();
             TestPower {
                 test: *test,
@@ -154,7 +154,7 @@ impl SampleSizePower {
 }
 
 impl PowerTest {
-    /// The test as text: "wizard to none, mixed ANOVA (the paper's test)".
+    /// The statistical test as text: "wizard to none, mixed ANOVA (the paper's test)".
     pub fn title(&self) -> String {
         let method = match self.method {
             SignificanceTestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
@@ -164,7 +164,7 @@ impl PowerTest {
     }
 }
 
-/// The power as text, with a table for each test.
+/// The power of a study as text, with a table for each test.
 pub fn describe(found: &PowerSummary) -> String {
     let effect = match found.ratio {
         None => "the effect is that of the simulated conditions".to_string(),
@@ -217,8 +217,8 @@ fn describe_test(found: &PowerSummary, index: usize) -> String {
     text
 }
 
-/// Sentences on how many participants are needed, and which effect the middle one of the tried numbers of participants
-/// detects.
+/// Sentences on how many participants are needed, and on the effect that the middle one of the tried numbers of
+/// participants detects.
 fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usize) -> String {
     let largest = found.sizes.last().map_or(0, |size| size.participants);
     let mut text = match (needed.participants, needed.surely) {

@@ -9,7 +9,7 @@ use crate::session::study_arm::StudyArm;
 
 /// Size of the chart, in pixels.
 const SIZE: [f64; 2] = [720.0, 420.0];
-/// Least distance between names at the ends of lines, as a share of the chart's height.
+/// Least distance between the names of lines at the chart's border, as a share of the chart's height.
 const APART: f64 = 0.05;
 
 /// The chart of power: a line with a confidence band for each test against the reference arm.
@@ -68,7 +68,8 @@ fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
     names
 }
 
-/// CSS class that gives a test its colour; the paper's test and the mixed model differ, and so do arms.
+/// CSS class that gives a test its colour; the paper's test and the mixed model have different colours, and so have
+/// arms.
 fn class(arm: StudyArm, method: SignificanceTestMethod) -> &'static str {
     match (method, arm) {
         (SignificanceTestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",

@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::frozen_plan::FrozenPlan;
 use crate::base::words::count;
 
-/// The study plan that a recording belongs to.
+/// The study plan to which a recording belongs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecordedPlan {
-    /// The participant's code.
+    /// The code of the recording's participant.
     pub participant: String,
-    /// Name and digest of the study plan; `None` for a recording without a plan.
+    /// Name and digest of the recording's study plan; `None` for a recording without a plan.
     pub plan: Option<(String, String)>,
 }
 
@@ -30,7 +30,7 @@ pub struct PreregistrationCheck {
 }
 
 impl PreregistrationCheck {
-    /// Compares the recordings of an analysis, and the definitions of this version of the program, with a frozen plan
+    /// Compares the recordings of an analysis, and the definitions of this version of the program, with the frozen plan
     /// that has this digest.
     pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> PreregistrationCheck {
         let mut differences = frozen.differs_from_program();
@@ -60,7 +60,7 @@ impl PreregistrationCheck {
         PreregistrationCheck { digest, plan, recordings_before, differences }
     }
 
-    /// The result in words: that the study is preregistered, or what differs.
+    /// The result of the comparison in words: that the study is preregistered, or what differs.
     pub fn words(&self) -> String {
         let before = match self.recordings_before {
             0 => "when no recording of it was there".to_string(),
@@ -74,7 +74,7 @@ impl PreregistrationCheck {
     }
 }
 
-/// List of participants in words; `None` if it is empty.
+/// List of participants in words; `None` if the list is empty.
 fn named(who: &str, codes: &[&str]) -> Option<String> {
     let number = count(codes.len() as u64, "participant is", "participants are");
     (!codes.is_empty()).then(|| format!("{number} {who}: {}", codes.join(", ")))

@@ -1,13 +1,14 @@
-//! Errors that signals and proposals would have prevented in an unassisted trial, and useless signals.
+//! Errors that signals and proposals would have prevented in an unassisted trial, and signals that would have been
+//! useless.
 //!
 //! A signal is useful if it is the first about the target of a false belief episode, and at least one error that
 //! follows from this false belief comes after the signal in the same episode. All other signals are useless: about a
 //! right belief, about a false but harmless one, repeated, or after the last error, inside of episodes as well as
-//! outside. A signal prevents the later errors of its own aspect in the same episode and no others; replayed signals do
-//! not change the belief.
+//! outside. A signal prevents the later errors of its own aspect in the same episode and no others; signals replayed on
+//! a recording do not change the participant's belief.
 //!
 //! A proposal of k presses is one interruption with k contents. The proposal prevents the errors of the next k presses,
-//! and is useless if none of them is an error, whatever its cause.
+//! and is useless if none of these presses is an error, whatever the error's cause.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,14 +22,14 @@ use crate::measures::sequences::FalseBeliefEpisode;
 /// Number of nanoseconds in a millisecond; session time is in nanoseconds.
 const NANOS_PER_MS: u64 = 1_000_000;
 
-/// Errors and false beliefs of a trial, as known from recorded beliefs or raters.
+/// Errors and false beliefs of a trial, as known from recorded beliefs or from raters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialGroundTruth {
-    /// Presses of the human in the trial, in order.
+    /// Presses of the human in the trial, in order, with what is known about each.
     pub presses: Vec<PressGroundTruth>,
-    /// Periods in which the participant held a false belief about an aspect.
+    /// Periods in which the participant held a false belief about a state aspect.
     pub spells: Vec<FalseBeliefGroundTruth>,
-    /// Whether `spells` includes false beliefs that led to no error.
+    /// Whether `spells` includes false beliefs that led to no error (harmless ones).
     pub knows_harmless: bool,
 }
 
@@ -40,11 +41,11 @@ pub struct PressGroundTruth {
     /// Whether the press was an error.
     pub error: bool,
     /// State aspects of the false belief that caused the error; empty for all other presses. An order and the recipe of
-    /// its dish are one target with two aspects.
+    /// the ordered dish are one target with two aspects.
     pub aspects: Vec<AspectId>,
 }
 
-/// Period in which the participant held a false belief about one aspect.
+/// Period in which the participant held a false belief about one state aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FalseBeliefGroundTruth {
     /// State aspect about which the belief was false.
@@ -60,7 +61,7 @@ pub struct FalseBeliefGroundTruth {
 /// A signal that a concept would have sent in an unassisted trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HypotheticalSignal {
-    /// Session time of the signal.
+    /// Session time at which the concept would have sent the signal.
     pub time: SessionTime,
     /// Number of human presses before the signal.
     pub press: usize,
@@ -73,18 +74,18 @@ pub struct HypotheticalSignal {
 pub struct PreventionCounts {
     /// Number of human presses.
     pub presses: u64,
-    /// Number of interruptions: signals or proposals.
+    /// Number of interruptions: one for each signal or proposal.
     pub signals: u64,
-    /// Number of contents: 1 for a signal, the number of proposed presses for a proposal.
+    /// Number of contents that were told: 1 for a signal, the number of proposed presses for a proposal.
     pub contents: u64,
     /// Number of errors that follow from false beliefs.
     pub related: u64,
-    /// Number of those errors that were prevented.
+    /// Number of errors from false beliefs that were prevented.
     pub prevented: u64,
     /// Number of useless signals or proposals.
     pub useless: u64,
-    /// Sum over useful signals of the time from the signal to the first error that it prevents, in milliseconds; 0 for
-    /// proposals.
+    /// Sum over useful signals of the time from the signal to the first error that the signal prevents, in
+    /// milliseconds; 0 for proposals.
     pub lead_ms: u64,
     /// Number of human presses outside of false belief episodes.
     pub outside: u64,
@@ -92,8 +93,8 @@ pub struct PreventionCounts {
     pub false_presses: u64,
     /// Number of useless signals during a false belief episode.
     pub false_inside: u64,
-    /// Number of signals about a false belief that led to no error; they count as useless, too. Null where such beliefs
-    /// are not known.
+    /// Number of signals about a false belief that led to no error; these signals count as useless, too. Null where
+    /// such beliefs are not known.
     pub harmless: Option<u64>,
 }
 
@@ -115,7 +116,7 @@ impl Default for PreventionCounts {
     }
 }
 
-/// True and false positive rate of a concept at one value of its parameter.
+/// True and false positive rate of a concept at one value of the concept's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreventionRates {
     /// False positive rate: useless signals per human press.
@@ -144,7 +145,7 @@ impl PreventionCounts {
         }
     }
 
-    /// The rates; `None` without presses or without errors from false beliefs.
+    /// The rates of the counts; `None` without presses or without errors from false beliefs.
     pub fn rates(&self) -> Option<PreventionRates> {
         let presses = self.presses as f64;
         (self.presses > 0 && self.related > 0).then(|| PreventionRates {
@@ -154,7 +155,8 @@ impl PreventionCounts {
         })
     }
 
-    /// Mean time from a useful signal to the first error that it prevents, in seconds; `None` without useful signals.
+    /// Mean time from a useful signal to the first error that the signal prevents, in seconds; `None` without useful
+    /// signals.
     pub fn lead_s(&self) -> Option<f64> {
         let useful = self.signals - self.useless;
         (useful > 0).then(|| self.lead_ms as f64 / 1000.0 / useful as f64)
@@ -171,8 +173,8 @@ impl FalseBeliefGroundTruth {
         self.began <= time && self.ended.is_none_or(|end| time < end)
     }
 
-    /// Whether this false belief caused the error. A press at the time of the correction was decided before the
-    /// correction.
+    /// Whether this false belief caused the error of a press. A press at the time of the correction was decided before
+    /// the correction.
     fn caused(&self, press: &PressGroundTruth) -> bool {
         let is_inside = self.began <= press.time && self.ended.is_none_or(|end| press.time <= end);
         is_inside && press.aspects.contains(&self.aspect)
@@ -180,7 +182,7 @@ impl FalseBeliefGroundTruth {
 }
 
 impl TrialGroundTruth {
-    /// Errors and false beliefs of a trial, from the participant's known beliefs.
+    /// Errors and false beliefs of a trial, from what is known of the participant's beliefs.
     pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownFalseBeliefs) -> TrialGroundTruth {
         let press = |press: &JudgedPress| PressGroundTruth {
             time: press.time,
@@ -216,7 +218,7 @@ impl TrialGroundTruth {
         }
     }
 
-    /// Counts for a concept that sends these signals, which are ordered by time.
+    /// Prevention counts for a concept that sends these signals, which are ordered by time.
     pub fn count_signals(&self, sent: &[HypotheticalSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
         let mut is_prevented = vec![false; self.presses.len()];
@@ -245,7 +247,7 @@ impl TrialGroundTruth {
                 Some(at) => count.lead_ms += (at - signal.time).0 / NANOS_PER_MS,
                 None => {
                     self.count_useless(&mut count, signal.time);
-                    // A signal after the last press precedes no press.
+                    // A signal after the last press of the trial precedes no press.
                     is_false.get_mut(signal.press).into_iter().for_each(|press| *press = true);
                 }
             }
@@ -259,7 +261,7 @@ impl TrialGroundTruth {
         count.false_inside += u64::from(self.is_in_episode(time));
     }
 
-    /// Counts for a concept that proposes `k` presses after every error that no earlier proposal prevents.
+    /// Prevention counts for a concept that proposes `k` presses after every error that no earlier proposal prevents.
     pub fn count_proposals(&self, k: usize) -> PreventionCounts {
         let mut count = self.empty_count(0);
         let mut after = 0;

@@ -1,8 +1,8 @@
-//! False belief episodes of people, derived from the causes that raters gave to errors. [`RULE`] states the rule and is
-//! printed in the report.
+//! False belief episodes of people, derived from the causes that raters gave to errors. [`RULE`] states the rule of
+//! this derivation, and the report prints it.
 //!
 //! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate is not
-//! used, so that it can be evaluated against these episodes.
+//! used, so that the estimate can be evaluated against these episodes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,7 +31,7 @@ pub const RULE: &str = "Of people, from the codes of two raters: their consensus
      coded after the belief was shown right begins another episode. False beliefs without an error are not known.";
 
 /// False belief episodes that caused the errors with these coded targets (by sequence number of the press), ordered by
-/// their beginnings. `judged` are all presses of the participant.
+/// the episodes' beginnings. `judged` are all presses of the participant.
 pub fn rater_episodes(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -50,7 +50,7 @@ pub fn rater_episodes(
     episodes
 }
 
-/// The rule for false belief episodes, applied to one trial.
+/// The rule that derives false belief episodes, applied to one trial.
 struct EpisodeRule<'a> {
     kitchen: &'a Kitchen,
     cost: &'a mut CostToGo,
@@ -64,12 +64,12 @@ struct BeliefCourse {
     aspect: AspectId,
     /// Session time at which the belief was last shown to be right.
     since: SessionTime,
-    /// The location's value at that time; unused for recipes.
+    /// The location's value at the time `since`; unused for recipes.
     value: usize,
-    /// Session time at which somebody else first changed the location after that.
+    /// Session time after `since` at which somebody else first changed the location; `None` if nobody did.
     changed: Option<SessionTime>,
     /// First look or signal, since the last error, change or press, that can have corrected the belief; later events
-    /// decide whether it did.
+    /// decide whether it did correct the belief.
     mended: Option<(SessionTime, usize)>,
     open: Option<FalseBeliefEpisode>,
     done: Vec<FalseBeliefEpisode>,
@@ -81,14 +81,14 @@ impl BeliefCourse {
         BeliefCourse { aspect, since, value, changed: None, mended: None, open: None, done }
     }
 
-    /// Notes that the belief is right at this time, about this value.
+    /// Notes that the belief is right at this time, and about which value.
     fn right(&mut self, time: SessionTime, value: usize) {
         (self.since, self.value, self.changed, self.mended) = (time, value, None, None);
         self.done.extend(self.open.take().map(|episode| FalseBeliefEpisode { corrected: Some(time), ..episode }));
     }
 
     /// Notes that a look or signal has shown this value. The next error or press tells whether the participant
-    /// understood it.
+    /// understood the value.
     fn told(&mut self, time: SessionTime, value: usize) {
         self.mended = self.mended.or(Some((time, value)));
     }
@@ -137,13 +137,13 @@ fn is_about_difference(kitchen: &Kitchen, press: &Press, recipe: AspectId, value
         || in_hand.into_iter().flatten().any(|item| !item.is_empty() && differs(item))
 }
 
-/// The time directly after a signal; the signal itself still counts as within the false belief that it corrects.
+/// The time directly after a signal, since the signal itself still lies within the false belief that it corrects.
 fn after(signal: SessionTime) -> SessionTime {
     signal + SessionTime(1)
 }
 
 impl EpisodeRule<'_> {
-    /// Coded errors, grouped by the state aspect that they are about.
+    /// Coded errors, grouped by the state aspect of the false belief.
     fn by_aspect(&mut self, targets: &BTreeMap<u64, FalseBeliefTarget>) -> BTreeMap<AspectId, BTreeSet<u64>> {
         let (trace, has_looks) = (self.trace, self.trace.has_looks());
         let mut unseen: BTreeSet<LocationId> = BTreeSet::new();
@@ -180,7 +180,7 @@ impl EpisodeRule<'_> {
         errors
     }
 
-    /// Orders to which a press reduces the cost to go.
+    /// The orders for which a press reduces the cost to go.
     fn nearer(&mut self, press: &Press) -> Vec<LocationId> {
         let recipes = self.kitchen.true_recipes();
         let wanted: Vec<LocationId> = self.kitchen.wanted(press.before).map(|(order, _)| order).collect();
@@ -188,7 +188,7 @@ impl EpisodeRule<'_> {
         wanted.into_iter().filter(|&order| costs(press.after, order) < costs(press.before, order)).collect()
     }
 
-    /// Episodes about one state aspect that caused the errors with these sequence numbers.
+    /// Episodes of false belief about one state aspect that caused the errors with these sequence numbers.
     fn episodes(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<FalseBeliefEpisode> {
         let (kitchen, trace, wrong) = (self.kitchen, self.trace, self.confusions(aspect, errors));
         let value = |state: State| kitchen.true_value(state, aspect);
@@ -232,7 +232,7 @@ impl EpisodeRule<'_> {
         course.done
     }
 
-    /// Whether a press that is no error shows that the participant's belief about the aspect is right.
+    /// Whether a press that is no error shows that the participant's belief about the state aspect is right.
     fn shows(&mut self, press: &Press, known: &BeliefCourse, wrong: &[usize]) -> bool {
         let (kitchen, aspect) = (self.kitchen, known.aspect);
         match kitchen.aspects[aspect.index()].kind {
@@ -252,8 +252,8 @@ impl EpisodeRule<'_> {
         }
     }
 
-    /// The recipes whose confusion with this one explains any of these errors; empty for other aspects. A press shows a
-    /// right belief only if it fits none of these confusions.
+    /// The recipes whose confusion with this recipe explains any of these errors; empty for aspects that are no recipe.
+    /// A press shows a right belief only if the press fits none of these confusions.
     fn confusions(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<usize> {
         let (kitchen, trace) = (self.kitchen, self.trace);
         let one = &kitchen.aspects[aspect.index()];

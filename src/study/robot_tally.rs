@@ -20,7 +20,7 @@ pub struct RobotEventSummary {
     pub arm: Option<RobotArmSummary>,
     /// Number of emergency stops by the wizard.
     pub emergency_stops: u64,
-    /// Number of aborted robot presses by reason; reasons that did not occur are absent.
+    /// Number of aborted robot presses by the reason of aborting; reasons that did not occur are absent.
     pub given_up: BTreeMap<AbortReason, u64>,
     /// Number of times that the wizard held the robot before its next press.
     pub held: u64,
@@ -39,7 +39,7 @@ pub struct RobotArmSummary {
     pub protective_stops: u64,
     /// Number of stops because a joint did not follow its commanded motion.
     pub faults: u64,
-    /// Number of times that somebody touched the arm, including those that stopped it.
+    /// Number of times that somebody touched the arm, including the contacts that stopped it.
     pub contacts: u64,
     /// Largest contact force, in newtons; null without contacts.
     pub peak_force_n: Option<f64>,
@@ -50,20 +50,20 @@ pub struct RobotArmSummary {
 }
 
 impl RobotArmSummary {
-    /// Counts a contact, with its force in newtons if the log has it.
+    /// Counts a contact with the arm, with its force in newtons if the log has the force.
     fn felt(&mut self, force_n: Option<f64>) {
         self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
     }
 }
 
 impl RobotEventSummary {
-    /// Number of presses aborted for a reason; `None` if the reason cannot occur with this kind of arm.
+    /// Number of presses that the robot aborted for a reason; `None` if the reason cannot occur with this kind of arm.
     pub fn given_up(&self, reason: AbortReason) -> Option<u64> {
         let count = self.given_up.get(&reason).copied();
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    /// Adds the robot statistics of another trial.
+    /// Adds the robot statistics of another trial to these.
     pub fn add(&mut self, other: &RobotEventSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
@@ -104,8 +104,8 @@ impl RobotEventTally {
         RobotEventTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
 
-    /// Counts an event at this time of the trial's clock; `was_on`: the trial had started and not ended before the
-    /// event.
+    /// Counts an event at this time of the trial's clock; `was_on`: whether the trial had started and not ended before
+    /// the event.
     pub fn note(&mut self, event: &Event, clock: SessionTime, was_on: bool) {
         self.pass_time(clock);
         if let Event::RobotSafety { mode, .. } = event {
@@ -154,7 +154,7 @@ impl RobotEventTally {
         }
     }
 
-    /// The statistics counted so far.
+    /// The robot statistics counted so far.
     pub fn into_figures(self) -> RobotEventSummary {
         self.figures
     }

@@ -1,9 +1,9 @@
-//! Receiver operating characteristics of communication concepts in unassisted trials, and their comparison at equal
-//! numbers of signals (paper, "Concept comparisons").
+//! Receiver operating characteristics (ROC) of communication concepts in unassisted trials, and their comparison at
+//! equal numbers of signals (paper, "Concept comparisons").
 //!
-//! The unit is the human press. True positive rate: share of the errors from false beliefs that are prevented. False
-//! positive rate: useless signals per human press. [`super::prevention`] defines prevented errors and useless signals.
-//! Signals are interruptions: a proposal of k presses is one.
+//! The unit of the rates is the human press. True positive rate: share of the errors from false beliefs that are
+//! prevented. False positive rate: useless signals per human press. [`super::prevention`] defines prevented errors and
+//! useless signals. Signals are counted as interruptions: a proposal of k presses is one.
 
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
@@ -24,8 +24,9 @@ const BAND_STEPS: usize = 40;
 /// Confidence level of bootstrap intervals and bands.
 const COVERED: f64 = 0.95;
 
-/// Swept values of a concept's parameter: cost of communication, threshold, or number of proposed presses. They extend
-/// beyond the paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of signals.
+/// Values that are tried for a concept's parameter: cost of communication, threshold, or number of proposed presses.
+/// The values extend beyond the paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of
+/// signals.
 pub fn parameters(concept: ConceptName) -> Vec<f64> {
     match concept {
         ConceptName::TomCom => {
@@ -51,11 +52,11 @@ pub struct PreventedTrialErrors {
     pub concept: ConceptName,
     /// Value of the concept's parameter, such as the cost of communication.
     pub parameter: f64,
-    /// Errors that the concept would have prevented, and signals that it would have sent.
+    /// Errors that the concept would have prevented, and signals that the concept would have sent.
     pub count: PreventionCounts,
 }
 
-/// A point of a concept's receiver operating characteristic.
+/// A point of a concept's receiver operating characteristic (ROC) curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RocPoint {
     /// Value of the concept's parameter at this point.
@@ -70,7 +71,7 @@ pub struct RocPoint {
     pub useless_per_100_actions: f64,
     /// Share of useless signals among all signals; null without signals.
     pub useless_share: Option<f64>,
-    /// Counts over all trials, from which the rates follow.
+    /// Prevention counts over all trials, from which the rates follow.
     #[serde(flatten)]
     pub count: PreventionCounts,
 }
@@ -78,29 +79,29 @@ pub struct RocPoint {
 /// A value with its 95 % bootstrap interval over participants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BootstrapInterval {
-    /// The value; null where it cannot be computed.
+    /// The statistic's value; null where it cannot be computed.
     pub value: Option<f64>,
-    /// Lower end of the 95 % interval.
+    /// Lower end of the statistic's 95 % interval.
     pub low: Option<f64>,
-    /// Upper end of the 95 % interval.
+    /// Upper end of the statistic's 95 % interval.
     pub high: Option<f64>,
 }
 
-/// The receiver operating characteristic of a concept.
+/// The receiver operating characteristic (ROC) curve of a concept.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConceptRocCurve {
-    /// Communication concept whose curve this is.
+    /// Communication concept to which the curve belongs.
     pub concept: ConceptName,
-    /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the
-    /// range's width.
+    /// Area under the curve: mean true positive rate over the false positive rates that all concepts reach (partial
+    /// area divided by the range's width).
     pub auc: Option<f64>,
-    /// Lower end of the 95 % interval of `auc`.
+    /// Lower end of the 95 % interval of the area `auc`.
     pub auc_low: Option<f64>,
-    /// Upper end of the 95 % interval of `auc`.
+    /// Upper end of the 95 % interval of the area `auc`.
     pub auc_high: Option<f64>,
-    /// Points of the curve, in the order of the parameter.
+    /// Points of the ROC curve, in the order of the concept's parameter.
     pub points: Vec<RocPoint>,
-    /// Confidence band, as false positive rate with lower and upper true positive rate.
+    /// Confidence band of the curve, as false positive rate with lower and upper true positive rate.
     pub band: Vec<[f64; 3]>,
     /// True positive rates at the numbers of signals in [`EQUAL_SIGNALS`].
     pub at_equal_signals: Vec<BootstrapInterval>,
@@ -118,9 +119,9 @@ pub struct ConceptComparison {
     pub participants: u64,
     /// Number of unassisted trials.
     pub trials: u64,
-    /// Largest false positive rate that all concepts reach.
+    /// Largest false positive rate that all compared concepts reach.
     pub common_fpr: Option<f64>,
-    /// The concepts' curves, in the order in which concepts are compared.
+    /// The concepts' ROC curves, in the order in which concepts are compared.
     pub concepts: Vec<ConceptRocCurve>,
 }
 
@@ -131,7 +132,7 @@ struct Curves {
     of: Vec<[Vec<(f64, f64)>; 3]>,
 }
 
-/// Sum of each concept's counts over participants; each participant is weighted by its number of draws in `times`.
+/// Sum of each concept's counts over participants; each participant counts as often as `times` says.
 fn summed(participants: &[Vec<PreventedTrialErrors>], times: &[u32]) -> Vec<PreventedTrialErrors> {
     let Some(first) = participants.first() else { return Vec::new() };
     let mut sum: Vec<PreventedTrialErrors> =
@@ -150,7 +151,7 @@ impl Curves {
     fn from_counts(sum: &[PreventedTrialErrors]) -> Curves {
         let curve = |concept: ConceptName, point: fn(&PreventionRates) -> (f64, f64)| {
             let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.rates());
-            // A concept that sends no signals is at the point (0, 0), where every curve begins.
+            // A concept that sends no signals is at the point (0, 0), where every ROC curve begins.
             let mut curve: Vec<(f64, f64)> = points.map(|rates| point(&rates)).chain([(0.0, 0.0)]).collect();
             curve.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
             curve
@@ -165,7 +166,7 @@ impl Curves {
         Curves { of: CONCEPTS.iter().map(curves).collect() }
     }
 
-    /// Largest false positive rate that all concepts reach; `None` if a concept has no points.
+    /// Largest false positive rate that all concepts reach; `None` if a concept's curve has no points.
     fn common(&self) -> Option<f64> {
         let reach = |curve: &Vec<(f64, f64)>| curve.last().map(|last| last.0).filter(|_| curve.len() > 1);
         let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, ..]| reach(curve)).collect();
@@ -177,19 +178,19 @@ impl Curves {
     }
 }
 
-/// Height of a curve at `x` by linear interpolation; `None` outside of the curve's range.
+/// Height of a curve at `x` by linear interpolation; `None` outside of the curve's range of x.
 fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point.0 >= x)?;
     let (x1, y1) = curve[after];
     if x1 == x {
-        // If several points have the same x, the highest is taken.
+        // If several points have the same x, the highest of them is taken.
         return curve[after..].iter().take_while(|point| point.0 == x).last().map(|point| point.1);
     }
     let (x0, y0) = *curve.get(after.checked_sub(1)?)?;
     Some(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 }
 
-/// Mean height of a curve from 0 to `to`.
+/// Mean height of a curve over x from 0 to `to`.
 fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     let end = height(curve, to)?;
     let mut points: Vec<(f64, f64)> = curve.iter().copied().filter(|point| point.0 < to).collect();
@@ -198,9 +199,9 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     (to > 0.0).then(|| area / to)
 }
 
-/// Compares the concepts. `participants` has, for each participant, the sums over their trials for every concept and
-/// parameter value, in the same order. The percentile bootstrap (Efron 1979) resamples participants; its random stream
-/// is seeded by `seed`.
+/// Compares the communication concepts. `participants` has, for each participant, the sums over the participant's
+/// trials for every concept and parameter value, in the same order. The percentile bootstrap (Efron 1979) resamples
+/// participants; its random stream is seeded by `seed`.
 pub fn compare(participants: &[Vec<PreventedTrialErrors>], trials: u64, seed: u64) -> ConceptComparison {
     let once = vec![1; participants.len()];
     let sum = summed(participants, &once);
@@ -225,7 +226,8 @@ pub fn compare(participants: &[Vec<PreventedTrialErrors>], trials: u64, seed: u6
                 count: one.count,
             })
         };
-        // Each resample is integrated over its own common range, because many do not reach the full sample's range.
+        // Each resample is integrated over its own common range, because many resamples do not reach the full sample's
+        // range.
         let area = banded(&curves, &resampled, |curves| curves.area(index, curves.common()?));
         let at = |signals: f64| move |curves: &Curves| height(&curves.of[index][1], signals);
         let useless = |signals: f64| move |curves: &Curves| Some(height(&curves.of[index][2], signals)? / signals);
@@ -265,11 +267,11 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
     })
 }
 
-/// A statistic of the curves with its percentile interval over the resamples.
+/// A statistic of the curves with its percentile interval over the bootstrap resamples.
 fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
     let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
-    // If fewer than half of the resamples have a value, the others would give a biased interval.
+    // If fewer than half of the resamples have a value, an interval from them would be biased.
     if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
         return BootstrapInterval { value, low: None, high: None };
     }

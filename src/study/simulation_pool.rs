@@ -1,5 +1,5 @@
-//! Pool of simulated participants, from which studies are drawn ([`super::drawn_study`]); of every trial, it contains
-//! only the counts that an analysis needs.
+//! Pool of simulated participants, from which studies are drawn ([`super::drawn_study`]); of every trial, the pool
+//! contains only the counts that an analysis needs.
 //!
 //! Each participant has a starting group and one trial in each arm of the plan. Each trial can have an unassisted twin:
 //! the same participant, orders and random streams, without signals. Twins tell how large an effect has to be to be
@@ -16,33 +16,33 @@ use crate::session::study_arm::StudyArm;
 /// Version of the pool's file format.
 pub const POOL_FORMAT: u32 = 1;
 
-/// First line of a pool's file: what its participants have in common.
+/// First line of a pool's file (header): what the pool's participants have in common.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoolHeader {
-    /// Version of the file format.
+    /// Version of the file format of pools.
     pub pool: u32,
     /// Version of the program that simulated the pool.
     pub program: String,
     /// Name of the study plan.
     pub plan: String,
-    /// Checksum of plan and settings, as recordings have it, with the pool's seed.
+    /// Checksum of plan and settings, as recordings have it, computed with the pool's seed.
     pub digest: String,
-    /// Seed of all random numbers.
+    /// Seed of all random numbers of the pool's simulation.
     pub seed: u64,
     /// Number of participants in the whole pool.
     pub participants: u32,
-    /// Number of this shard, from 1.
+    /// Number of this shard of the pool, from 1.
     pub shard: u64,
-    /// Number of shards of the pool.
+    /// Number of shards into which the pool is divided.
     pub shards: u64,
     /// Conditions of the study plan.
     pub conditions: Vec<StudyArm>,
-    /// Primary outcome and margin that the plan sets.
+    /// Primary outcome and margin of non-inferiority that the plan sets.
     pub aims: StudyAims,
     /// Whether trials were simulated in the study arms of the plan.
     pub arms: bool,
-    /// Whether the unassisted twins of these trials were simulated.
+    /// Whether the unassisted twins (the same trials without signals) were simulated.
     pub unassisted: bool,
 }
 
@@ -58,7 +58,7 @@ pub struct PoolTrial {
     pub period: u32,
     /// Study arm that the plan gives to the trial.
     pub planned: StudyArm,
-    /// Study arm by what was done in the trial; `none` in an unassisted twin.
+    /// Study arm of the trial as it was carried out; `none` in an unassisted twin.
     pub arm: StudyArm,
     /// Counts of presses, errors, signals and orders in the trial.
     #[serde(flatten)]
@@ -76,9 +76,9 @@ pub struct PoolTrialCounts {
     pub errors: u64,
     /// Number of errors that follow from false beliefs.
     pub belief_related_errors: u64,
-    /// Length of each sequence of errors from the same false belief, in errors.
+    /// Length (number of errors) of each error sequence, whose errors follow from the same false belief.
     pub lengths: Vec<u32>,
-    /// Number of orders served.
+    /// Number of orders served in the trial.
     pub orders: u64,
     /// Number of signals shown to the participant.
     pub signals: u64,
@@ -89,7 +89,7 @@ pub struct PoolTrialCounts {
 }
 
 impl PoolTrialCounts {
-    /// Number of events of the primary outcome.
+    /// Number of events of the primary outcome in the trial.
     pub fn events(&self, outcome: PrimaryOutcome) -> u64 {
         match outcome {
             PrimaryOutcome::Errors => self.errors,
@@ -99,7 +99,7 @@ impl PoolTrialCounts {
     }
 }
 
-/// A participant of a pool with all of their trials.
+/// A participant of a pool with all trials of this participant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoolParticipant {
     /// Index of the participant in the plan, from 0.
@@ -113,29 +113,29 @@ pub struct PoolParticipant {
 /// A period of a pool's participant, with its counts in the planned arm and without signals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoolParticipantPeriod {
-    /// Study arm that the plan gives to the period.
+    /// Study arm that the plan gives to this period of the participant.
     pub arm: StudyArm,
-    /// Counts in the planned arm, if that trial was simulated.
+    /// Counts of the trial in the planned arm; `None` if that trial was not simulated.
     pub own: Option<PoolTrialCounts>,
-    /// Counts in the trial without signals, if it was simulated.
+    /// Counts of the trial without signals; `None` if it was not simulated.
     pub unassisted: Option<PoolTrialCounts>,
 }
 
 /// A pool of simulated participants, or a shard of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationPool {
-    /// Plan, settings and seed that the participants have in common.
+    /// Plan, settings and seed that all participants of the pool have in common.
     pub header: PoolHeader,
-    /// The participants, in the order of the plan.
+    /// The pool's participants, in the order of the plan.
     pub persons: Vec<PoolParticipant>,
 }
 
 /// Mismatch in the lines of a pool's file, or between shards that are joined.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PoolMismatch {
-    /// Index of the line among the trials, or of the shard.
+    /// Index of the mismatching line among the trials, or of the mismatching shard.
     pub index: usize,
-    /// Description of what was found.
+    /// Description of the mismatch that was found.
     pub found: String,
     /// Advice on how to remedy the mismatch.
     pub remedy: String,
@@ -148,7 +148,7 @@ impl PoolMismatch {
 }
 
 impl SimulationPool {
-    /// The pool of these lines, which are ordered by participant and period.
+    /// The pool that consists of these trials, which are ordered by participant and period.
     ///
     /// # Errors
     /// A trial is missing, occurs twice, or does not fit the header.
@@ -201,7 +201,7 @@ impl SimulationPool {
         }
     }
 
-    /// The trials as lines of a pool's file, in order.
+    /// The pool's trials as lines of its file, in order.
     pub fn trials(&self) -> impl Iterator<Item = PoolTrial> + '_ {
         self.persons.iter().flat_map(|person| {
             person.trials.iter().zip(1..).flat_map(move |(trial, period)| {

@@ -1,7 +1,7 @@
 //! Textbook statistics for small samples, such as a study with some tens of participants.
 //!
-//! Distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy, pingouin and
-//! scikit-learn.
+//! Probability distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy,
+//! pingouin and scikit-learn.
 
 use rand::seq::SliceRandom;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 use crate::base::rng::stream;
 
-/// Result of an F test.
+/// Result of an F test in an analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
     /// Value of the F statistic.
@@ -18,7 +18,7 @@ pub struct FTest {
     pub df: [f64; 2],
     /// p value: probability, without an effect, of an F statistic at least this large.
     pub p: f64,
-    /// Partial eta squared: the effect's sum of squares divided by its sum with the residual one.
+    /// Partial eta squared: the effect's sum of squares divided by the sum of effect and residual sums of squares.
     pub partial_eta_sq: f64,
 }
 
@@ -45,8 +45,8 @@ pub struct MixedAnova {
     pub interaction: Option<FTest>,
 }
 
-/// Mixed analysis of variance; each row holds a person's group and its two measurements. The within factor's sums of
-/// squares are those over all persons, as in pingouin's `mixed_anova`.
+/// Mixed analysis of variance; each row holds a person's group and the person's two measurements. The within factor's
+/// sums of squares are those over all persons, as in pingouin's `mixed_anova`.
 pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
@@ -80,11 +80,11 @@ pub struct Correlation {
     pub r: f64,
     /// Two-sided p value of the correlation.
     pub p: f64,
-    /// Number of pairs of values.
+    /// Number of pairs of values in the correlation.
     pub n: usize,
 }
 
-/// Pearson's correlation; `None` with fewer than three pairs, or without variance.
+/// Pearson's correlation of x and y; `None` with fewer than three pairs, or without variance.
 pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     let n = x.len().min(y.len());
     if n < 3 {
@@ -103,16 +103,16 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     Some(Correlation { r, p, n })
 }
 
-/// Largest number of permutations that are enumerated; with more, permutations are sampled.
+/// Largest number of permutations that are enumerated; if there are more, permutations are sampled at random.
 const MAX_ENUMERATED: f64 = 200_000.0;
-/// Number of sampled permutations.
+/// Number of permutations that are sampled at random.
 const SAMPLED_PERMUTATIONS: u32 = 100_000;
 /// Relative tolerance within which differences count as equal.
 const EQUALITY_TOLERANCE: f64 = 1e-12;
 
 /// Two-sided permutation test of the difference between two groups' means (Fisher 1935): the share of assignments to
-/// groups with at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random ones and the
-/// observed one, with a random stream seeded by `seed`. `None` with an empty group.
+/// groups with at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random assignments
+/// and the observed one, with a random stream seeded by `seed`. `None` if a group is empty.
 pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     if a.is_empty() || b.is_empty() {
         return None;
@@ -141,7 +141,7 @@ pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     Some(f64::from(extreme) / f64::from(SAMPLED_PERMUTATIONS + 1))
 }
 
-/// Binomial coefficient: n choose m.
+/// Binomial coefficient: n choose m, as a float.
 fn binomial(n: usize, m: usize) -> f64 {
     (0..m).map(|index| (n - index) as f64 / (index + 1) as f64).product()
 }
@@ -164,23 +164,23 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
 pub struct ConfidenceInterval {
     /// Point estimate, such as a mean or a share.
     pub estimate: f64,
-    /// The lower end of the interval.
+    /// The lower end of the confidence interval.
     pub low: f64,
-    /// The upper end of the interval.
+    /// The upper end of the confidence interval.
     pub high: f64,
     /// Actual coverage of the interval; it differs from the requested level where only some levels are possible.
     pub level: f64,
 }
 
 /// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's
-/// confidence interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an
-/// empty group.
+/// confidence interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` if a group
+/// is empty.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<ConfidenceInterval> {
     let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
     differences.sort_by(f64::total_cmp);
     let estimate = crate::measures::median(differences.clone())?;
     let below = mann_whitney_cdf(a.len(), b.len());
-    // Number of differences to omit on each side of the interval.
+    // Number of differences that are omitted on each side of the interval.
     let left_out = below.iter().take_while(|p| **p <= (1.0 - level) / 2.0).count();
     let covered = if left_out == 0 { 1.0 } else { 1.0 - 2.0 * below[left_out - 1] };
     let last = differences.len() - 1;
@@ -247,7 +247,7 @@ pub fn mean_interval(values: &[f64], level: f64) -> Option<ConfidenceInterval> {
     Some(ConfidenceInterval { estimate, low: estimate - reach, high: estimate + reach, level })
 }
 
-/// Proportion with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
+/// Proportion `part` / `whole` with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
 pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
     wilson(part as f64 / whole as f64, whole as f64, level)
 }

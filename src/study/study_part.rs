@@ -1,16 +1,20 @@
-//! A part of a study: what the analysis of a shard of its recordings hands to the analysis of all.
+//! A part of a study: what the analysis of a shard of the study's recordings hands to the analysis of all recordings.
 //!
-//! The analysis has two stages. Stage one needs a recording and the codes beside it, nothing else, and takes nearly all of the time: the replay,
-//! estimates, attribution of errors, hypothetical signals of concepts, twins. It reduces a recording to an [`AnalysedRecording`] (counts, medians,
-//! lengths of sequences, matched lanes, prevention counts, answers) and its rows of the tables of events, as CSV. Stage two needs all of these
-//! together: codes and periods of participants, every test, interval and picture, the tables of trials and participants, preregistration.
+//! The analysis has two stages. Stage one needs a recording and the codes beside it, nothing else, and takes nearly all
+//! of the time: the replay, estimates, attribution of errors, hypothetical signals of concepts, twins. Stage one
+//! reduces a recording to an [`AnalysedRecording`] (counts, medians, lengths of sequences, matched lanes, prevention
+//! counts, answers) and its rows of the tables of events, as CSV. Stage two needs the results of all recordings
+//! together: codes and periods of participants, every test, interval and picture, the tables of trials and
+//! participants, preregistration.
 //!
-//! A part holds the results of stage one, so stage two over joined parts is stage two over all recordings, to the last byte. Numbers are written
-//! so that they are read back exactly (shortest text of a double). Nothing smaller would do: the mixed models and the bootstrap need trials, the
-//! kappa of wizard and assistant needs both lanes of signals, the tables of events need their rows.
+//! A part holds the results of stage one, so stage two over joined parts is stage two over all recordings, to the last
+//! byte. Numbers are written so that they are read back exactly (shortest text of a double). Less content would not do:
+//! the mixed models and the bootstrap need trials, the kappa of wizard and assistant needs both lanes of signals, the
+//! tables of events need their rows.
 //!
-//! A part is a file of JSON Lines: a [`PartHeader`], the [`PartKitchen`], then for each recording a line with the [`AnalysedRecording`] and a line
-//! with its rows (an array of five texts, empty with `--skip events`). The format belongs to the program's version.
+//! A part is a file of JSON Lines: a [`PartHeader`], the [`PartKitchen`], then for each recording a line with the
+//! [`AnalysedRecording`] and a line with the recording's rows (an array of five texts, empty with `--skip events`). The
+//! format belongs to the program's version.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,68 +28,68 @@ use super::trial_statistics::TrialStatistics;
 use crate::session::header::RecordedFile;
 use crate::session::plan::StepSpec;
 
-/// Version of the format.
+/// Version of the file format of a study's parts.
 pub const PART_FORMAT: u32 = 1;
 
-/// The first line of a part.
+/// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartHeader {
-    /// Version of the format.
+    /// Version of the file format of the part.
     pub study_part: u32,
     /// Version of the program that analysed the recordings.
     pub program: String,
-    /// Which part this is; 1 is the first.
+    /// Number of this part of the study; 1 is the first.
     pub shard: u64,
-    /// Number of parts.
+    /// Number of parts into which the study is divided.
     pub shards: u64,
-    /// Number of recordings in the part.
+    /// Number of analysed recordings in the part.
     pub recordings: u64,
-    /// How the recordings were analysed.
+    /// With which options the recordings were analysed.
     pub analysis: PartAnalysis,
-    /// The plans that the recordings belong to, each with its digest; empty for recordings of no plan.
+    /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.
     pub plans: BTreeSet<(String, String)>,
 }
 
-/// The second line of a part: layout and recipes of the kitchen; `None` in a part without recordings.
+/// The second line of a part's file: layout and recipes of the kitchen; `None` in a part without recordings.
 pub type PartKitchen = Option<[RecordedFile; 2]>;
 
 /// The options of an analysis that change the results of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartAnalysis {
-    /// Whether the signals of communication concepts are computed.
+    /// Whether the signals that communication concepts would have sent are computed.
     pub concepts: bool,
-    /// Whether the rows of the tables of events are made.
+    /// Whether the rows of the tables of events are computed.
     pub events: bool,
-    /// The two raters whose codes are taken, if they were named.
+    /// The two raters whose codes are used, if the user named them.
     pub raters: Option<[String; 2]>,
 }
 
-/// What the analysis of one recording hands to that of the study.
+/// What the analysis of one recording hands to the analysis of the study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnalysedRecording {
     /// The recording's name in tables.
     pub recording: String,
-    /// The plan that it belongs to.
+    /// The study plan to which the recording belongs.
     pub plan: RecordedPlan,
-    /// The consent that it begins with.
+    /// The consent with which the recording begins; `None` if it begins without.
     pub consent: Option<RecordedConsent>,
-    /// The answers to the questions of its tutorial.
+    /// The answers to the questions of the recording's tutorial.
     pub tutorial: Vec<TutorialAnswer>,
-    /// The trial, with what the report tells about the recording; `None` for practice.
+    /// The recording's trial, with what the report tells about the recording; `None` for practice.
     pub trial: Option<(TrialStatistics, RecordingFacts)>,
 }
 
-/// What is wrong with parts that are joined.
+/// Why parts of a study cannot be joined.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartMismatch {
-    /// Index of the part.
+    /// Index of the part that does not fit.
     pub index: usize,
-    /// What was found.
+    /// What was found in that part.
     pub found: String,
-    /// What would be right.
+    /// What would be right instead.
     pub remedy: String,
 }
 
@@ -96,12 +100,12 @@ impl PartMismatch {
 }
 
 impl PartHeader {
-    /// Whether this is the same part of as many, whatever was analysed.
+    /// Whether this and the other part have the same number among as many parts, whatever was analysed.
     pub fn is_place_of(&self, other: &PartHeader) -> bool {
         (self.shard, self.shards) == (other.shard, other.shards)
     }
 
-    /// The options in words.
+    /// The options of the analysis in words.
     fn options(&self) -> String {
         let PartAnalysis { concepts, events, raters } = &self.analysis;
         let skipped = [(*concepts, "concepts"), (*events, "events")];
@@ -114,16 +118,17 @@ impl PartHeader {
     }
 }
 
-/// Checks that these parts make the whole of one study, analysed in one way by this version of the program.
+/// Checks that these parts make one whole study, analysed with the same options by this version of the program.
 ///
 /// # Errors
-/// A part is of another program, study or number of parts, was analysed with other options, is there twice, or is missing.
+/// A part is of another program, study or number of parts, was analysed with other options, occurs twice, or is
+/// missing.
 pub fn check_parts(parts: &[PartHeader]) -> Result<(), PartMismatch> {
     let Some(first) = parts.first() else {
         return Err(PartMismatch::new(0, "no part".to_string(), "all parts of a study"));
     };
     let version = env!("CARGO_PKG_VERSION");
-    // A part without recordings is of any study.
+    // A part without recordings fits any study.
     let study = parts.iter().find(|part| part.recordings > 0).unwrap_or(first);
     let mut places = BTreeMap::new();
     for (index, part) in parts.iter().enumerate() {
@@ -161,15 +166,16 @@ pub fn check_parts(parts: &[PartHeader]) -> Result<(), PartMismatch> {
     Ok(())
 }
 
-/// The plans of a part in words.
+/// The study plans of a part in words.
 fn plans(part: &PartHeader) -> String {
     let named: Vec<String> =
         part.plans.iter().map(|(plan, digest)| format!("the plan \"{plan}\" ({digest})")).collect();
     if named.is_empty() { "no plan".to_string() } else { named.join(" and ") }
 }
 
-/// Index of a recording's trial, by which it belongs to a shard: as `tomcom simulate` counts the trials of a plan, participant by participant;
-/// without a plan the number of the trial. Practice goes with the participant's first trial.
+/// Index of a recording's trial, by which the recording belongs to a shard: as `tomcom simulate` counts the trials of a
+/// plan, participant by participant; without a plan the number of the trial. Practice has the index of the
+/// participant's first trial.
 pub fn trial_index(step: Option<&StepSpec>, trial: u64) -> u64 {
     step.map_or(trial, |step| {
         let period = step.period.map_or(0, |period| u64::from(period).saturating_sub(1));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
 
-/// Margins around the plot area, in pixels: left, right, top, bottom.
+/// Margins around the plot area of a chart, in pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 
 /// Axis of a chart: label, range and ticks.
@@ -13,16 +13,16 @@ const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 pub struct PlotAxis {
     /// Quantity that the axis shows, with its unit.
     pub label: &'static str,
-    /// Value at the beginning of the axis.
+    /// Value at the beginning (left or bottom) of the axis.
     pub from: f64,
-    /// Value at the end of the axis.
+    /// Value at the end (right or top) of the axis.
     pub to: f64,
     /// Ticks of the axis: position and label.
     pub ticks: Vec<(f64, String)>,
 }
 
 impl PlotAxis {
-    /// Axis whose range includes these values and 0, with round ticks.
+    /// Axis whose range includes these values and 0, with ticks at round numbers.
     pub fn over(label: &'static str, values: impl Iterator<Item = f64>) -> PlotAxis {
         let (low, high) = values
             .filter(|value| value.is_finite())
@@ -31,7 +31,7 @@ impl PlotAxis {
         PlotAxis::between(label, low, if high > low { high } else { low + 1.0 })
     }
 
-    /// Axis over this range, extended to round ticks.
+    /// Axis over the range from `low` to `high`, extended to round ticks.
     pub fn between(label: &'static str, low: f64, high: f64) -> PlotAxis {
         let step = round_step((high - low) / 5.0);
         let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
@@ -40,7 +40,7 @@ impl PlotAxis {
         PlotAxis { label, from: first as f64 * step, to: last as f64 * step, ticks: (first..=last).map(tick).collect() }
     }
 
-    /// Categorical axis; the first category is at 0, the next at 1.
+    /// Axis of categories; the first category is at position 0, the next at 1.
     pub fn named(names: &[String]) -> PlotAxis {
         let ticks = names.iter().enumerate().map(|(index, name)| (index as f64, name.clone())).collect();
         PlotAxis { label: "", from: -0.5, to: names.len() as f64 - 0.5, ticks }
@@ -54,7 +54,7 @@ fn round_step(step: f64) -> f64 {
     factor.unwrap_or(10.0) * power
 }
 
-/// Number of decimals that show a step and its multiples without rounding.
+/// Number of decimals that show an axis step and its multiples without rounding.
 fn digits(step: f64) -> usize {
     let is_exact = |digits: &usize| {
         let scaled = step * 10f64.powi(*digits as i32);
@@ -123,7 +123,7 @@ impl SvgChart {
         self.add(html! { text class="label middle" transform=(turned) { (self.y.label) } });
     }
 
-    /// Adds a point with a tooltip.
+    /// Adds a point with a tooltip to the chart.
     pub fn point(&mut self, class: &str, x: f64, y: f64, title: &str) {
         let (x, y) = (tenths(self.px(x)), tenths(self.py(y)));
         self.add(html! { circle class=(class) cx=(x) cy=(y) r="4" { title { (title) } } });
@@ -135,7 +135,7 @@ impl SvgChart {
         self.add(html! { path class={ "line " (class) } d=(path) {} });
     }
 
-    /// Adds a band: each element holds x, lower height and upper height.
+    /// Adds a band to the chart: each element holds x, lower height and upper height.
     pub fn band(&mut self, class: &str, band: &[[f64; 3]]) {
         if band.is_empty() {
             return;
@@ -146,14 +146,14 @@ impl SvgChart {
         self.add(html! { path class={ "band " (class) } d={ (path) "Z" } {} });
     }
 
-    /// Adds a bar from 0 to y, between two positions on the x axis.
+    /// Adds a bar from 0 to y to the chart, between two positions on the x axis.
     pub fn bar(&mut self, class: &str, [from, to]: [f64; 2], y: f64, title: &str) {
         let (x, right, base, top) = (self.px(from), self.px(to), self.py(0.0), self.py(y));
         let [x, y, width, height] = [x, top, right - x, base - top].map(tenths);
         self.add(html! { rect class=(class) x=(x) y=(y) width=(width) height=(height) { title { (title) } } });
     }
 
-    /// Adds a label right (`right`) or left of a point.
+    /// Adds a label right (`right`) or left of a point of the chart.
     pub fn words(&mut self, class: &str, x: f64, y: f64, right: bool, text: &str) {
         let (x, y) = (self.px(x) + if right { 9.0 } else { -9.0 }, self.py(y) + 4.0);
         let side = if right { "start" } else { "end" };
@@ -168,14 +168,14 @@ impl SvgChart {
         path
     }
 
-    /// The finished chart; `title` is its description for screen readers.
+    /// The finished chart as SVG; `title` is its description for screen readers.
     pub fn finish(self, title: &str) -> Markup {
         let size = format!("0 0 {:.0} {:.0}", self.width, self.height);
         html! { svg viewBox=(size) role="img" aria-label=(title) { "\n" (PreEscaped(self.body)) } "\n" }
     }
 }
 
-/// A finished chart as a file of its own, with this style sheet.
+/// A finished chart as the text of a file of its own, with this style sheet.
 pub fn document(chart: &Markup, style: &str) -> String {
     let style = format!("<style>\n{style}svg {{ background: var(--paper); }}\n</style>\n");
     let chart = chart.0.replacen("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ", 1);
@@ -185,7 +185,7 @@ pub fn document(chart: &Markup, style: &str) -> String {
     }
 }
 
-/// A pixel coordinate with one decimal.
+/// A coordinate in pixels as text with one decimal.
 fn tenths(pixels: f64) -> String {
     format!("{pixels:.1}")
 }

@@ -25,37 +25,37 @@ use crate::session::wall_display::DisplayedArm;
 pub struct TrialStatistics {
     /// Path of the recording's folder, relative to the folder given by the user.
     pub recording: String,
-    /// Participant code; prefixed by the seed if several seeds have simulated participants with the same codes.
+    /// Participant code, with the seed in front if several seeds have simulated participants with the same codes.
     pub participant: String,
     /// Seed of the trial's random numbers.
     pub seed: u64,
     /// Kind of participant: a person or a simulation.
     pub kind: ParticipantKind,
-    /// Wall clock time at which the trial started; `None` for simulated trials.
+    /// Wall clock time at which the recording started; `None` for simulated trials.
     pub started: Option<String>,
     /// Starting group of the participant, if there is a study plan.
     pub group: Option<String>,
     /// Number of the trial in the participant's series, from 1.
     pub period: Option<u32>,
-    /// Whether the trial belongs to a study plan, which then defines its period.
+    /// Whether the trial belongs to a study plan, which then says which period the trial is.
     pub is_planned: bool,
     /// Condition of the trial: who could send signals.
     pub condition: Condition,
-    /// Study arm of the trial, by what was done in it.
+    /// Study arm of the trial as it was carried out.
     pub study_arm: StudyArm,
     /// Study arm that the plan gave to the trial, if it belongs to a plan with arms.
     pub planned_arm: Option<StudyArm>,
     /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
-    /// Information that the wizard was allowed to see.
+    /// Information that the wizard was allowed to see on the console.
     pub wizard_sees: WizardVisibility,
     /// Sender of the signals in a trial without a person as wizard.
     pub acting: ActingStudyArm,
     /// Reason for excluding the trial from the analysis; `None` if the trial is included.
     pub left_out: Option<String>,
-    /// Reason why the trial ended; `None` if the recording is incomplete.
+    /// Reason for which the trial ended; `None` if the recording is incomplete.
     pub ended: Option<TrialEndReason>,
-    /// Kind of the robot's arm.
+    /// Kind of the robot's arm in the trial.
     pub arm: ArmKind,
     /// Counts of robot events and of interventions in the robot.
     pub robot: RobotEventSummary,
@@ -63,17 +63,17 @@ pub struct TrialStatistics {
     pub human_presses: u64,
     /// Number of the robot's presses.
     pub robot_presses: u64,
-    /// Number of the human's errors; races with the robot do not count.
+    /// Number of the human's errors; races with the robot do not count as errors.
     pub errors: u64,
     /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
     /// Statistics of errors from false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<FalseBeliefErrors>,
-    /// Number of orders served.
+    /// Number of orders served in the trial.
     pub orders: u64,
     /// Median time from the appearance of an order to its serving, in seconds.
     pub order_s: Option<f64>,
-    /// Median number of presses of both agents per order.
+    /// Median number of presses of both agents per served order.
     pub presses_per_order: Option<f64>,
     /// Summed regret of both agents' presses per served order; `None` if no order was served.
     pub additional_presses_per_order: Option<f64>,
@@ -81,12 +81,12 @@ pub struct TrialStatistics {
     pub press_s: Option<f64>,
     /// Number of signals shown to the participant.
     pub signals: u64,
-    /// Number of contents of the signals: 1 for a signal, k for a proposal of k presses.
+    /// Number of contents told by signals: 1 for a signal, k for a proposal of k presses.
     pub signal_contents: u64,
-    /// Number of useful signals, judged by simulating the trial without the signal; `None` where that was not done.
+    /// Number of useful signals, judged by simulating the trial without each signal; `None` where that was not done.
     pub useful_signals: Option<u64>,
     /// How the participant's display showed the robot; `None` without a display, and in older recordings, which do not
-    /// say.
+    /// say how.
     pub display_arm: Option<DisplayedArm>,
     /// Offers that a wizard could see; `None` in recordings without offers.
     pub offers: Option<Vec<TimedOffer>>,
@@ -96,11 +96,12 @@ pub struct TrialStatistics {
     pub answers: Vec<QuestionnaireAnswer>,
     /// Measures of the wizard's performance; `None` in trials without a wizard.
     pub wizard: Option<WizardMeasures>,
-    /// Whether the wizard saw the assistant's recommendations, by the settings or from some time on.
+    /// Whether the wizard saw the assistant's recommendations, by the settings or from some time of the trial on.
     pub wizard_saw_advice: bool,
-    /// In wizard trials: the communications sent, and the hypothetical ones of the assistant.
+    /// In wizard trials: the communications that were sent, and those that the assistant would have sent.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
-    /// In unassisted trials with known beliefs: what each concept would have prevented, by parameter value.
+    /// In unassisted trials with known beliefs: what each concept would have prevented, for each value of its
+    /// parameter.
     pub swept: Vec<PreventedTrialErrors>,
     /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
     pub raters: Option<[RaterCodes; 2]>,
@@ -108,29 +109,29 @@ pub struct TrialStatistics {
     pub shared_beliefs: Option<FalseBeliefAgreement>,
     /// The two raters whose consensus determines the causes of errors.
     pub settled_by: Option<[String; 2]>,
-    /// Why a consensus is not used: a rater's code changed after the raters settled it.
+    /// Why the raters' consensus is not used: a rater's code changed after the raters settled it.
     pub stale_consensus: Option<String>,
-    /// Freeze probes with their questions and answers; `None` without probes.
+    /// Freeze probes of the trial with their questions and answers; `None` without probes.
     pub probes: Option<ProbedTrial>,
 }
 
 /// Errors of a trial that follow from false beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FalseBeliefErrors {
-    /// Source of what the human believed: recorded beliefs, raters or the estimate.
+    /// Source of what the human believed: recorded beliefs, raters' codes or the belief estimate.
     pub basis: BeliefSource,
     /// Number of errors that follow from false beliefs.
     pub errors: u64,
     /// Number of errors that only two false beliefs together explain.
     pub of_two: u64,
-    /// Errors from false beliefs, by kind of state aspect.
+    /// Errors from false beliefs, counted by kind of state aspect.
     pub causes: CauseKindCounts,
-    /// Length, in errors, of each sequence of errors from the same false belief.
+    /// Length (number of errors) of each error sequence whose errors follow from the same false belief.
     pub lengths: Vec<u32>,
-    /// Length, in errors, of each error sequence, whichever false beliefs it follows from.
+    /// Length (number of errors) of each error sequence, whichever false beliefs its errors follow from.
     pub lengths_any_aspect: Vec<u32>,
-    /// For each sequence that has ended, the time from its first error to the first correct press after its last error,
-    /// in seconds.
+    /// For each error sequence that has ended, the time from its first error to the first correct press after its last
+    /// error, in seconds.
     pub recovery_s: Vec<f64>,
     /// Number of false belief episodes with at least one error; `None` if beliefs are known from the estimate alone.
     pub episodes: Option<u64>,
@@ -139,29 +140,29 @@ pub struct FalseBeliefErrors {
 /// An answer to a questionnaire item.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct QuestionnaireAnswer {
-    /// The questionnaire's name.
+    /// Name of the questionnaire to which the item belongs.
     pub questionnaire: String,
-    /// Identifier of the item.
+    /// Identifier of the questionnaire item.
     pub item: String,
-    /// Statement of the item.
+    /// Statement of the questionnaire item, as the participant read it.
     pub text: String,
     /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
-    /// Whether agreement with the statement counts against the construct.
+    /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
     /// Kind of answer that the item takes.
     pub kind: QuestionnaireItemKind,
-    /// The answer; `None` if the participant skipped the item.
+    /// The participant's answer; `None` if the participant skipped the item.
     pub answer: Option<AnswerValue>,
     /// Number of points of the item's rating scale; `None` for other kinds of item.
     pub points: Option<u8>,
-    /// The options of the item: id and text.
+    /// The answer options of the item: id and text.
     pub options: Vec<ItemOption>,
-    /// The answer on a scale or slider as a number from 0 to 1, reversed if the item is.
+    /// The answer on a scale or slider as a number from 0 to 1, reversed if the item is reverse coded.
     pub share: Option<f64>,
     /// Whether the item was asked before the first trial, rather than after this trial.
     pub before: bool,
-    /// Score of the whole questionnaire on this occasion, if it has one.
+    /// Score of the whole questionnaire on this occasion; `None` if it has no score.
     pub score: Option<f64>,
 }
 
@@ -176,7 +177,7 @@ impl TrialStatistics {
         self.left_out.is_none()
     }
 
-    /// Name of the participant's kind in tables.
+    /// Name of the kind of participant (person or simulation) in tables.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
             ParticipantKind::Simulated => "simulated",
@@ -185,7 +186,7 @@ impl TrialStatistics {
         }
     }
 
-    /// Number of presses of both agents together.
+    /// Number of presses of both agents in the trial together.
     pub fn presses(&self) -> u64 {
         self.human_presses + self.robot_presses
     }
@@ -195,7 +196,7 @@ impl TrialStatistics {
         (self.human_presses > 0).then(|| self.errors as f64 / self.human_presses as f64)
     }
 
-    /// Errors per press of both agents; `None` without presses.
+    /// Errors of the human per press of both agents; `None` without presses.
     pub fn error_rate(&self) -> Option<f64> {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
@@ -223,7 +224,7 @@ impl TrialStatistics {
     }
 }
 
-/// Mean of sequence lengths; `None` without sequences.
+/// Mean of the lengths of error sequences; `None` without sequences.
 pub fn mean_length(lengths: &[u32]) -> Option<f64> {
     mean(lengths.iter().map(|&length| f64::from(length)))
 }
@@ -260,7 +261,7 @@ pub fn arrange(trials: &mut [TrialStatistics]) {
     }
 }
 
-/// Fully simulated trials, in which every seed reuses the same participant codes.
+/// The fully simulated trials among these, in which every seed uses the same participant codes.
 fn simulated(trials: &[TrialStatistics]) -> impl Iterator<Item = &TrialStatistics> {
     trials.iter().filter(|trial| trial.started.is_none())
 }

@@ -19,23 +19,23 @@ pub struct TrialTotals {
     pub robot_actions: u64,
     /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
+    /// Number of the human's presses that the robot may have overtaken (races), which do not count as errors.
     pub races: u64,
-    /// Errors per press of both agents.
+    /// Errors of the human per press of both agents.
     pub error_rate: Option<f64>,
     /// Errors per press of the human.
     pub error_rate_human: Option<f64>,
-    /// Source of the participants' beliefs; null if beliefs are unknown in some trial.
+    /// Source of the participants' beliefs; null if beliefs are unknown in any trial.
     pub beliefs_from: Option<BeliefSource>,
     /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
-    /// Errors from false beliefs, by kind of state aspect.
+    /// Errors from false beliefs, counted by kind of state aspect.
     pub belief_related_by_kind: Option<CauseKindCounts>,
     /// Share of the errors that follow from false beliefs, from 0 to 1.
     pub belief_related_share: Option<f64>,
-    /// 95 % interval of `belief_related_share`.
+    /// 95 % interval of the share `belief_related_share`.
     pub belief_related_interval: Option<ConfidenceInterval>,
-    /// Number of sequences of errors from the same false belief.
+    /// Number of error sequences whose errors follow from the same false belief.
     pub sequences: Option<u64>,
     /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
@@ -47,13 +47,13 @@ pub struct TrialTotals {
     pub sequences_any_aspect: Option<u64>,
     /// Mean number of errors in an error sequence, whichever false beliefs it follows from.
     pub mean_sequence_length_any_aspect: Option<f64>,
-    /// Mean time from a sequence's first error to the first correct press after its last, in seconds.
+    /// Mean time from the first error of a sequence to the first correct press after its last error, in seconds.
     pub mean_recovery_s: Option<f64>,
     /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
     /// Number of signals shown to participants.
     pub signals: u64,
-    /// Number of orders served.
+    /// Number of orders served in the trials.
     pub orders_served: u64,
 }
 
@@ -83,7 +83,7 @@ impl TrialTotals {
         let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
         let interval = share_interval(related, errors, LEVEL);
         TrialTotals {
-            // If trials have different sources of beliefs, the least reliable one is reported.
+            // If trials have different sources of beliefs, the summary names the least reliable source.
             beliefs_from: beliefs.iter().map(|one| one.basis).max(),
             belief_related_errors: Some(related),
             belief_related_by_kind: Some(

@@ -67,7 +67,7 @@ fn rates(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
     captions.table_of_columns(&caption, &columns, found.arms.iter())
 }
 
-/// A contrast of the primary model, with the same contrast of the two other models.
+/// A contrast of study arms in the primary model, with the same contrast in the two other models.
 struct ContrastRow<'a> {
     own: &'a StudyArmContrast,
     carried: Option<&'a StudyArmContrast>,

@@ -12,11 +12,11 @@ use crate::study::figures::{StudyConditionSummary, StudySummary};
 use crate::study::statistics::FTest;
 use crate::study::trial_statistics::TrialStatistics;
 
-/// Section on the effect of assistance: charts, means by condition, and tests.
+/// Section of the report on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
-        // Charts and tests compare two conditions; a study with more has another section for that.
+        // Charts and tests compare two conditions; a study with more conditions has another section for that.
         return section("Errors and times", scroll(conditions(captions, figures)));
     }
     let pictures = pictures(captions, figures, trials);
@@ -105,7 +105,7 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     }
 }
 
-/// Sentence on the effect of the period on the time between presses, which shows experience.
+/// Sentence on the effect of the period on the time between presses, since that effect shows experience.
 fn experience(figures: &StudySummary) -> Markup {
     let pace = figures.effects.iter().find(|effect| effect.measure.name == "press_s");
     let Some((effect, test)) = pace.and_then(|effect| Some((effect, effect.by_period.within?))) else {
@@ -123,7 +123,7 @@ fn experience(figures: &StudySummary) -> Markup {
     }
 }
 
-/// Table of tests, with one row per compared measure.
+/// Table of statistical tests, with one row per compared measure.
 fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 12] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),
@@ -152,7 +152,7 @@ fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_columns(caption, &columns, figures.effects.iter())
 }
 
-/// Table of the mixed analysis of variance, in both codings.
+/// Table of the mixed analysis of variance, in both codings of the factors.
 fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     let row = |what: &dyn Render, test: Option<FTest>| {
         cells([

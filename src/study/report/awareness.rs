@@ -12,7 +12,7 @@ use crate::measures::belief_detection::CALIBRATED;
 use crate::study::charts;
 use crate::study::figures::StudySummary;
 
-/// Section on what participants knew; empty without freeze probes.
+/// Section of the report on what participants knew; empty without freeze probes.
 pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.probes else { return nothing() };
     let content = html! {
@@ -48,7 +48,7 @@ pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Mark
     section("What people knew", content)
 }
 
-/// Text ", interval of 95 %: …" for a share; empty without an interval.
+/// Text ", interval of 95 %: …" after a share; empty without an interval.
 fn interval(ends: Option<[f64; 2]>) -> String {
     ends.map_or(String::new(), |ends| format!(" (interval of 95 %: {} %)", range(ends.map(|end| 100.0 * end), 1)))
 }
@@ -68,7 +68,7 @@ fn asked(counts: &ProbeCounts, participants: u64) -> Markup {
     }
 }
 
-/// Sentence on questions that the main results leave out, and why.
+/// Sentence on the probe questions that the main results leave out, and why.
 fn left_out(counts: &ProbeCounts) -> Markup {
     let one = |n: u64, what: &str| (n > 0).then(|| format!("{n} {what}"));
     let questions: Vec<String> = [
@@ -102,7 +102,7 @@ fn accuracies(captions: &mut Captions, found: &ProbeSummary) -> Markup {
             with_interval(one.accuracy.map(hundred), one.interval.map(|ends| ends.map(hundred)), 1)
         }),
     ];
-    // Results by single aspect are only in the table of probes and in the JSON summary.
+    // Results by single state aspect are only in the table of probes and in the JSON summary.
     let printed = found.accuracies.iter().filter(|one| one.by != ProbeAccuracyGrouping::Aspect);
     let caption = "What participants knew: by what was asked, by when the place last changed and whether it was looked at since, by \
                    condition, and by how questions were drawn. Weighted; intervals of 95 % by bootstrap over participants.";

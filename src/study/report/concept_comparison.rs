@@ -10,7 +10,7 @@ use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveStudyArm;
 use crate::study::roc::EQUAL_SIGNALS;
 
-/// Section that compares the concepts by the errors they prevent.
+/// Section of the report that compares communication concepts by the errors that they prevent.
 pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = html! {
@@ -38,7 +38,7 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     section("Which concept prevents more?", content)
 }
 
-/// Sentence on how the chart shows confidence bands.
+/// Sentence on how the chart of concepts shows confidence bands.
 fn bands(figures: &StudySummary) -> String {
     let drawn = figures.roc.iter().filter(|roc| !roc.points.is_empty());
     let without: Vec<&str> = drawn.clone().filter(|roc| roc.band.is_empty()).map(|roc| roc.concept.title()).collect();
@@ -52,7 +52,7 @@ fn bands(figures: &StudySummary) -> String {
     }
 }
 
-/// Sentence on points beyond the end of the axis.
+/// Sentence on points of the chart that lie beyond the end of the axis.
 fn cut_off(figures: &StudySummary) -> String {
     let points = figures.roc.iter().flat_map(|roc| &roc.points);
     match points.filter(|point| point.signals_per_100_actions > MOST_SIGNALS).count() as u64 {

@@ -8,7 +8,7 @@ use crate::study::svg::minus;
 /// Text in place of an unknown value: a dash.
 pub(super) const UNKNOWN: &str = "\u{2013}";
 
-/// Numbers charts and tables in the order of the page.
+/// Numbers the report's charts and tables in the order of the page.
 #[derive(Debug, Default)]
 pub(super) struct Captions {
     figures: u32,
@@ -16,7 +16,7 @@ pub(super) struct Captions {
 }
 
 impl Captions {
-    /// A numbered chart with its caption; empty without a chart.
+    /// A numbered chart with its caption; empty if there is no chart.
     pub(super) fn figure(&mut self, picture: Option<Markup>, caption: impl Render) -> Markup {
         let Some(picture) = picture else { return nothing() };
         self.figures += 1;
@@ -32,7 +32,8 @@ impl Captions {
         self.table_of_class(None, caption, heads, rows)
     }
 
-    /// A table with one row per element of `rows`; each column has a heading and a function that makes its cells.
+    /// A table with one row per element of `rows`; each column has a heading and a function that makes the column's
+    /// cells.
     pub(super) fn table_of_columns<'r, Row: 'r>(
         &mut self,
         caption: impl Render,
@@ -44,7 +45,7 @@ impl Captions {
         self.table(caption, &heads, &rows)
     }
 
-    /// A table in which all columns are text.
+    /// A numbered table in which all columns are text.
     pub(super) fn table_of_text(
         &mut self,
         caption: impl Render,
@@ -78,7 +79,7 @@ impl Captions {
 /// Column of a table on the report's page: its heading, and the function that makes its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
-/// HTML markup without content.
+/// Empty HTML markup.
 pub(super) fn nothing() -> Markup {
     PreEscaped(String::new())
 }
@@ -88,7 +89,7 @@ pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
     cells.into_iter().map(Render::render).collect()
 }
 
-/// A section with a heading; empty without content.
+/// A section of the report with a heading; empty if the section has no content.
 pub(super) fn section(heading: &str, content: Markup) -> Markup {
     if content.0.is_empty() {
         return nothing();
@@ -96,7 +97,7 @@ pub(super) fn section(heading: &str, content: Markup) -> Markup {
     html! { section { h2 { (heading) } "\n" (content) } "\n" }
 }
 
-/// Content that scrolls sideways if it is too wide.
+/// Content of the page that scrolls sideways if it is too wide.
 pub(super) fn scroll(content: Markup) -> Markup {
     html! { div class="scroll" { (content) } "\n" }
 }
@@ -108,12 +109,12 @@ pub(super) fn keys(keys: &[(&str, &str)]) -> Markup {
     }
 }
 
-/// A number with this many decimals; a dash for `None`.
+/// A number with this many decimals as text; a dash for `None`.
 pub(super) fn number(value: Option<f64>, digits: usize) -> String {
     value.filter(|value| value.is_finite()).map_or(UNKNOWN.to_string(), |value| minus(&format!("{value:.digits$}")))
 }
 
-/// A number with its interval below it, if it has one.
+/// A number with its interval below the number, if it has an interval.
 pub(super) fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, digits: usize) -> Markup {
     html! { (number(value, digits)) @if let Some(ends) = interval { small { (range(ends, digits)) } } }
 }
@@ -122,11 +123,11 @@ pub(super) fn percent(value: Option<f64>) -> String {
     value.map_or(UNKNOWN.to_string(), |value| format!("{:.1} %", 100.0 * value))
 }
 
-/// The p value of a test in journal format.
+/// The p value of a test in the format of journals.
 pub(super) fn p_value(p: Option<f64>) -> String {
     match p {
         None => UNKNOWN.to_string(),
-        // Without the no-break space, the number could stand alone on the next line.
+        // Without the no-break space, a line could break between sign and number.
         Some(p) if p < 0.001 => "<\u{a0}0.001".to_string(),
         Some(p) => format!("{p:.3}"),
     }
@@ -140,7 +141,7 @@ pub(super) fn p_sentence(p: Option<f64>) -> String {
     }
 }
 
-/// A range as "low to high"; another text if a bound is infinite.
+/// A range of numbers as "low to high"; another text if a bound is infinite.
 pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
     if low.is_infinite() && high.is_infinite() {
         return "no interval: too few values".to_string();

@@ -10,7 +10,7 @@ use crate::study::arm_group::RobotArmGroup;
 use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 
-/// Section on methods: conduct and analysis of the trials.
+/// Section of the report on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
@@ -89,7 +89,7 @@ fn versions(facts: &RecordingFacts) -> String {
 }
 
 fn analysis(figures: &StudySummary) -> String {
-    // Hypothetical signals are mentioned only if concepts were analysed.
+    // The report mentions hypothetical signals only if concepts were analysed.
     let computed = match figures.similarity.is_some() || figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         true => ", the estimate of beliefs and the hypothetical signals of each concept",
         false => " and the estimate of beliefs",
@@ -103,7 +103,7 @@ fn analysis(figures: &StudySummary) -> String {
         }
         Some(BeliefSource::Raters) => "Causes of errors were coded by two raters.",
         Some(BeliefSource::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
-        // Answers to probes do not tell the causes of errors.
+        // Answers to freeze probes do not tell the causes of errors.
         Some(BeliefSource::Probes) | None => "Causes of errors are not known for all trials.",
     };
     format!(

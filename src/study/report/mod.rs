@@ -22,7 +22,7 @@ use super::trial_statistics::TrialStatistics;
 /// Style sheet of the report's page and its charts.
 pub const STYLE: &str = include_str!("style.css");
 
-/// The report as an HTML page, with links to the files of these tables.
+/// The study report as an HTML page, with links to the files of these tables.
 pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &RecordingFacts, tables: &[CsvTable]) -> String {
     let captions = &mut Captions::default();
     let sections = [

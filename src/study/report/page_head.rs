@@ -1,17 +1,17 @@
-//! Metadata in the HTML head of a report: program version and participants' codes, by which `tomcom forget` finds
-//! reports.
+//! Metadata in the HTML head of a report: program version and participants' codes, by which `tomcom forget` finds the
+//! reports about a participant.
 
 use std::collections::BTreeSet;
 
-/// Name of the metadata field with program and version.
+/// Name of the metadata field that contains program and version.
 const GENERATOR: &str = "generator";
-/// Name of the metadata field with the participants' codes.
+/// Name of the metadata field that contains the participants' codes.
 const PARTICIPANTS: &str = "participants";
-/// Name of the program, before its version.
+/// Name of the program in the metadata, before its version.
 const PROGRAM: &str = "tomcom ";
 
-/// Metadata fields of a report about these participants, as (name, content). Codes consist of letters, digits, - and _,
-/// as in tables.
+/// Metadata fields of a report about these participants, as pairs (name, content). Codes of participants consist of
+/// letters, digits, - and _, as in tables.
 pub(super) fn about<'a>(participants: impl Iterator<Item = &'a str>) -> [(&'static str, String); 2] {
     let participants: Vec<&str> = participants.collect::<BTreeSet<&str>>().into_iter().collect();
     [(GENERATOR, format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION"))), (PARTICIPANTS, participants.join(" "))]
@@ -26,7 +26,7 @@ pub fn participants(page: &str) -> Option<Vec<&str>> {
     Some(content.split_whitespace().collect())
 }
 
-/// Start of a metadata tag up to and including the first characters of its content.
+/// Start of an HTML metadata tag up to and including the first characters of the tag's content.
 fn tag(name: &str, begins: &str) -> String {
     format!("<meta name=\"{name}\" content=\"{begins}")
 }

@@ -13,7 +13,7 @@ use crate::session::plan::QuestionnaireItemKind;
 use crate::session::study_arm::StudyArm;
 use crate::study::figures::StudySummary;
 
-/// Table with this study's results beside the paper's.
+/// Table with this study's results beside the results of the paper.
 pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let row = |what: &str, here: String, paper: &str| cells([&what, &here, &paper]);
@@ -40,7 +40,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         ),
         row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1), UNKNOWN),
     ];
-    // A study without the test, as one with more than two conditions, has no result to compare with the paper's.
+    // A study without the test, such as one with more than two conditions, has no result to compare with the paper's.
     if let Some(test) = figures.anova {
         rows.extend([
             row("assistance: p of the mixed ANOVA", p_value(Some(test.p)), "0.014"),
@@ -64,7 +64,7 @@ fn kinds(figures: &StudySummary) -> String {
     })
 }
 
-/// Section on the similarity of wizard and assistant.
+/// Section of the report on the similarity of wizard and assistant.
 pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         (matches(captions, figures))
@@ -77,7 +77,7 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
     section("Wizard and assistant", content)
 }
 
-/// Caption of the table of the wizard's performance, with the source of the false beliefs.
+/// Caption of the table of the wizard's performance, which names the source of the false beliefs.
 fn performance(figures: &StudySummary) -> String {
     let unknown = "; false beliefs that led to no error are not known";
     match figures.wizard_beliefs_from {
@@ -87,7 +87,7 @@ fn performance(figures: &StudySummary) -> String {
     }
 }
 
-/// Sentences on the offers to the wizard, and on how many the wizard used.
+/// Sentences on the offers to the wizard, and on how many of the offers the wizard used.
 fn offers(found: &OfferSummary) -> Markup {
     let times = |one: &OfferDurations| match (one.median_s, one.shortest_s) {
         (Some(median_s), Some(shortest_s)) => format!("{median_s:.1} s in the median, {shortest_s:.1} s at least"),
@@ -182,7 +182,7 @@ fn wizard_rows(wizard: &WizardMeasures) -> [Vec<Markup>; 11] {
     ]
 }
 
-/// Section on the participants' answers to questionnaires.
+/// Section of the report on the participants' answers to questionnaires.
 pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         @if let Some(found) = &figures.acceptance {
@@ -211,8 +211,8 @@ fn asked_after(after: Option<StudyArm>) -> String {
     after.map_or_else(|| "before the trials".to_string(), |after| after.title().to_string())
 }
 
-/// Table of answers by item. Answers in words are only counted, since they can identify their author; the CSV table has
-/// them.
+/// Table of answers by questionnaire item. Answers in words are only counted, since they can identify their author; the
+/// CSV table has these answers.
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
         let mean = match (item.points, item.kind) {
@@ -239,7 +239,7 @@ fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     )
 }
 
-/// Table of scores by questionnaire and condition.
+/// Table of scores by questionnaire and by condition.
 fn scores(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaire_scores.iter().map(|one| {
         let after = asked_after(one.condition);

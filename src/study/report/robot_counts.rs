@@ -9,7 +9,7 @@ use crate::study::arm_group::RobotArmGroup;
 use crate::study::figures::StudySummary;
 use crate::study::robot_tally::RobotArmSummary;
 
-/// Table of robot statistics with one column per kind of arm.
+/// Table of robot statistics with one column per kind of robot arm.
 pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let groups = &figures.robot;
     if groups.is_empty() {

@@ -12,10 +12,10 @@ use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
 use crate::study::trial_statistics::TrialStatistics;
 
-/// Least number of participants with both trials for which r and p are among the main results.
+/// Least number of participants with both trials from which on r and p are shown among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;
 
-/// Section with the study's title and main results.
+/// Section of the report with the study's title and main results.
 pub(super) fn summary(figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let pairs: usize = figures.effects.first().map_or(0, |effect| effect.groups.iter().sum());
@@ -71,7 +71,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
     }
 }
 
-/// Paragraph on the agreement of two raters.
+/// Paragraph of the report on the agreement of two raters.
 fn raters(found: &RaterAgreement, figures: &StudySummary) -> Markup {
     html! {
         p {
@@ -100,7 +100,7 @@ fn card(value: &str, what: &str) -> Markup {
 /// Largest number of trials that the report lists.
 const MOST_TRIALS: usize = 60;
 
-/// Section with all trials, and with the reasons for excluded ones.
+/// Section of the report with all trials, and with the reasons for excluding some of them.
 pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let content = html! {
         div class="scroll long" { (counting(captions, trials)) } "\n"
@@ -154,7 +154,7 @@ fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_text("Excluded trials.", &["recording", "participant", "reason"], &rows)
 }
 
-/// Section with the definitions of all terms.
+/// Section of the report with the definitions of all terms.
 pub(super) fn definitions() -> Markup {
     let content = html! {
         dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
@@ -162,7 +162,7 @@ pub(super) fn definitions() -> Markup {
     section("Definitions", content)
 }
 
-/// Section that lists the non-empty tables beside the report.
+/// Section of the report that lists the non-empty tables beside the report.
 pub(super) fn files(tables: &[CsvTable]) -> Markup {
     let content = html! {
         p {

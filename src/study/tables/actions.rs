@@ -7,7 +7,7 @@ use crate::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 
-/// A recorded press with its time and number.
+/// A recorded press of either agent with its time and number.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPress {
     /// Sequence number of the press in the log.
@@ -16,7 +16,7 @@ pub struct RecordedPress {
     pub time_s: f64,
     /// The press with the states before and after it.
     pub press: Press,
-    /// Number of the press among those of its agent, from 1.
+    /// Number of the press among the presses of its agent, from 1.
     pub number: u32,
     /// Time since this agent's previous press, without pauses, in seconds.
     pub since_s: Option<f64>,
@@ -27,15 +27,15 @@ pub struct RecordedPress {
 /// Judgement of a human press: error, cause, raters' codes.
 #[derive(Clone, Copy, Debug)]
 pub struct PressAnalysis<'a> {
-    /// Regret of the press, whether it was an error, and the cause of the error.
+    /// The judged press: its regret, whether it was an error, and the error's cause.
     pub judged: &'a JudgedPress,
-    /// Number of the press's error sequence in the trial, from 1.
+    /// Number of the error sequence to which the press belongs, in the trial, from 1.
     pub sequence: Option<usize>,
-    /// Cause of a person's error by the assistant's estimate.
+    /// Cause of a person's error according to the assistant's belief estimate.
     pub by_estimate: Option<ErrorCause>,
     /// Codes that two raters gave to the error.
     pub codes: [Option<&'a ErrorCauseCode>; 2],
-    /// Consensus code of the two raters, where it determines the cause of the error.
+    /// Consensus code of the two raters, where that code determines the cause of the error.
     pub shared: Option<&'a ErrorCauseCode>,
     /// Beginning of the false belief behind the error, on the trial's clock in seconds, where it is known.
     pub false_since_s: Option<f64>,
@@ -47,7 +47,7 @@ pub struct PressAnalysis<'a> {
 /// Row of the table of actions: a press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
-    /// Folder of the recording.
+    /// Name of the recording in tables.
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
@@ -62,8 +62,8 @@ impl ActionRow<'_> {
         Some(self.analysis?.judged)
     }
 
-    /// Targets of the false belief behind the press; the second only if the press needs two false beliefs to be
-    /// explained.
+    /// State aspects of the false belief behind the press; the second only if it takes two false beliefs to explain the
+    /// press.
     fn targets(&self) -> [Option<String>; 2] {
         let label = |target: FalseBeliefTarget| target.label(self.kitchen);
         match self.judged().and_then(|press| press.cause) {
@@ -72,8 +72,8 @@ impl ActionRow<'_> {
         }
     }
 
-    /// Difference of the press's log probability under the false belief and under the truth, in nats; `None` for causes
-    /// from raters.
+    /// Difference between the press's log probability under the false belief and under the truth, in nats; `None` for
+    /// causes from raters.
     fn gain_nats(&self) -> Option<f64> {
         match self.judged()?.cause? {
             ErrorCause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),
@@ -91,7 +91,7 @@ impl ActionRow<'_> {
     }
 }
 
-/// Meanings of columns that are too long for one line of code.
+/// Meanings of table columns whose text is too long for one line of code.
 const SECOND_ASPECT: &str =
     "second aspect, if only two false beliefs together explain the error, or if the two raters name different ones";
 const RATER: &str = "code of one of the two raters, who were named, settled a consensus or else coded most errors: belief (with location), slip, race, \
@@ -170,7 +170,7 @@ impl CsvRow for ActionRow<'_> {
     }
 }
 
-/// Columns with causes by estimate and raters, and with the duration of the false belief.
+/// Columns with causes according to estimate and raters, and with the duration of the false belief.
 fn of_estimate_and_raters<'a>() -> Vec<CsvColumn<ActionRow<'a>>> {
     vec![
         ActionRow::column(

@@ -3,7 +3,7 @@
 use super::trial_column::{TrialColumn, plain};
 use crate::session::study_arm::StudyArm;
 
-/// Columns for the arm by what was done, the planned arm, what the wizard could see, and the contents of signals.
+/// Columns for the arm as carried out, the planned arm, what the wizard could see, and the contents of signals.
 pub(super) fn arms() -> Vec<TrialColumn> {
     vec![
         plain(

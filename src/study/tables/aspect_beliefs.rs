@@ -4,18 +4,18 @@ use crate::mind::AspectBelief;
 use crate::mind::recorded_estimate::AspectEstimate;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
-/// Row of the table of beliefs: estimated and recorded belief about one aspect before a human press.
+/// Row of the table of beliefs: estimated and recorded belief about one state aspect before a press of the human.
 #[derive(Clone, Copy, Debug)]
 pub struct BeliefRow<'a> {
-    /// Folder of the recording.
+    /// Name of the recording in tables.
     pub recording: &'a str,
     /// Sequence number of the press in the log.
     pub seq: u64,
     /// True value of the state aspect.
     pub truth: &'a str,
-    /// Estimate of the belief before the press.
+    /// Estimate of the belief about the aspect before the press.
     pub estimate: &'a AspectEstimate,
-    /// Recorded belief, for simulated participants.
+    /// Recorded belief about the aspect; `None` for people.
     pub believed: Option<&'a AspectBelief>,
 }
 

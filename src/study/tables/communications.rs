@@ -1,22 +1,22 @@
-//! Table of sent and hypothetical communications.
+//! Table of communications that were sent, and of those that a concept would have sent.
 
 use crate::kitchen::Kitchen;
 use crate::measures::matching::{CommunicationEvent, CommunicationKind};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
-/// Row of the table of communications: one that was sent, or that a concept would have sent.
+/// Row of the table of communications: a communication that was sent, or that a concept would have sent.
 #[derive(Clone, Copy, Debug)]
 pub struct CommunicationRow<'a> {
-    /// Folder of the recording.
+    /// Name of the recording in tables.
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
     /// Sender of the communication: wizard, assistant, or the concept of a hypothetical communication.
     pub lane: &'a str,
-    /// The communication, with number of presses and time.
+    /// The communication, with the number of presses before it and its time.
     pub sent: &'a CommunicationEvent,
-    /// Sequence number of the offer whose signal this was, if the wizard could see one.
+    /// Sequence number of the offer that the communication took or met; `None` if the wizard could see no such offer.
     pub offer: Option<u64>,
     /// Whether another sender has a matching communication within the window; `None` without another sender.
     pub matched: Option<bool>,

@@ -6,7 +6,7 @@ use crate::study::prevention::PreventionCounts;
 use crate::study::roc::PreventedTrialErrors;
 use crate::study::trial_statistics::TrialStatistics;
 
-/// Row of the table of concepts: a concept with one parameter value in an unassisted trial.
+/// Row of the table of concepts: a concept with one value of its parameter in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
     trial: &'a TrialStatistics,

@@ -5,36 +5,36 @@ use crate::kitchen::{Kitchen, LocationId};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
-/// Successive gaze samples on one location, or on none.
+/// A gaze run: successive gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRun {
-    /// Location of the gaze; `None` if it was on no location, or not usable.
+    /// Location at which the gaze was; `None` if it was at no location, or not usable.
     pub location: Option<LocationId>,
     /// Session time at which the first sample of the run was taken.
     pub began: SessionTime,
     /// Session time at which the last sample of the run was taken.
     pub last: SessionTime,
-    /// Sums of x, y and confidence over the run's samples.
+    /// Sums of x, y and confidence over the samples of the gaze run.
     pub sums: [f64; 3],
-    /// Number of samples in the run.
+    /// Number of gaze samples in the run.
     pub samples: u64,
 }
 
 impl GazeRun {
-    /// Mean over the run of x (`of` is 0), y (1) or confidence (2).
+    /// Mean over the gaze run of x (`of` is 0), y (1) or confidence (2).
     fn mean(&self, of: usize) -> f64 {
         rounded(self.sums[of] / self.samples as f64)
     }
 }
 
-/// Row of the table of gaze: a run with its recording.
+/// Row of the table of gaze: a gaze run with its recording.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRow<'a> {
-    /// Folder of the recording.
+    /// Name of the recording in tables.
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// Time at which the run begins, on the trial's clock in seconds.
+    /// Time at which the gaze run begins, on the trial's clock in seconds.
     pub time_s: f64,
     /// The gaze run of the row.
     pub run: GazeRun,

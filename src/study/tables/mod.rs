@@ -1,4 +1,4 @@
-//! Declarations of the CSV tables: the type of a row, and the columns.
+//! Declarations of the CSV tables of a study: the type of a row, and the columns.
 
 pub mod actions;
 mod arm_columns;

@@ -1,4 +1,4 @@
-//! Table of offers that a wizard could see.
+//! Table of the offers that a wizard could see in a trial.
 
 use crate::analysis::offer_summary::TimedOffer;
 use crate::communication::Signal;
@@ -6,12 +6,12 @@ use crate::communication::offer::{OfferCloseReason, OfferKeyUse, OfferedCommunic
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
-/// Row of the table of offers: an offer of a recording.
+/// Row of the table of offers: an offer to the wizard in a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct OfferRow<'a> {
-    /// Folder of the recording.
+    /// Name of the recording in tables.
     pub recording: &'a str,
-    /// The offer with its times.
+    /// The offer with the times at which it opened, closed and was sent.
     pub timed: &'a TimedOffer,
 }
 

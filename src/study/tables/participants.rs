@@ -6,11 +6,12 @@ use crate::study::recorded_consent::RecordedConsent;
 use crate::study::tables::trials::{HEADLINE, measures};
 use crate::study::trial_statistics::TrialStatistics;
 
-/// A participant with its trials, at least one, and the first consent that it gave, if one is recorded.
+/// A participant with the participant's trials (at least one), and the first consent, if a consent is recorded.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticipantRow<'a>(&'a [TrialStatistics], Option<&'a RecordedConsent>);
 
-/// Participants of these trials, which must be ordered by participant, with their consents, which must be ordered by time.
+/// Participants of these trials, which must be ordered by participant, with their consents, which must be ordered by
+/// time.
 pub fn participants<'a>(
     trials: &'a [TrialStatistics],
     consents: &'a [RecordedConsent],
@@ -21,8 +22,8 @@ pub fn participants<'a>(
 }
 
 impl ParticipantRow<'_> {
-    /// The compared pair of trials for a measure; `None` unless the participant has two trials that count and have the
-    /// measure.
+    /// The participant's compared pair of trials for a measure; `None` unless two trials of the participant count and
+    /// have the measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
         pairs(self.0, measure).pop()
     }

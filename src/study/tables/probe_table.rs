@@ -18,7 +18,7 @@ pub const PROBES_WRONG: StudyMeasure = StudyMeasure {
     value: |trial| trial.probes.as_ref().and_then(ProbedTrial::share_wrong),
 };
 
-/// Row of the table of probes: a question of a recording.
+/// Row of the table of probes: a question of a freeze probe in a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeRow<'a> {
     trial: &'a TrialStatistics,
@@ -45,7 +45,8 @@ impl ProbeRow<'_> {
     }
 }
 
-/// Text with the values that the estimate gives at least the probability [`WORTH_TELLING`], the most probable first.
+/// Text with the values to which the estimate gives at least the probability [`WORTH_TELLING`], the most probable
+/// first.
 fn told(frozen: &AspectAtFreeze) -> String {
     let mut told: Vec<(&String, f64)> = frozen.estimate_p.iter().map(|(name, p)| (name, *p)).collect();
     told.retain(|(_, p)| *p >= WORTH_TELLING);
@@ -117,7 +118,7 @@ fn answer<'a>() -> Vec<ProbeColumn<'a>> {
     ]
 }
 
-/// Columns with truth, estimate and belief at the freeze; empty for questions of level 2.
+/// Columns with truth, estimate and belief at the freeze; empty for questions about what comes next (level 2).
 fn frozen<'a>() -> Vec<ProbeColumn<'a>> {
     let p_false = "probability by the estimate that the belief in the truth is below one half: the prediction that calibration judges";
     let believed = "probability of the true value in a simulated participant's belief";

@@ -11,7 +11,7 @@ pub struct AnswerRow<'a> {
     answer: &'a QuestionnaireAnswer,
 }
 
-/// Rows for the answers given after a trial.
+/// Rows of the table for the questionnaire answers given after a trial.
 pub fn answers(trial: &TrialStatistics) -> impl Iterator<Item = AnswerRow<'_>> {
     trial.answers.iter().map(move |answer| AnswerRow { trial, answer })
 }

@@ -11,7 +11,7 @@ pub(super) enum TrialColumn {
     Compared(StudyMeasure),
 }
 
-/// Declares a column that the report does not compare.
+/// Declares a column of the table of trials that the report does not compare.
 pub(super) fn plain(
     name: &'static str,
     unit: &'static str,

@@ -16,7 +16,7 @@ use crate::study::tables::arm_columns;
 use crate::study::tables::probe_table::PROBES_WRONG;
 use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean_length};
 
-/// Main measure of the report, the first that is compared.
+/// Main measure of the report, which is the first of the compared measures.
 pub const HEADLINE: StudyMeasure = StudyMeasure {
     name: "error_rate_human",
     unit: "errors per press of the human",
@@ -27,7 +27,8 @@ pub const HEADLINE: StudyMeasure = StudyMeasure {
     value: TrialStatistics::error_rate_human,
 };
 
-/// Number of errors, which the paper compares. Since trials differ in length, the error rate is the main measure.
+/// Number of errors, which the paper compares. The report's main measure is the error rate, since trials differ in
+/// length.
 const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
     name: "errors",
     unit: "errors",
@@ -38,14 +39,14 @@ const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
     value: |trial| Some(trial.errors as f64),
 };
 
-/// The compared measures in the order of columns; the first is [`HEADLINE`], the last are the number of errors and
-/// measures that were added later.
+/// The compared measures in the order of their columns; the first is [`HEADLINE`], the last are the number of errors
+/// and measures that were added later.
 pub fn measures() -> Vec<StudyMeasure> {
     let measure = |column: TrialColumn| match column {
         Compared(measure) => Some(measure),
         TrialColumn::Plain(_) => None,
     };
-    // Measures are compared by their names.
+    // Two measures are the same if their names are.
     let rank = |measure: &StudyMeasure| match measure {
         one if *one == HEADLINE => 0,
         one if *one == NUMBER_OF_ERRORS => 2,
@@ -71,7 +72,7 @@ impl CsvRow for TrialStatistics {
     }
 }
 
-/// All columns of the table of trials, in file order; new columns are appended.
+/// All columns of the table of trials, in the order of the file; new columns are appended at the end.
 fn declared() -> impl Iterator<Item = TrialColumn> {
     kind_of_trial()
         .into_iter()
@@ -239,7 +240,7 @@ fn robot() -> Vec<TrialColumn> {
     ]
 }
 
-/// One column per reason for aborting a press of the robot.
+/// One column for each reason for which the robot aborts a press.
 fn presses_given_up() -> Vec<TrialColumn> {
     let why = |reason: AbortReason| match reason {
         AbortReason::NoLongerUseful => ("no_longer_useful", "the press was no longer useful when the arm arrived"),
@@ -280,7 +281,7 @@ fn by_hand() -> Vec<TrialColumn> {
     ]
 }
 
-/// Columns with error sequences, lost presses, and errors by kind of state aspect.
+/// Columns with error sequences, lost presses (regret), and errors by kind of state aspect.
 fn work() -> Vec<TrialColumn> {
     fn cause(name: &'static str, meaning: &'static str, count: fn(&CauseKindCounts) -> u64) -> TrialColumn {
         TrialColumn::Plain(TrialStatistics::column(name, "errors", meaning, move |trial| {

@@ -9,31 +9,31 @@ use crate::session::tutorial::TutorialEvent;
 use crate::session::{Event, SessionSpec, TimestampedEvent};
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
-/// Row of the table of tutorials: a question with the participant's answers.
+/// Row of the table of tutorials: a question of a tutorial with the participant's answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TutorialAnswer {
     /// The recording's name in tables.
     pub recording: String,
     /// The participant's code.
     pub participant: String,
-    /// The tutorial's name.
+    /// The name of the tutorial in its file.
     pub tutorial: String,
     /// Identifier of the tutorial's step.
     pub step: String,
-    /// The question, as the participant read it.
+    /// The tutorial's question, as the participant read it.
     pub question: String,
-    /// Text of the first answer; `None` if the question was not answered.
+    /// Text of the participant's first answer; `None` if the question was not answered.
     pub first_answer: Option<String>,
-    /// Number of answers given, including the right one.
+    /// Number of answers that the participant gave, including the right one.
     pub tries: u32,
-    /// Whether the last answer was right; `None` if the question was not answered.
+    /// Whether the participant's last answer was right; `None` if the question was not answered.
     pub right: Option<bool>,
     /// Time from the question's first appearance to the right answer, in seconds.
     pub seconds: Option<f64>,
 }
 
 impl TutorialAnswer {
-    /// Whether the first answer was right.
+    /// Whether the participant's first answer was right.
     pub fn is_right_at_once(&self) -> bool {
         self.tries == 1 && self.right == Some(true)
     }
@@ -81,7 +81,7 @@ impl<'a> TutorialAnswers<'a> {
         Some(TutorialAnswers { first, open: open.collect(), has_begun: false })
     }
 
-    /// Takes note of an event of the recording.
+    /// Notes the next event of the recording.
     pub fn note(&mut self, stamped: &TimestampedEvent) {
         let Event::Protocol(event) = &stamped.event else { return };
         match event {
@@ -119,7 +119,7 @@ impl<'a> TutorialAnswers<'a> {
         }
     }
 
-    /// The questions with their answers, in the tutorial's order; empty if the tutorial did not begin.
+    /// The tutorial's questions with their answers, in the tutorial's order; empty if the tutorial did not begin.
     pub fn finish(self) -> Vec<TutorialAnswer> {
         let has_begun = self.has_begun;
         self.open.into_iter().filter(|_| has_begun).map(|question| question.answer).collect()

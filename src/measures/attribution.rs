@@ -1,11 +1,12 @@
 //! Attribution of an error to a cause: a false belief, or a slip.
 //!
 //! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with the belief b from before the press and p
-//! of the human model. It is attributed to the target (a location, or a recipe) whose replacement by the truth lowers
-//! p(a | b) most. A single target explains the error if the press would not be belief related any more; where none
-//! does, the best pair is named. Every error that is not belief related is a slip. Simulated participants do not decide
-//! by that model: they record the cause themselves, by repeating their decision with the truth, and distinguish
-//! planning errors from slips.
+//! of the human model. A belief related error is attributed to the target (a location, or a recipe) whose replacement
+//! by the truth lowers p(a | b) most. A single target explains the error if, after the replacement, the press would not
+//! be belief related any more; where no single target explains the error, the best pair of targets is named. Every
+//! error that is not belief related is a slip. Simulated participants do not decide by the human model: they record the
+//! cause of an error themselves, by repeating their decision with the truth, and distinguish planning errors from
+//! slips.
 
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -21,15 +22,15 @@ pub const LIKELIER: f64 = 3.0;
 /// Least probability of a false belief about a target that can be part of a pair of causes.
 const DOUBTFUL: f64 = 0.1;
 
-/// What a false belief behind an error is about, and a signal can correct; an order and the recipe of its dish are one
-/// target.
+/// What a false belief behind an error is about, so that a signal can correct the belief; an order and the recipe of
+/// its dish are one target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FalseBeliefTarget {
-    /// An order and the recipe of its dish.
+    /// A false belief about an order or about the recipe of its dish.
     Order(LocationId, Option<DishId>),
-    /// The content of a location other than an order.
+    /// A false belief about the content of a location other than an order.
     Place(LocationId),
-    /// The recipe of a dish that is not ordered.
+    /// A false belief about the recipe of a dish that is not ordered.
     Recipe(DishId),
 }
 
@@ -41,20 +42,20 @@ pub enum ErrorCause {
     Slip,
     /// A planning error: a simulated participant would have pressed the same button with true beliefs.
     Planning,
-    /// A false belief: it made the press likelier than the truth would have.
+    /// A false belief: the belief made the press likelier than the truth would have.
     Belief {
-        /// log p(a | b) - log p(a | truth), in nats; infinite where a simulated participant recorded the cause, NaN
-        /// where raters coded it.
+        /// log p(a | b) - log p(a | truth) of the press, in nats; infinite where a simulated participant recorded the
+        /// cause of the error, NaN where raters coded the cause.
         gain_nats: f64,
         /// What the false belief is about.
         target: FalseBeliefTarget,
-        /// Second target, where a single target does not explain the error.
+        /// Second target of the false belief, where a single target does not explain the error.
         with: Option<FalseBeliefTarget>,
     },
 }
 
 impl FalseBeliefTarget {
-    /// All targets that a false belief can be about in a state.
+    /// All targets that a false belief of the human can be about in a state of the kitchen.
     pub fn all(kitchen: &Kitchen, state: State) -> Vec<FalseBeliefTarget> {
         let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
         let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
@@ -67,7 +68,7 @@ impl FalseBeliefTarget {
         locations.map(of_location).chain(unwanted.map(FalseBeliefTarget::Recipe)).collect()
     }
 
-    /// The state aspects of the target.
+    /// The state aspects that this target of a false belief covers.
     pub fn aspects(self, kitchen: &Kitchen) -> impl Iterator<Item = AspectId> {
         let (location, dish) = match self {
             FalseBeliefTarget::Order(location, dish) => (Some(location), dish),
@@ -78,7 +79,7 @@ impl FalseBeliefTarget {
         location.map(AspectId::of_location).into_iter().chain(recipe)
     }
 
-    /// The target in words: "cooking pot", "tuna maki of order 1".
+    /// The target of the false belief in words: "cooking pot", "tuna maki of order 1".
     pub fn label(self, kitchen: &Kitchen) -> String {
         match self {
             FalseBeliefTarget::Order(order, Some(dish)) => {
@@ -93,8 +94,8 @@ impl FalseBeliefTarget {
 }
 
 impl ErrorCause {
-    /// The cause of an error that a simulated participant recorded before its press in `state`; `None` if it recorded
-    /// none.
+    /// The cause of an error that a simulated participant recorded before its press in `state`; `None` if the
+    /// participant recorded no cause.
     pub fn recorded(kitchen: &Kitchen, state: State, witness: &RecordedBelief) -> Option<ErrorCause> {
         match witness.origin? {
             PressOrigin::Plan => return Some(ErrorCause::Planning),
@@ -128,13 +129,14 @@ struct Inquiry<'a> {
 }
 
 impl ErrorAttributor {
-    /// Attributes errors by this choice model; `seed` names the random stream of the worlds that it draws.
+    /// Creates an attributor that uses this choice model; `seed` names the random stream of the worlds that the
+    /// attributor draws.
     pub fn new(model: ChoiceParameters, seed: u64) -> ErrorAttributor {
         ErrorAttributor { model, seed }
     }
 
-    /// The cause of an error, given the belief before it. `number` is the number of presses of both agents including
-    /// this one; it seeds the random stream.
+    /// The cause of an error, given the human's belief before the error. `number` is the number of presses of both
+    /// agents including the erroneous press; the number seeds the random stream.
     pub fn cause(
         &self,
         kitchen: &Kitchen,
@@ -160,18 +162,19 @@ impl ErrorAttributor {
 }
 
 impl Inquiry<'_> {
-    /// The log probability of the press under a belief.
+    /// The log probability of the press under a belief, which the weighted worlds represent.
     fn log_p(&self, cost: &mut CostToGo, worlds: &WeightedWorlds) -> f64 {
         self.model.probabilities(cost, worlds).press[self.button.index()].ln()
     }
 
-    /// The target, or pair of targets, whose replacement by the truth makes the press unlikely enough.
+    /// The target, or pair of targets, of a false belief whose replacement by the truth makes the press unlikely
+    /// enough.
     fn explain(&self, cost: &mut CostToGo, informed: f64) -> Option<(FalseBeliefTarget, Option<FalseBeliefTarget>)> {
         let mut targets = FalseBeliefTarget::all(self.kitchen, self.state);
         targets.retain(|&target| self.doubt(target) > 0.0);
         let mut singles: Vec<(f64, FalseBeliefTarget)> =
             targets.into_iter().map(|target| (self.log_p(cost, &self.told(&self.worlds, target)), target)).collect();
-        // The sort is stable: ties go to the layout's order.
+        // The sort is stable: targets with equal values stay in the layout's order.
         singles.sort_by(|a, b| a.0.total_cmp(&b.0));
         let &(least, target) = singles.first()?;
         if least - informed < LIKELIER.ln() {
@@ -181,8 +184,8 @@ impl Inquiry<'_> {
         Some(self.best_pair(cost, &singles, least).map_or((target, None), |(one, other)| (one, Some(other))))
     }
 
-    /// The pair of targets whose replacement by the truth lowers the log probability of the press most, if it falls
-    /// below `least`; the target with the larger effect of its own comes first.
+    /// The pair of targets whose replacement by the truth lowers the log probability of the press most, if the log
+    /// probability falls below `least`; the target with the larger effect of its own comes first.
     fn best_pair(
         &self,
         cost: &mut CostToGo,
@@ -209,7 +212,7 @@ impl Inquiry<'_> {
         wrong.map(|(held, _)| held.weight).sum()
     }
 
-    /// The same worlds with the value of one target replaced by the truth.
+    /// The same worlds with the value of one target of a false belief replaced by the truth.
     fn told(&self, worlds: &WeightedWorlds, target: FalseBeliefTarget) -> WeightedWorlds {
         let mut worlds = worlds.clone();
         for aspect in target.aspects(self.kitchen) {

@@ -6,20 +6,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BeliefSource {
-    /// Beliefs that a simulated participant recorded.
+    /// Beliefs that a simulated participant recorded before each press.
     Recorded,
-    /// Answers to freeze probes; they reveal false beliefs, but not the causes of errors.
+    /// Answers to freeze probes; the answers reveal false beliefs, but not the causes of errors.
     Probes,
     /// Consensus of two raters on the cause of every error.
     Consensus,
     /// Codes of two raters for the cause of every error; an error is belief related if both coded a false belief.
     Raters,
-    /// The assistant's estimate; not sufficient for the main results of a study.
+    /// The assistant's estimate of the participant's beliefs; the estimate is not sufficient for the main results of a
+    /// study.
     Estimate,
 }
 
 impl BeliefSource {
-    /// Name of the source in tables.
+    /// Name of the source of beliefs in tables.
     pub fn name(self) -> &'static str {
         match self {
             BeliefSource::Recorded => "recorded",
@@ -30,7 +31,7 @@ impl BeliefSource {
         }
     }
 
-    /// The source of knowledge about beliefs in words.
+    /// The source of beliefs in words.
     pub fn words(self) -> &'static str {
         match self {
             BeliefSource::Recorded => "the recorded beliefs of simulated participants",

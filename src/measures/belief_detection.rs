@@ -1,13 +1,14 @@
-//! Detection of false beliefs by an estimate, compared with known beliefs: those that simulated participants record
-//! before each press.
+//! Detection of false beliefs by an estimate, compared with known beliefs: the beliefs that simulated participants
+//! record before each press.
 //!
-//! The unit is a press of the human, with the estimate right before it. A belief about an aspect is false if the
+//! The unit is a press of the human, with the estimate right before the press. A belief about an aspect is false if the
 //! participant's own P(truth) is below 0.5. The area under the ROC curve of a group (locations, recipes) is computed
-//! over all its pairs of a press and an aspect together: the score has to distinguish an aspect that is believed wrong
-//! now both from the others and from itself at other times. The macro-average is the mean of the two groups, so that
-//! the many pairs of one do not hide the other. Calibration judges the predicted probability of a false belief (the
-//! probability that the participant's P(truth) is below 0.5), not the expected probability of wrong values. The mean
-//! over single aspects is reported as well; it depends much on aspects that are hardly ever wrong.
+//! over all pairs of a press and an aspect of the group together: the score has to distinguish an aspect that is
+//! believed wrong now both from the other aspects and from the same aspect at other times. The macro-average is the
+//! mean of the two groups, so that the many pairs of one group do not hide the other group. Calibration judges the
+//! predicted probability of a false belief (the probability that the participant's P(truth) is below 0.5), not the
+//! expected probability of wrong values. The mean over single aspects is reported as well; this mean depends much on
+//! aspects that are hardly ever wrong.
 
 use serde::Serialize;
 
@@ -16,8 +17,8 @@ use super::flags::{AspectGroups, FlagPerformance, FlagThresholds};
 pub use super::press_view::{BeliefsBeforePress, EstimateBeforePress, TrialView};
 use crate::kitchen::{AspectKind, Kitchen};
 
-/// Calibration uses only predicted probabilities within this range, since most aspects are obviously right most of the
-/// time.
+/// Calibration uses only predicted probabilities within this range, since the beliefs about most aspects are obviously
+/// right most of the time.
 pub const CALIBRATED: [f64; 2] = [0.05, 0.95];
 /// Number of calibration bins.
 pub const CALIBRATION_BINS: usize = 10;
@@ -33,24 +34,25 @@ pub struct AspectAuc {
     pub wrong: f64,
 }
 
-/// How well an estimate detects false beliefs; values are null without an estimate or without known beliefs.
+/// Measures of how well an estimate detects false beliefs; values are null without an estimate or without known
+/// beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FalseBeliefDetection {
     /// Mean of the areas under the ROC curves of locations and recipes.
     pub auc: Option<f64>,
-    /// Area under the ROC curve over the locations.
+    /// Area under the ROC curve over the aspects that are locations.
     pub auc_locations: Option<f64>,
-    /// Area under the ROC curve over the recipes.
+    /// Area under the ROC curve over the aspects that are recipes.
     pub auc_recipes: Option<f64>,
     /// Area under the ROC curve of the baseline for locations, which knows only whether somebody else changed a
     /// location since the human last looked at it.
     pub auc_baseline: Option<f64>,
     /// Area under the ROC curve of the baseline for locations, which knows only how long ago somebody else last changed
-    /// a location: without gaze there is no better one.
+    /// a location: without gaze there is no better baseline.
     pub auc_recency: Option<f64>,
     /// Mean of the areas under the ROC curves of single aspects.
     pub auc_mean_of_aspects: Option<f64>,
-    /// How well the chosen thresholds flag false belief episodes.
+    /// Measures of how well the chosen thresholds flag false belief episodes.
     #[serde(flatten)]
     pub flags: FlagPerformance,
     /// The expected calibration error of the predicted probabilities of a false belief within [`CALIBRATED`].
@@ -62,8 +64,9 @@ pub struct FalseBeliefDetection {
 }
 
 impl FalseBeliefDetection {
-    /// Compares estimates with known beliefs. `thresholds` are those from which an aspect is flagged; with
-    /// `None` they are chosen on other trials than they are evaluated on (see [`FlagPerformance`]).
+    /// Compares estimates with known beliefs. `thresholds` are the values from which on an aspect is flagged; with
+    /// `None` the thresholds are chosen on other trials than the trials on which they are evaluated (see
+    /// [`FlagPerformance`]).
     pub fn from_trials(
         kitchen: &Kitchen,
         trials: &[TrialView],
@@ -105,25 +108,26 @@ impl FalseBeliefDetection {
 /// Function that scores one aspect before a press.
 type Score<'a> = &'a dyn Fn(&BeliefsBeforePress, usize) -> Option<f64>;
 
-/// Scores of aspects before every press, each with whether the belief was false; only where both are known.
+/// Scores of aspects before every press, each with whether the belief about the aspect was false; pairs are included
+/// only where score and belief are known.
 fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
     let one = |press: &BeliefsBeforePress, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
     presses.flat_map(|press| aspects.iter().filter_map(move |&aspect| one(press, aspect))).collect()
 }
 
-/// The aspects of a kitchen by group: locations, recipes.
+/// The indices of a kitchen's aspects in two groups: locations, recipes.
 pub fn aspect_groups(kitchen: &Kitchen) -> AspectGroups {
     [aspects(kitchen, false), aspects(kitchen, true)]
 }
 
-/// The indices of the aspects that are recipes, or that are not.
+/// The indices of the aspects that are recipes, or, with `recipes` false, of the aspects that are locations.
 fn aspects(kitchen: &Kitchen, recipes: bool) -> Vec<usize> {
     let is_recipe = |index: &usize| matches!(kitchen.aspects[*index].kind, AspectKind::Recipe(_));
     (0..kitchen.aspects.len()).filter(|index| is_recipe(index) == recipes).collect()
 }
 
-/// The mean of numbers; `None` for an empty list.
+/// The mean of the numbers; `None` without numbers.
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))

@@ -1,5 +1,6 @@
 //! Raters' codes of error causes. The beliefs of people are unknown, so two raters independently code the errors of a
-//! trial, and Cohen's kappa (1960, "A coefficient of agreement for nominal scales") measures their agreement.
+//! trial, and Cohen's kappa (1960, "A coefficient of agreement for nominal scales") measures the agreement of their
+//! codes.
 
 use std::collections::BTreeMap;
 
@@ -13,15 +14,17 @@ use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
 /// Cause of an error as coded by a rater.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ErrorCauseCode {
-    /// A false belief; contains the location's name. An order location stands for the recipe of its dish.
+    /// A false belief caused the error; contains the location's name. An order location stands for the recipe of its
+    /// dish.
     Belief(String),
-    /// A slip of hand or attention, without a false belief.
+    /// A slip of hand or attention, without a false belief, caused the error.
     Slip,
-    /// A race: the robot changed the location shortly before the press, too late for the participant to react.
+    /// A race caused the error: the robot changed the location shortly before the press, too late for the participant
+    /// to react.
     Race,
-    /// Another cause of the error.
+    /// Another cause of the error than those with a code of their own.
     Other,
-    /// Confused buttons: the participant wanted to press another one.
+    /// Confused buttons: the participant wanted to press another button.
     Buttons,
 }
 
@@ -29,20 +32,20 @@ pub enum ErrorCauseCode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorCauseKind {
-    /// A false belief of the participant.
+    /// A false belief of the participant caused the error.
     Belief,
-    /// A slip of hand or attention.
+    /// A slip of hand or attention caused the error.
     Slip,
-    /// A race: the robot changed the location before the participant could react.
+    /// A race caused the error: the robot changed the location before the participant could react.
     Race,
-    /// Another cause of the error.
+    /// Another cause of the error than the kinds listed here.
     Other,
-    /// Confused buttons: the participant wanted to press another one.
+    /// Confused buttons: the participant wanted to press another button.
     Buttons,
 }
 
 impl ErrorCauseKind {
-    /// All kinds of causes, in the order of the keys that code them.
+    /// All kinds of error causes, in the order of the keys that code them.
     pub const ALL: [ErrorCauseKind; 5] = [
         ErrorCauseKind::Belief,
         ErrorCauseKind::Slip,
@@ -51,7 +54,7 @@ impl ErrorCauseKind {
         ErrorCauseKind::Buttons,
     ];
 
-    /// Name of the cause in files.
+    /// Name of the cause kind in files.
     pub fn name(self) -> &'static str {
         match self {
             ErrorCauseKind::Belief => "belief",
@@ -62,7 +65,7 @@ impl ErrorCauseKind {
         }
     }
 
-    /// Name of the cause in the raters' codebook.
+    /// Name of the cause kind in the raters' codebook.
     pub fn title(self) -> &'static str {
         match self {
             ErrorCauseKind::Belief => "wrong about",
@@ -73,7 +76,7 @@ impl ErrorCauseKind {
         }
     }
 
-    /// Definition of the cause in the raters' codebook, in one line.
+    /// Definition of the cause kind in the raters' codebook, in one line.
     pub fn definition(self) -> &'static str {
         match self {
             ErrorCauseKind::Belief => "order: or its recipe",
@@ -84,7 +87,7 @@ impl ErrorCauseKind {
         }
     }
 
-    /// The definition of the cause in two words, for narrow screens; `None` where the title suffices.
+    /// The definition of the cause kind in two words, for narrow screens; `None` where the title suffices.
     pub fn short_definition(self) -> Option<&'static str> {
         match self {
             ErrorCauseKind::Slip => Some("belief right"),
@@ -93,14 +96,15 @@ impl ErrorCauseKind {
         }
     }
 
-    /// The kind of cause with this name.
+    /// The kind of error cause with this name.
     pub fn named(name: &str) -> Option<ErrorCauseKind> {
         ErrorCauseKind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 }
 
 impl ErrorCauseCode {
-    /// The code for a kind of cause; `aspect` names the location of a false belief and is given for false beliefs only.
+    /// The code for a kind of error cause; `aspect` names the location of a false belief and is given for false beliefs
+    /// only.
     pub fn new(kind: ErrorCauseKind, aspect: Option<&str>) -> Option<ErrorCauseCode> {
         match (kind, aspect) {
             (ErrorCauseKind::Belief, Some(aspect)) => Some(ErrorCauseCode::Belief(aspect.to_string())),
@@ -112,7 +116,7 @@ impl ErrorCauseCode {
         }
     }
 
-    /// The kind of the cause, without what a false belief is about.
+    /// The kind of the coded cause, without what a false belief is about.
     pub fn kind(&self) -> ErrorCauseKind {
         match self {
             ErrorCauseCode::Belief(_) => ErrorCauseKind::Belief,
@@ -123,7 +127,7 @@ impl ErrorCauseCode {
         }
     }
 
-    /// Name of the location that the false belief is about.
+    /// Name of the location that the coded false belief is about; `None` for other causes.
     pub fn aspect(&self) -> Option<&str> {
         match self {
             ErrorCauseCode::Belief(aspect) => Some(aspect),
@@ -131,7 +135,7 @@ impl ErrorCauseCode {
         }
     }
 
-    /// Target of the false belief, in the state before the press; `None` for other causes.
+    /// Target of the coded false belief, in the state before the press; `None` for other causes.
     pub fn target(&self, kitchen: &Kitchen, state: State) -> Option<FalseBeliefTarget> {
         let location = kitchen.location_named(self.aspect()?)?;
         Some(match (kitchen.location(location).kind, state.order(location)) {
@@ -152,7 +156,7 @@ pub struct CodableErrors {
 }
 
 impl CodableErrors {
-    /// The errors among these presses, and the locations of their kitchen.
+    /// Collects the errors among these presses, and the locations of the kitchen.
     pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress]) -> CodableErrors {
         CodableErrors {
             errors: presses.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect(),
@@ -160,7 +164,7 @@ impl CodableErrors {
         }
     }
 
-    /// What is wrong with a code for the press with this log number, and the remedy; `None` for a valid code.
+    /// Explains what is wrong with a code for the press with this log number, and the remedy; `None` for a valid code.
     pub fn fault(&self, press: u64, code: &ErrorCauseCode) -> Option<(String, String)> {
         if !self.errors.contains(&press) {
             return Some((format!("press {press}, which was no error"), self.nearest(press)));
@@ -196,7 +200,7 @@ impl RaterCodes {
                     target: FalseBeliefTarget::Order(location, _) | FalseBeliefTarget::Place(location),
                     ..
                 } => ErrorCauseCode::Belief(kitchen.location(location).name.clone()),
-                // A false recipe belief has no location if no order requests the dish.
+                // A false belief about a recipe has no location if no order requests the dish.
                 ErrorCause::Belief { target: FalseBeliefTarget::Recipe(_), .. } => ErrorCauseCode::Other,
             })
         };
@@ -210,11 +214,11 @@ impl RaterCodes {
     }
 }
 
-/// Contingency table of two raters' codes over the errors that both coded; recordings are added to it.
+/// Contingency table of two raters' codes over the errors that both raters coded; recordings are added to the table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AgreementTable {
     kinds: BTreeMap<(ErrorCauseKind, ErrorCauseKind), u64>,
-    /// Counts of location pairs (as indices of names) for errors that both raters coded as false beliefs.
+    /// Counts of location pairs (as indices of location names) for errors that both raters coded as false beliefs.
     aspects: BTreeMap<(usize, usize), u64>,
     names: Vec<String>,
 }
@@ -233,7 +237,7 @@ pub struct RaterAgreement {
     pub beliefs: u64,
     /// Number of errors that both raters attributed to a false belief about the same location.
     pub same_aspect: u64,
-    /// Cohen's kappa of the false belief's location.
+    /// Cohen's kappa of the location that the false belief is about.
     pub kappa_aspect: Option<f64>,
 }
 
@@ -260,7 +264,7 @@ impl AgreementTable {
         }
     }
 
-    /// Computes the agreement from the table.
+    /// Computes the agreement of the two raters from the table.
     pub fn agreement(&self) -> RaterAgreement {
         RaterAgreement {
             errors: self.kinds.values().sum(),

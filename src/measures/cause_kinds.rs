@@ -15,16 +15,16 @@ pub struct CauseKindCounts {
     pub orders: u64,
     /// Number of errors from a false belief about a recipe.
     pub recipes: u64,
-    /// Number of errors about an ordered dish where both order and recipe were believed wrong, or it is unknown which
-    /// of them.
+    /// Number of errors about an ordered dish where order and recipe were both believed wrong, or where it is unknown
+    /// which of the two was.
     pub order_or_recipe: u64,
     /// Number of errors from a false belief about the content of any other location.
     pub places: u64,
 }
 
 impl CauseKindCounts {
-    /// Counts these presses. `episodes` tells whether the belief about an order or about its recipe was false at the
-    /// time of an error.
+    /// Counts the belief related errors among these presses. `episodes` tells whether the belief about an order or
+    /// about its recipe was false at the time of an error.
     pub fn from_presses(
         kitchen: &Kitchen,
         presses: &[JudgedPress],
@@ -56,7 +56,7 @@ impl CauseKindCounts {
         counts
     }
 
-    /// Sum of two counts of belief related errors.
+    /// Adds two counts of belief related errors.
     pub fn plus(self, other: CauseKindCounts) -> CauseKindCounts {
         CauseKindCounts {
             orders: self.orders + other.orders,

@@ -1,5 +1,5 @@
-//! Consensus codes: the causes of errors that two raters settle together where their codes differ. A consensus is not a
-//! third rater: agreement is computed from the raters' own codes alone.
+//! Consensus codes: the causes of errors that two raters settle together where their own codes differ. A consensus is
+//! not a third rater: agreement is computed from the raters' own codes alone.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,8 @@ pub struct ConsensusCode {
 pub struct RaterConsensus {
     /// The two raters, in the order of their codes.
     pub raters: [String; 2],
-    /// The shared codes by press, decided together or equal from the beginning.
+    /// The shared codes by erroneous press; the raters decided on them together, or their own codes were equal from the
+    /// beginning.
     pub settled: BTreeMap<u64, ConsensusCode>,
 }
 
@@ -33,7 +34,7 @@ pub struct ChangedCode {
 }
 
 impl RaterConsensus {
-    /// A consensus without any settled errors. The order of the two raters has no meaning.
+    /// Creates a consensus without any settled errors. The order of the two raters has no meaning.
     pub fn new(one: &str, other: &str) -> RaterConsensus {
         let mut raters = [one.to_string(), other.to_string()];
         raters.sort();
@@ -54,7 +55,7 @@ impl RaterConsensus {
         self
     }
 
-    /// Adds codes that the two raters decided together; `codes` are their own codes at that time.
+    /// Adds codes that the two raters decided together; `codes` are the raters' own codes at that time.
     pub fn with_decided(mut self, decided: &RaterCodes, codes: [&RaterCodes; 2]) -> RaterConsensus {
         for (press, code) in &decided.0 {
             let from = codes.map(|codes| codes.0.get(press).cloned());
@@ -63,7 +64,8 @@ impl RaterConsensus {
         self
     }
 
-    /// The raters' own codes that changed since the consensus; any of them makes the consensus on its error stale.
+    /// The raters' own codes that changed since the consensus; each changed code makes the consensus on its error
+    /// stale.
     pub fn changed(&self, codes: [&RaterCodes; 2]) -> Vec<ChangedCode> {
         let mut changed = Vec::new();
         for (press, settled) in &self.settled {
@@ -76,7 +78,7 @@ impl RaterConsensus {
         changed
     }
 
-    /// The shared codes whose underlying raters' codes have not changed since.
+    /// The shared codes for errors whose codes by the two raters have not changed since the consensus.
     pub fn current(&self, codes: [&RaterCodes; 2]) -> RaterCodes {
         let stale = self.changed(codes);
         let holds = |press: &u64| stale.iter().all(|changed| changed.press != *press);
@@ -91,12 +93,13 @@ impl RaterConsensus {
 }
 
 impl ConsensusCode {
-    /// Whether both raters had given this code by themselves.
+    /// Whether both raters had given this code before they talked about the error.
     pub fn is_agreed(&self) -> bool {
         self.from.iter().all(|from| from.as_ref() == Some(&self.code))
     }
 
-    /// Why a shared code is invalid: it contradicts a code on which both raters agreed. `None` for a valid code.
+    /// Why a shared code is invalid: the shared code contradicts a code on which both raters agreed. `None` for a valid
+    /// code.
     pub fn fault(&self) -> Option<&'static str> {
         let [one, other] = &self.from;
         let overrules = one.is_some() && one == other && one.as_ref() != Some(&self.code);
@@ -104,7 +107,7 @@ impl ConsensusCode {
     }
 }
 
-/// The errors that two raters still have to settle: their codes differ, or one of the codes is missing.
+/// The errors that two raters still have to settle: the raters' codes differ, or one of the codes is missing.
 pub fn unsettled(errors: &[u64], codes: [&RaterCodes; 2]) -> Vec<u64> {
     let [one, other] = codes;
     let differs = |press: &u64| match (one.0.get(press), other.0.get(press)) {

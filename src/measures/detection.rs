@@ -3,15 +3,15 @@
 use serde::Serialize;
 
 /// Area under the ROC curve from pairs (score, is positive): the share of pairs of a positive and a negative in which
-/// the positive scores higher; ties count as half (mid-ranks; Hanley and McNeil 1982). `None` without positives or
-/// without negatives.
+/// the positive scores higher; a tie of the scores counts as half (mid-ranks; Hanley and McNeil 1982). `None` without
+/// positives or without negatives.
 pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
     let alike: Vec<(f64, bool, f64)> = scored.iter().map(|&(score, case)| (score, case, 1.0)).collect();
     weighted_auc(&alike)
 }
 
-/// Area under the ROC curve from (score, is positive, weight), where a pair of a positive and a negative weighs the
-/// product of both weights.
+/// Area under the ROC curve from triples (score, is positive, weight), where a pair of a positive and a negative weighs
+/// the product of both weights.
 pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
     let mut sorted = scored.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -22,7 +22,7 @@ pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
     if cases == 0.0 || others == 0.0 {
         return None;
     }
-    // Twice the weight of correctly ordered pairs: without weights these are integers.
+    // Twice the weight of correctly ordered pairs, so that without weights the number is an integer.
     let (mut twice, mut below) = (0.0, 0.0);
     for tied in sorted.chunk_by(|a, b| a.0 == b.0) {
         let tied_others = weights(tied, false);
@@ -35,9 +35,9 @@ pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
 /// One bin of predicted probabilities, compared with the observed frequency.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CalibrationBin {
-    /// Number of predictions in the bin.
+    /// Number of predictions in the calibration bin.
     pub n: u64,
-    /// Mean predicted probability in the bin.
+    /// Mean predicted probability of the predictions in the bin.
     pub predicted: f64,
     /// Share of the bin's predicted events that happened.
     pub observed: f64,
@@ -46,10 +46,10 @@ pub struct CalibrationBin {
 /// Calibration of predicted probabilities, in bins of equal width.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Calibration {
-    /// The bins, in the order of the predicted probability.
+    /// The calibration bins, in the order of the predicted probability.
     pub bins: Vec<CalibrationBin>,
-    /// Expected calibration error: mean over predictions of the difference between predicted and observed in their bin
-    /// (Naeini et al. 2015). `None` without predictions.
+    /// Expected calibration error: mean over all predictions of the difference between predicted and observed frequency
+    /// in the prediction's bin (Naeini et al. 2015). `None` without predictions.
     pub ece: Option<f64>,
 }
 
@@ -64,8 +64,8 @@ impl Calibration {
         Calibration::from_weighted(alike, range, bins)
     }
 
-    /// The calibration of (prediction, happened, weight): means and shares of a bin, and the mean over bins, are
-    /// weighted.
+    /// The calibration of triples (prediction, happened, weight): means and shares of a bin, and the mean over bins,
+    /// are weighted.
     pub fn from_weighted(
         predictions: impl IntoIterator<Item = (f64, bool, f64)>,
         range: [f64; 2],

@@ -1,10 +1,10 @@
 //! Regret and error of a press.
 //!
 //! Regret: r(a) = 1 + C(s') - C(s), with the true state and recipes. A press is an error if its regret exceeds the
-//! least regret among the human's presses by 1 or more; but not if it brings an active order nearer and the excess is
-//! at most 2 (preparing one order at some cost of the other), and not if it may have been overtaken by the robot (a
-//! race). Where no press of the human helps, the least regret is 1 and the excess is counted from there. An ineffective
-//! press is judged like any other.
+//! least regret among the human's presses by 1 or more, with two exceptions: the press brings an active order nearer
+//! and the excess is at most 2 (preparation of one order at some cost of the other), or the press may have been
+//! overtaken by the robot (a race). Where no press of the human helps, the least regret is 1 and the excess is counted
+//! from 1. An ineffective press is judged like any other press.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, Press, State};
 
-/// A press within this time after a change at the same place by somebody else is a race: too early for a reaction, in
-/// seconds.
+/// Time in seconds after a change by somebody else within which a press at the same place is a race: the press comes
+/// too early to be a reaction to the change.
 pub const RACE_S: f64 = 0.3;
 /// Largest excess regret of a press that counts as preparation of the other order.
 pub const PREPARATION_EXCESS: i32 = 2;
@@ -22,7 +22,7 @@ pub const PREPARATION_EXCESS: i32 = 2;
 /// Judgement of a press of the human: its regret, and whether it is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PressVerdict {
-    /// Regret r(a): number of additional presses of both agents that the press causes.
+    /// Regret r(a) of the press: number of additional presses of both agents that the press causes.
     pub regret: i32,
     /// Excess of the press's regret over that of the human's best press.
     pub excess: i32,
@@ -33,7 +33,7 @@ pub struct PressVerdict {
     pub error: bool,
 }
 
-/// Judges presses of the human; stores the time of the last change of each location by somebody else.
+/// Judges presses of the human; stores when somebody else last changed each location.
 #[derive(Clone, Debug)]
 pub struct PressJudge {
     kitchen: Arc<Kitchen>,
@@ -41,12 +41,12 @@ pub struct PressJudge {
 }
 
 impl PressJudge {
-    /// A judge at the start of a trial, when nobody has changed anything yet.
+    /// Creates a judge of presses at the start of a trial, when nobody has changed anything yet.
     pub fn new(kitchen: Arc<Kitchen>) -> PressJudge {
         PressJudge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
     }
 
-    /// Records the locations that a robot press or a correction by the wizard changed.
+    /// Records which locations a robot press, or a correction by the wizard, changed.
     pub fn others_changed(&mut self, now: SessionTime, before: State, after: State) {
         for location in self.kitchen.changed(before, after) {
             self.others_changed_at[location.index()] = Some(now);
@@ -58,7 +58,7 @@ impl PressJudge {
         self.others_changed_at.iter_mut().flatten().for_each(|at| *at = *at + by);
     }
 
-    /// Judges a press of the human.
+    /// Judges a press of the human: its regret, and whether the press is an error.
     pub fn human_pressed(&self, cost: &mut CostToGo, now: SessionTime, press: &Press) -> PressVerdict {
         let (kitchen, &Press { button, before, after, .. }) = (&self.kitchen, press);
         let recipes = kitchen.true_recipes();
@@ -87,7 +87,7 @@ impl PressJudge {
         PressVerdict { regret, excess, race, error }
     }
 
-    /// Whether somebody else changed a place of this button within [`RACE_S`] before now.
+    /// Whether somebody else changed a place where this button acts within [`RACE_S`] before now.
     fn is_race(&self, now: SessionTime, button: ButtonId) -> bool {
         let kitchen = &self.kitchen;
         let hand = kitchen.hands[Agent::Human.index()];

@@ -1,13 +1,14 @@
 //! Flags: aspects whose expected belief deviation, 1 - E[P(truth)], reaches a threshold, and the false belief episodes
 //! that flags detect in time.
 //!
-//! An episode counts if it caused two or more errors; it is detected if its aspect is flagged after the belief became
-//! false and before the third error (the estimate from before a press is before that press). A false flag is a flag on
-//! an aspect that is believed right. There is one threshold for locations and one for recipes. The chosen thresholds
-//! detect most episodes with at most [`MOST_FALSE_FLAGS`], and with aspects flagged at most [`MOST_WRONGLY_FLAGGED`] of
-//! the time while they are believed right; ties go to the fewest false flags. Thresholds are evaluated on other trials
-//! than those on which they were chosen: on the trials that are named, else by cross-fitting, in which every second
-//! trial is evaluated with the thresholds of the others, and the counts are added.
+//! An episode counts if the false belief caused two or more errors; the episode is detected if its aspect is flagged
+//! after the belief became false and before the third error (the estimate from before a press is before that press). A
+//! false flag is a flag on an aspect that is believed right. There is one threshold for locations and one for recipes.
+//! The chosen thresholds detect most episodes with at most [`MOST_FALSE_FLAGS`], and with aspects flagged at most
+//! [`MOST_WRONGLY_FLAGGED`] of the time while the aspects are believed right; among equal thresholds, those with the
+//! fewest false flags are chosen. Thresholds are evaluated on other trials than those on which the thresholds were
+//! chosen: on the trials that are named, else by cross-fitting, in which every second trial is evaluated with the
+//! thresholds of the other trials, and the counts are added.
 
 use serde::Serialize;
 
@@ -39,11 +40,11 @@ pub struct FlagThresholds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThresholdSource {
-    /// Other recordings than those that are evaluated.
+    /// Thresholds were chosen on other recordings than the evaluated ones.
     OtherRecordings,
     /// Cross-fitting: each half of the trials is evaluated with the thresholds of the other half.
     OtherHalf,
-    /// The only trial, on which the thresholds are evaluated, too: the detection rates are too optimistic.
+    /// The only trial, on which the thresholds are evaluated, too: the detection rates are then too optimistic.
     SameTrial,
 }
 
@@ -52,19 +53,20 @@ pub enum ThresholdSource {
 pub struct FlagPerformance {
     /// Number of false belief episodes with two or more errors.
     pub episodes: Option<u64>,
-    /// Share of these episodes that were flagged in time.
+    /// Share of the false belief episodes with two or more errors that were flagged in time.
     pub flagged_before_third_error: Option<f64>,
-    /// Flags on aspects that were believed right, per 20 presses of the human.
+    /// Number of flags on aspects that were believed right, per 20 presses of the human.
     pub false_flags_per_20_actions: Option<f64>,
     /// Share of (press, aspect) pairs with a right belief that were flagged.
     pub wrongly_flagged: Option<f64>,
-    /// The thresholds; with [`ThresholdSource::OtherHalf`] those that all trials together would give.
+    /// The flag thresholds; with [`ThresholdSource::OtherHalf`] the thresholds that all trials together would give.
     pub thresholds: Option<FlagThresholds>,
     /// The trials on which the thresholds were chosen.
     pub thresholds_from: Option<ThresholdSource>,
 }
 
-/// The indices of the aspects of locations, and of those of recipes; each group has a flag threshold of its own.
+/// The indices of the aspects that are locations, and of those that are recipes; each group has a flag threshold of its
+/// own.
 pub type AspectGroups = [Vec<usize>; 2];
 
 /// A false belief episode about an aspect, as a range of presses.
@@ -97,8 +99,8 @@ struct FlagCounts {
 }
 
 impl FlagPerformance {
-    /// Evaluates flags on trials, with these thresholds from other recordings, or with thresholds that are chosen by
-    /// cross-fitting.
+    /// Evaluates flags on trials, with these thresholds from other recordings, or, without given thresholds, with
+    /// thresholds that are chosen by cross-fitting.
     pub fn from_trials(
         trials: &[TrialView],
         groups: &AspectGroups,
@@ -182,7 +184,7 @@ fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> FlagThreshol
     });
     let false_flags = (MOST_FALSE_FLAGS * presses as f64 / PER_PRESSES) as usize;
     let best = best_pair(&outcomes[0], &outcomes[1], [false_flags, wrongly]);
-    // If no pair of thresholds stays within the allowed numbers, nothing is flagged.
+    // If no pair of thresholds stays within the allowed numbers of false flags, nothing is flagged.
     best.map_or(FlagThresholds { locations: f64::INFINITY, recipes: f64::INFINITY }, |[location, recipe]| {
         FlagThresholds { locations: location.threshold, recipes: recipe.threshold }
     })
@@ -205,12 +207,13 @@ fn allowed_wrongly(trials: &[&TrialView], groups: &AspectGroups) -> usize {
     (MOST_WRONGLY_FLAGGED * right as f64) as usize
 }
 
-/// Candidate thresholds, the strictest first: those that flag at most `allowed` pairs with a right belief.
+/// Candidates for the flag threshold, the strictest first: thresholds that flag at most `allowed` pairs with a right
+/// belief.
 fn candidates(trials: &[&TrialView], group: &[usize], allowed: usize) -> Vec<f64> {
     let mut right: Vec<f64> = while_right(trials, group).collect();
     right.sort_by(|a, b| b.total_cmp(a));
     let allowed = allowed.min(right.len().saturating_sub(1));
-    // A threshold just above the score at a rank flags at most that many pairs, also with tied scores.
+    // A threshold just above the score at a rank flags at most as many pairs as the rank says, also with tied scores.
     let above = |index: usize| right.get(index).map(|p| p.next_up());
     let steps = CANDIDATES.min(allowed + 1);
     let mut tried: Vec<f64> =

@@ -1,4 +1,4 @@
-//! A press of the human with its judgement and cause.
+//! A press of the human with the judgement whether it was an error, and with the error's cause.
 
 use super::attribution::ErrorCause;
 use super::errors::PressVerdict;
@@ -19,6 +19,6 @@ pub struct JudgedPress {
     pub verdict: PressVerdict,
     /// Whether the human's belief before the press is known.
     pub belief_known: bool,
-    /// Cause of an error; `None` if the press was no error or the belief is not known.
+    /// Cause of an error; `None` if the press was no error or the human's belief is not known.
     pub cause: Option<ErrorCause>,
 }

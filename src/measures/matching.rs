@@ -2,10 +2,10 @@
 //! recall, precision and kappa.
 //!
 //! Two communications can match if at most a window of human presses lies between them and their contents agree: the
-//! same signal and target, the same kind of signal, or any content. Among all one-to-one matchings, one with the most
-//! pairs is used, and among those one with the fewest presses between the pairs. The paper's 74 % is the recall of "a
-//! similar decision" in "nearby time steps", which it does not define further; therefore all three levels are reported,
-//! each with its chance level.
+//! same signal and target, the same kind of signal, or any content. Among all one-to-one matchings, those with the most
+//! pairs are considered, and of these one with the fewest presses between the communications of its pairs is used. The
+//! paper's 74 % is the recall of "a similar decision" in "nearby time steps", which the paper does not define further;
+//! therefore all three levels of agreement are reported, each with its chance level.
 //!
 //! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A pair with the same signal and target
 //! counts as agreement at the press of its first lane, as when events are aligned within a tolerance (Quera, Bakeman
@@ -39,7 +39,7 @@ pub enum CommunicationKind {
 pub struct CommunicationTarget {
     /// The kind of the communication.
     pub kind: CommunicationKind,
-    /// Location that the signal is about.
+    /// Location that the communication is about; `None` for a communication without a location.
     pub target: Option<LocationId>,
 }
 
@@ -57,11 +57,11 @@ pub struct CommunicationEvent {
 /// Which part of the content of two communications must agree for a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchCriterion {
-    /// Signal and target of two communications must agree.
+    /// Signal and target location of two communications must agree.
     Signal,
-    /// The kind of signal must agree.
+    /// The kinds of two communications must agree.
     Kind,
-    /// The content of the communications may differ: only the time has to match.
+    /// The contents of two communications may differ: only their times have to match.
     Any,
 }
 
@@ -69,7 +69,7 @@ impl MatchCriterion {
     /// All match criteria, the strictest first.
     pub const ALL: [MatchCriterion; 3] = [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any];
 
-    /// Equivalence class of a content under this criterion.
+    /// Equivalence class of a communication's content under this match criterion.
     fn class(self, content: CommunicationTarget) -> Option<CommunicationTarget> {
         match self {
             MatchCriterion::Signal => Some(content),
@@ -80,7 +80,7 @@ impl MatchCriterion {
 }
 
 /// Pairs of an optimal one-to-one matching of two lists of communications, as indices into both lists, in the order of
-/// the first. Both lists must be sorted by time.
+/// the first list. Both lists must be sorted by time.
 pub fn matched(
     of: &[CommunicationEvent],
     with: &[CommunicationEvent],
@@ -107,7 +107,7 @@ fn aligned(
     b: &[usize],
     window: u32,
 ) -> Vec<(usize, usize)> {
-    // Objective: number of pairs first, then the negative number of presses between them.
+    // Objective: the number of pairs first, then the negative number of presses between the communications of a pair.
     let mut best = vec![vec![(0i64, 0i64); b.len() + 1]; a.len() + 1];
     let apart = |i: usize, j: usize| of[a[i]].press.abs_diff(with[b[j]].press);
     for i in (0..a.len()).rev() {
@@ -139,18 +139,18 @@ pub struct MatchCounts {
     with: u64,
     /// Number of matched pairs at each level of [`MatchCriterion::ALL`].
     pairs: [u64; 3],
-    /// Mean number of matched pairs over circular shifts, at each level: the chance level.
+    /// Mean number of matched pairs over circular shifts of the second list, at each level: the chance level.
     chance: [f64; 3],
     /// Number of communications of the first list in trials that are long enough for circular shifts.
     shifted_of: u64,
-    /// Time from the second list's communication to the first's, in seconds, by pair.
+    /// Time from the second list's communication to the first list's communication, in seconds, by matched pair.
     leads_s: Vec<f64>,
-    /// Contingency table of contents per press, first list by second list.
+    /// Contingency table of communication contents per press, first list by second list.
     units: BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>,
 }
 
 impl MatchCounts {
-    /// Adds a trial with `presses` presses of the human.
+    /// Adds the two lists of a trial with `presses` presses of the human.
     pub fn add(&mut self, of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) {
         self.of += of.len() as u64;
         self.with += with.len() as u64;
@@ -211,12 +211,13 @@ pub struct MatchShares {
 /// Similarity of two lists of communications, for instance a wizard's and an assistant's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Similarity {
-    /// The shares for the same signal and target; they are written beside the numbers of both lists.
+    /// The shares for the same signal and target; a file has these shares beside the numbers of both lists.
     #[serde(flatten)]
     pub headline: MatchShares,
-    /// Cohen's kappa per human press; null where agreement by chance is 1.
+    /// Cohen's kappa of both lists per human press; null where agreement by chance is 1.
     pub kappa: Option<f64>,
-    /// Median time by which the second list is earlier than the first, in seconds; negative if it is later.
+    /// Median time by which the second list's communications are earlier than the first list's, in seconds; negative if
+    /// they are later.
     pub median_lead_s: Option<f64>,
     /// Number of communications in the first list, sent or recommended.
     pub of_n: u64,
@@ -233,7 +234,7 @@ pub struct Similarity {
 }
 
 /// Mean number of matched pairs at each level over circular shifts of the second list by more than the window; `None`
-/// if the trial is too short.
+/// if the trial is too short for such a shift.
 fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<[f64; 3]> {
     // Positions before, between and after the presses of the trial.
     let places = presses + 1;
@@ -254,7 +255,7 @@ fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, 
 
 type Units = BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>;
 
-/// Contingency table of both lists per press; several communications at one press give several units.
+/// Contingency table of both lists per press of the human; several communications at one press give several units.
 fn units(of: &[CommunicationEvent], with: &[CommunicationEvent], pairs: &[(usize, usize)], presses: u32) -> Units {
     let mut units = Units::new();
     let mut spoken = vec![[Vec::new(), Vec::new()]; presses as usize + 1];

@@ -1,6 +1,6 @@
 //! The median of a list of numbers.
 
-/// The median of the numbers: the mean of the middle two for an even count; `None` for an empty list.
+/// The median of the numbers: for an even count the mean of the two middle numbers; `None` for an empty list.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;

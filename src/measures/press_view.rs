@@ -12,17 +12,17 @@ pub struct BeliefsBeforePress {
     pub state: State,
     /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,
-    /// The participant's P(truth) of each aspect; `None` where it is not known, as for people.
+    /// The participant's own P(truth) of each aspect; `None` where this belief is not known, as for people.
     pub held: Option<Vec<f64>>,
-    /// The estimate of the belief before the press, if there is one.
+    /// The estimate of the participant's belief before the press, if there is one.
     pub estimate: Option<EstimateBeforePress>,
-    /// For each location, whether somebody else changed it since the human last looked at it: the input of the
-    /// baseline.
+    /// For each location, whether somebody else changed the location since the human last looked at it: the input of
+    /// the baseline.
     pub unseen_change: Vec<bool>,
-    /// For each location, the time since somebody other than the human last changed it, in seconds; `None` if the human
-    /// changed it later, or nobody did.
+    /// For each location, the time since somebody other than the human last changed the location, in seconds; `None` if
+    /// the human changed the location later, or nobody changed it.
     pub since_change_s: Vec<Option<f64>>,
-    /// The aspects about which a false belief caused the press, if it was an error.
+    /// The aspects about which a false belief caused the press, if the press was an error.
     pub errs_about: Vec<AspectId>,
 }
 
@@ -34,14 +34,14 @@ pub struct EstimateBeforePress {
     pub p_wrong: Vec<f64>,
     /// For each aspect, the probability that the participant's own P(truth) is below [`FALSE_BELOW`], by the marginal
     /// of the Dirichlet: I_.5(alpha_truth, A - alpha_truth), with A the sum of the alphas. Calibration judges this
-    /// prediction.
+    /// predicted probability.
     pub p_false: Vec<f64>,
     /// The log probability of the press under the estimate, given that a button is pressed, in nats.
     pub log_p: f64,
 }
 
 impl EstimateBeforePress {
-    /// Takes the values from a recorded estimate.
+    /// The estimate before a press, from an estimate that a recording contains.
     pub fn from_witness(witness: &RecordedEstimate) -> EstimateBeforePress {
         let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
         let p_false = witness.aspects.iter().map(|aspect| {
@@ -52,11 +52,11 @@ impl EstimateBeforePress {
     }
 }
 
-/// The presses of one trial with beliefs and estimates, in order of time.
+/// The presses of one trial with the human's beliefs and their estimates, in order of time.
 pub type TrialView = Vec<BeliefsBeforePress>;
 
 impl BeliefsBeforePress {
-    /// Whether the participant's belief about an aspect is false; `None` where it is not known.
+    /// Whether the participant's belief about an aspect is false; `None` where the belief is not known.
     pub fn is_wrong(&self, aspect: usize) -> Option<bool> {
         self.held.as_ref().map(|held| held[aspect] < FALSE_BELOW)
     }

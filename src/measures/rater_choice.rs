@@ -1,10 +1,10 @@
-//! Chooses the two raters whose codes an analysis uses. The raters' names never decide.
+//! Chooses the two raters whose codes an analysis uses; the choice never depends on the raters' names.
 
 use std::collections::BTreeMap;
 
 use super::cause_codes::RaterCodes;
 
-/// Two raters with their codes of one recording, in alphabetical order, which has no meaning.
+/// Two raters with their codes of one recording. The raters are in alphabetical order, which has no meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RaterPair {
     /// The names of the raters.
@@ -18,13 +18,13 @@ pub struct RaterPair {
 pub enum RaterChoice {
     /// The chosen two raters with their codes.
     Pair(RaterPair),
-    /// There are fewer than two raters.
+    /// No choice: fewer than two raters coded errors of the recording.
     TooFew,
     /// No choice: more than two raters qualify, since they coded equally many errors.
     Tied {
         /// The names of the raters who qualify.
         raters: Vec<String>,
-        /// The least number of errors that each of them coded.
+        /// The least number of errors that each of the qualified raters coded.
         coded: usize,
     },
 }
@@ -40,7 +40,7 @@ impl RaterPair {
 }
 
 impl RaterChoice {
-    /// The two raters with the most codes.
+    /// Chooses the two raters who coded most errors.
     pub fn most_complete(all: &BTreeMap<String, RaterCodes>) -> RaterChoice {
         let mut numbers: Vec<usize> = all.values().map(|codes| codes.0.len()).collect();
         numbers.sort_unstable_by_key(|&number| std::cmp::Reverse(number));

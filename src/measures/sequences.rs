@@ -2,11 +2,11 @@
 //!
 //! Errors are related if they come from the same false belief: about one location, or one dish, whose order and recipe
 //! count as one. An error sequence consists of related errors at most 3 correct presses apart. Errors from other
-//! causes, slips and races in between are not correct presses: they neither end nor lengthen a sequence. Sequences
-//! "whatever the aspect" group all belief related errors; the target of such a sequence is the most frequent one. The
-//! length is the number of errors; the recovery time goes from the first error to the first correct press after the
-//! last error. A false belief episode lasts from the time at which a belief became false (P(truth) < 0.5) to its
-//! correction, if it caused at least one error.
+//! causes, and slips and races in between, are not correct presses: such presses neither end nor lengthen a sequence.
+//! Sequences "whatever the aspect" group all belief related errors; the target of such a sequence is the most frequent
+//! target of its errors. The length of a sequence is its number of errors; the recovery time goes from the first error
+//! to the first correct press after the last error. A false belief episode lasts from the time at which a belief became
+//! false (P(truth) < 0.5) to the correction of the belief, if the false belief caused at least one error.
 
 use std::collections::BTreeSet;
 
@@ -18,36 +18,37 @@ use crate::mind::belief::Belief;
 
 /// Largest number of correct presses between two errors of a sequence.
 pub const MAX_APART: u32 = 3;
-/// A belief is false if its P(truth) is below this.
+/// A belief is false if its P(truth) is below this value.
 pub const FALSE_BELOW: f64 = 0.5;
 
 /// An error sequence: related errors with few correct presses between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorSequence {
-    /// The target of most of the sequence's errors; of several, the target of the earliest error.
+    /// The target of most of the sequence's errors; of equally frequent targets, the target of the earliest error.
     pub target: FalseBeliefTarget,
     /// The errors of the sequence, as indices of the human's presses.
     pub errors: Vec<usize>,
-    /// Session time of the first error.
+    /// Session time of the sequence's first error.
     pub began: SessionTime,
-    /// Time of the first correct press after the last error; `None` if the trial ended before.
+    /// Session time of the first correct press after the last error; `None` if the trial ended before.
     pub recovered: Option<SessionTime>,
 }
 
 impl ErrorSequence {
-    /// The number of errors in the sequence.
+    /// The length of the sequence: its number of errors.
     pub fn length(&self) -> u32 {
         self.errors.len() as u32
     }
 }
 
 /// The dish or place that a false belief is about: errors with the same subject are related. An error that two false
-/// beliefs explain together, or for which two raters name different ones, belongs to the first of them.
+/// beliefs explain together, or for which two raters name different false beliefs, belongs to the subject of the first
+/// false belief.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ErrorSubject {
-    /// An ordered dish: its order or its recipe.
+    /// A false belief about an ordered dish: about its order or its recipe.
     Dish(DishId),
-    /// The content of a location, or an order location that shows no order.
+    /// A false belief about the content of a location, or about an order location that shows no order.
     Place(LocationId),
 }
 
@@ -78,7 +79,7 @@ pub fn sequences_any_aspect(presses: &[JudgedPress]) -> Vec<ErrorSequence> {
     grouped(presses, |_| true)
 }
 
-/// Target of a belief related error.
+/// Target of the false belief behind a belief related error; `None` for other presses.
 fn target_of(press: &JudgedPress) -> Option<FalseBeliefTarget> {
     match press.cause {
         Some(ErrorCause::Belief { target, .. }) => Some(target),
@@ -123,7 +124,7 @@ fn closed(
     Some(ErrorSequence { target, errors, began: presses[first].time, recovered })
 }
 
-/// A false belief episode: the time from the beginning of a false belief to its correction.
+/// A false belief episode: the period from the beginning of a false belief to its correction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FalseBeliefEpisode {
     /// The aspect that the false belief is about.
@@ -141,13 +142,13 @@ pub struct FalseBeliefEpisode {
 pub struct FalseBeliefTracker {
     open: Vec<Option<FalseBeliefEpisode>>,
     done: Vec<FalseBeliefEpisode>,
-    /// Time at which the belief was last recorded.
+    /// Session time at which the belief was last recorded.
     last: SessionTime,
 }
 
 impl FalseBeliefTracker {
-    /// Records the belief at a time. `changed_at` contains the time of each location's last change, at which a belief
-    /// that was right when last recorded became false.
+    /// Records the belief at a time. `changed_at` contains the time of each location's last change: a belief that was
+    /// right when last recorded became false at that time.
     pub fn believed(
         &mut self,
         kitchen: &Kitchen,
@@ -171,7 +172,7 @@ impl FalseBeliefTracker {
         self.last = now;
     }
 
-    /// Records an error: it counts for every aspect of its cause about which the belief is false.
+    /// Records an error: the error counts for every aspect of its cause about which the belief is false.
     pub fn erred(&mut self, kitchen: &Kitchen, cause: ErrorCause) {
         let ErrorCause::Belief { target, with, .. } = cause else { return };
         for target in [Some(target), with].into_iter().flatten() {

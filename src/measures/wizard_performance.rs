@@ -1,8 +1,8 @@
 //! Performance of a wizard: reaction times, targets and omissions (Riek 2012, "Wizard of Oz studies in HRI", asks for
 //! the wizard's errors and reaction times to be reported).
 //!
-//! The wizard's signals are compared with periods of false belief. A period that led to an error and had no signal is
-//! an omission; periods without errors need no signal. All times are on the trial's clock.
+//! The wizard's signals are compared with periods of false belief. A period that led to an error and in which the
+//! wizard sent no signal is an omission; periods without errors need no signal. All times are on the trial's clock.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,8 @@ use super::median::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 
-/// A signal is late rather than wrong if the false belief ended at most this many presses of the human before.
+/// A signal is late rather than wrong if the false belief ended at most this many presses of the human before the
+/// signal.
 pub const LATE_PRESSES: u32 = 3;
 
 /// A period in which the participant's belief about an aspect was false.
@@ -18,9 +19,9 @@ pub const LATE_PRESSES: u32 = 3;
 pub struct FalseBeliefPeriod {
     /// The aspect that the false belief is about.
     pub aspect: AspectId,
-    /// Time at which the belief became false.
+    /// Time at which the belief became false, on the trial's clock.
     pub began: SessionTime,
-    /// End of the period, and the number of human presses until then; `None` if the trial ended before.
+    /// End of the false belief period, and the number of human presses until then; `None` if the trial ended before.
     pub corrected: Option<(SessionTime, u32)>,
     /// Number of errors attributed to the false belief.
     pub errors: u32,
@@ -36,16 +37,16 @@ impl FalseBeliefPeriod {
 /// A signal that a wizard sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WizardSignal {
-    /// Time at which the signal was sent, on the trial's clock.
+    /// Time at which the wizard sent the signal, on the trial's clock.
     pub clock: SessionTime,
     /// Number of presses of the human before the signal.
     pub press: u32,
     /// State aspects that the signal reveals.
     pub aspects: Vec<AspectId>,
-    /// Time from the wizard's key press to the frame that shows the signal, in milliseconds; `None` if it was not
+    /// Time from the wizard's key press to the frame that shows the signal, in milliseconds; `None` if the time was not
     /// recorded.
     pub to_display_ms: Option<f64>,
-    /// Whether the wizard withdrew the signal before its time was over.
+    /// Whether the wizard withdrew the signal before the signal's time was over.
     pub taken_back: bool,
 }
 
@@ -56,14 +57,14 @@ pub enum SignalVerdict {
     Hit {
         /// Time from the beginning of the false belief to the signal, in seconds.
         latency_s: f64,
-        /// The index of the false belief period.
+        /// The index of the false belief period that the signal is about.
         spell: usize,
     },
     /// Repeated: a further signal about the same false belief.
     Again,
     /// Harmless: a signal about a false belief that led to no error.
     Harmless,
-    /// Late: a signal about a false belief that had ended at most [`LATE_PRESSES`] before.
+    /// Late: a signal about a false belief that had ended at most [`LATE_PRESSES`] presses before.
     Late,
     /// Wrong target: a signal about a right belief while another belief was false.
     WrongTarget,
@@ -85,14 +86,14 @@ impl SignalVerdict {
     }
 }
 
-/// The judgement of each of a wizard's signals, in order.
+/// The verdict on each of a wizard's signals, in the order of the signals.
 pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<SignalVerdict> {
     let mut hit = vec![false; spells.len()];
     let worth = |sent: &WizardSignal| {
         let about = |spell: &FalseBeliefPeriod| sent.aspects.contains(&spell.aspect);
         let open = |spell: &FalseBeliefPeriod| spell.holds(sent.clock);
         let mut now = spells.iter().enumerate().filter(|(_, spell)| about(spell) && open(spell));
-        // If a signal shows two aspects, the one whose false belief led to an error counts.
+        // If a signal shows two aspects, the aspect whose false belief led to an error counts.
         let of_errors = now.clone().find(|(_, spell)| spell.errors > 0);
         match of_errors.or_else(|| now.next()) {
             Some((index, spell)) if spell.errors > 0 && !hit[index] => {
@@ -115,26 +116,26 @@ pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<Signal
     sent.iter().map(worth).collect()
 }
 
-/// Summary of durations: number, median and maximum.
+/// Summary of durations: their number, median and maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSummary {
     /// Number of durations.
     pub n: u64,
-    /// Median of the durations; the unit is named by the field that has this summary.
+    /// Median of the durations; the field that contains this summary names the unit.
     pub median: f64,
     /// The longest duration, in the same unit as the median.
     pub max: f64,
 }
 
 impl TimeSummary {
-    /// The summary of a list of durations; `None` if it is empty.
+    /// The summary of a list of durations; `None` if the list is empty.
     pub fn from_times(times: Vec<f64>) -> Option<TimeSummary> {
         let max = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let n = times.len() as u64;
         median(times).map(|median| TimeSummary { n, median, max })
     }
 
-    /// The summary of durations over several trials: the median of the trials' medians.
+    /// The summary of durations over several trials; its median is the median of the trials' medians.
     fn together(trials: impl Iterator<Item = TimeSummary>) -> Option<TimeSummary> {
         let trials: Vec<TimeSummary> = trials.collect();
         let medians = TimeSummary::from_times(trials.iter().map(|times| times.median).collect())?;
@@ -143,21 +144,22 @@ impl TimeSummary {
     }
 }
 
-/// Performance of a wizard in a trial. Numbers that need the participant's beliefs are null if those are not known.
+/// Performance of a wizard in a trial. Numbers that need the participant's beliefs are null if the beliefs are not
+/// known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WizardMeasures {
     /// Number of signals that the wizard sent.
     pub signals: u64,
     /// Number of signals that the wizard withdrew.
     pub taken_back: u64,
-    /// Time from the wizard's key press to the frame that shows the signal, in milliseconds; null if it was not
+    /// Time from the wizard's key press to the frame that shows the signal, in milliseconds; null if the time was not
     /// recorded.
     pub key_to_display_ms: Option<TimeSummary>,
     /// Number of periods of false belief that led to errors.
     pub episodes: Option<u64>,
-    /// Number of periods of false belief with errors that got a signal in time.
+    /// Number of periods of false belief with errors in which the wizard sent a signal.
     pub hits: Option<u64>,
-    /// Number of periods of false belief with errors that got no signal.
+    /// Number of periods of false belief with errors in which the wizard sent no signal.
     pub omissions: Option<u64>,
     /// Time from the beginning of a false belief to the signal about it, in seconds.
     pub latency_s: Option<TimeSummary>,
@@ -174,7 +176,7 @@ pub struct WizardMeasures {
 }
 
 impl WizardMeasures {
-    /// Performance from the signals of a trial and, where known, its periods of false belief.
+    /// The wizard's performance, from the signals of a trial and, where known, the periods of false belief.
     pub fn from_signals(sent: &[WizardSignal], spells: Option<&[FalseBeliefPeriod]>) -> WizardMeasures {
         let drawn: Vec<f64> = sent.iter().filter_map(|sent| sent.to_display_ms).collect();
         let measures = WizardMeasures {
@@ -207,7 +209,8 @@ impl WizardMeasures {
 }
 
 impl WizardMeasures {
-    /// Totals over several trials, null where one trial is null; for durations the median of the trials' medians.
+    /// Totals of the wizard's performance over several trials: numbers are null where one trial's number is null;
+    /// durations are the median of the trials' medians.
     pub fn sum<'a>(trials: impl IntoIterator<Item = &'a WizardMeasures>) -> WizardMeasures {
         let add = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
         let trials: Vec<&WizardMeasures> = trials.into_iter().collect();
@@ -237,12 +240,13 @@ impl WizardMeasures {
 pub struct TrainingCriterion {
     /// Least share of hits among the periods of false belief that led to errors.
     pub hits: f64,
-    /// Largest share of signals with a wrong target or without need.
+    /// Largest share of signals that have a wrong target or are needless.
     pub wrong: f64,
 }
 
 impl TrainingCriterion {
-    /// Whether a wizard's performance meets the criterion; false where no period led to errors.
+    /// Whether a wizard's performance meets the training criterion; false where no period of false belief led to
+    /// errors.
     pub fn is_met(&self, measures: &WizardMeasures) -> bool {
         let share = |part: Option<u64>, all: u64| part.map(|part| part as f64 / all as f64).filter(|_| all > 0);
         let hits = share(measures.hits, measures.episodes.unwrap_or(0));

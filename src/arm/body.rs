@@ -1,4 +1,5 @@
-//! The simulated robot arm and the human's hand beside it, stepped in session time, and the events that they report.
+//! The simulated robot arm and the human's hand beside the arm, stepped in session time, and the events that they
+//! report.
 
 use super::controller::{ArmController, ControlCycleResult};
 use super::physics::CYCLE_S;
@@ -19,14 +20,14 @@ fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts + 0.0
 }
 
-/// The last arm sample that was reported.
+/// The last arm sample that the simulated arm reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
     at: SessionTime,
     phase: ArmPhase,
     mode: SafetyMode,
     moving: bool,
-    /// Greatest force since the last report, in newtons.
+    /// Greatest contact force since the last report, in newtons.
     force_n: f64,
 }
 
@@ -76,8 +77,8 @@ impl SimulatedArm {
         next.into_iter().chain(self.hand.next_move(self.at)).min()
     }
 
-    /// Starts the arm's motion to a button, at once or as soon as the arm stands still. Returns the undisturbed
-    /// duration in seconds.
+    /// Starts the arm's motion to a button, at once or as soon as the arm stands still. Returns the duration of the
+    /// motion, if nothing disturbs the arm, in seconds.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, AbortReason> {
         (self.found_useful, self.idle) = (None, false);
         if self.arm.withdraws() {
@@ -92,14 +93,14 @@ impl SimulatedArm {
         Ok(self.arm.set_out(button)?)
     }
 
-    /// Abandons the present press and the pending one.
+    /// Abandons the arm's present press and the pending press.
     pub fn give_up(&mut self) {
         self.next = None;
         self.arm.give_up();
     }
 
-    /// Whether the caller now has to decide if the press is still useful: above the button, whenever the state changed
-    /// before the stick touches the button, and while a hand blocks the arm.
+    /// Whether the caller now has to decide if the arm's press is still useful: above the button, whenever the state
+    /// changed before the stick touches the button, and while a hand blocks the arm.
     pub fn asks(&self, may_press: bool, state: State) -> bool {
         match self.arm.phase() {
             _ if self.next.is_some() => false,
@@ -110,7 +111,7 @@ impl SimulatedArm {
         }
     }
 
-    /// Confirms that the press is useful in this state: an arm above the button presses it.
+    /// Confirms that the press is useful in this state of the kitchen: an arm above the button presses the button.
     pub fn go_for_it(&mut self, may_press: bool, state: State) {
         self.found_useful = Some(state);
         if self.arm.phase() == ArmPhase::Hovers && may_press {
@@ -118,15 +119,15 @@ impl SimulatedArm {
         }
     }
 
-    /// Starts the pending press if the arm stands still. Returns a button that cannot be reached from there, with the
-    /// reason.
+    /// Starts the pending press if the arm stands still. If the arm cannot reach the button of that press, returns the
+    /// button and the reason.
     pub fn go_on(&mut self) -> Option<(ButtonId, AbortReason)> {
         let halts = self.arm.halts() || self.arm.mode.is_stopped();
         let button = self.next.take_if(|_| !halts)?;
         self.arm.set_out(button).err().map(|why| (button, why.into()))
     }
 
-    /// Runs the controller cycle that ends now, and returns its result with the events to record.
+    /// Runs the controller cycle that ends now, and returns the result of the cycle with the events to record.
     pub fn cycle(&mut self, now: SessionTime) -> ArmCycleReport {
         self.at = now;
         if self.idle && self.arm.is_out() {
@@ -168,7 +169,7 @@ impl SimulatedArm {
         news
     }
 
-    /// The arm stays idle until the next press.
+    /// Tells the arm that the robot has no press to make: the arm stays idle until the next press.
     pub fn has_nothing_to_do(&mut self) {
         self.idle = true;
     }
@@ -190,7 +191,7 @@ impl SimulatedArm {
         self.hand.pressed(now, button_m);
     }
 
-    /// The change of the safety mode since the last report, if there is one.
+    /// The change of the arm's safety mode since the last report, if there is one.
     fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotActivity> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
@@ -204,7 +205,7 @@ impl SimulatedArm {
         self.safety(None, None)
     }
 
-    /// Shifts all pending times by the duration of a pause.
+    /// Shifts all pending times of arm and hand by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.at = self.at + by;
         self.told.at = self.told.at + by;

@@ -1,4 +1,4 @@
-//! Distance of the robot arm from the table, from its own links and from obstacles. Solids are approximated by
+//! Distance of the robot arm from the table, from the arm's own links and from obstacles. Solids are approximated by
 //! capsules.
 
 use nalgebra::{Isometry3, Point3};
@@ -72,9 +72,9 @@ impl Capsule {
 pub enum Obstruction {
     /// The table blocks the robot arm.
     Table,
-    /// A link of the arm itself.
+    /// A link of the arm itself blocks another link.
     ItsOwnLinks,
-    /// A known obstacle blocks the robot arm.
+    /// A known obstacle, other than table and links, blocks the robot arm.
     Obstacle,
 }
 
@@ -123,8 +123,8 @@ impl SerialArm {
     }
 }
 
-/// Whether two links of the arm can collide. Neighbours on the chain cannot; nor can base and upper arm, or two of
-/// wrist and stick, whose joints keep them apart.
+/// Whether two links of the arm can collide. Neighbouring links of the chain cannot; nor can base and upper arm, or two
+/// of wrist and stick, since their joints keep them apart.
 fn can_meet(link: usize, other: usize) -> bool {
     other > link + 1 && other > 2 && link < JOINTS - 2
 }

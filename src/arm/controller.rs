@@ -1,4 +1,5 @@
-//! The controller of the simulated robot arm, which presses buttons in the physics; it runs 125 cycles per second.
+//! The controller of the simulated robot arm, which presses buttons in the physics simulation; the controller runs 125
+//! cycles per second.
 //!
 //! The arm moves along its planned path to a button as fast as speed and separation monitoring allows
 //! (`super::separation`). Slowing down stretches the time along the path, so that the arm stays on the path that was
@@ -19,8 +20,8 @@ use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::robot::moment::{ArmPhase, JOINTS, JointAngles};
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
-/// Deceleration and acceleration along the arm's path: change of the share of the planned speed, per second; the second
-/// value is for stops.
+/// Changes of the arm's share of its planned speed along the path, per second: while the arm slows down, stops, and
+/// speeds up.
 const SLOWS: f64 = 10.0;
 const STOPS: f64 = 20.0;
 const SPEEDS_UP: f64 = 3.0;
@@ -30,7 +31,8 @@ const AHEAD_S: f64 = 0.08;
 const BLOCKED_S: f64 = 4.0;
 /// Time without a hand in the way after which the arm's path counts as free, in seconds.
 const FREE_S: f64 = 0.25;
-/// Tracking error of a joint, in radians, and number of cycles with it, above which the joint counts as faulty.
+/// Tracking error of a joint, in radians, and number of cycles with such an error, above which the joint counts as
+/// faulty.
 const ASTRAY_RAD: f64 = 0.05;
 const ASTRAY_CYCLES: u32 = 3;
 /// Longest time to wait for the click of a button that the arm pushes down, in seconds.
@@ -38,7 +40,7 @@ const CLICKS_WITHIN_S: f64 = 0.1;
 /// The arm counts as standing still if all joints are slower than this, in radians per second.
 pub const STILL_RAD_S: f64 = 0.02;
 
-/// Hands further away than this do not influence the arm, in metres.
+/// Hands further away from the arm than this, in metres, do not influence the arm.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
 /// The result of one cycle of the robot arm's controller.
@@ -46,12 +48,13 @@ const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 pub struct ControlCycleResult {
     /// The button that clicked in this cycle. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
-    /// Why the arm abandoned the press, if it did so in this cycle.
+    /// Why the arm abandoned the press; `None` if the arm did not abandon a press in this cycle.
     pub report: Option<PressFailure>,
-    /// The contact forces of this cycle.
+    /// The contact forces that were measured in this cycle.
     pub felt: ContactForces,
-    /// Peak force in newtons of a contact with the human, shortly after the contact began. Each contact is reported
-    /// once; by then, a contact above [`SafetyMode::threshold_n`] has stopped the arm ([`PressFailure::Contact`]).
+    /// Peak force in newtons of a contact with the human, reported shortly after the contact began. Each contact is
+    /// reported once; by then, a contact above [`SafetyMode::threshold_n`] has stopped the arm
+    /// ([`PressFailure::Contact`]).
     pub touched_n: Option<f64>,
 }
 
@@ -65,9 +68,9 @@ pub struct ArmController {
     home: JointAngles,
     buttons: Vec<Result<ButtonPoses, UnreachableReason>>,
     way: VecDeque<TrajectoryLeg>,
-    /// Progress on the present leg of the trajectory, in seconds.
+    /// Time since the present leg of the trajectory began, in seconds at the planned speed.
     since_s: f64,
-    /// Present share of the planned speed.
+    /// Present share of the planned speed with which the arm moves.
     rate: f64,
     /// The last commanded joint angles of the arm.
     here: JointAngles,
@@ -79,7 +82,7 @@ pub struct ArmController {
     pub mode: SafetyMode,
     /// Whether speed and separation monitoring is on; without it the arm only reacts to forces.
     pub watches_hands: bool,
-    /// Time for which the arm has waited for a hand in the way or for a click, in seconds.
+    /// Time for which the arm has waited for a hand in the way to leave, or for a click, in seconds.
     waited_s: f64,
     /// Time without a hand in the arm's way, in seconds.
     free_s: f64,
@@ -129,7 +132,7 @@ impl ArmController {
     /// interferes.
     ///
     /// # Errors
-    /// Why the arm cannot reach the button.
+    /// The reason why the arm cannot reach the button.
     pub fn set_out(&mut self, button: ButtonId) -> Result<f64, UnreachableReason> {
         self.way = self.way_to(button)?.into();
         self.goal = Some(button);
@@ -141,7 +144,7 @@ impl ArmController {
     /// The time in seconds until a button clicks if the arm started now.
     ///
     /// # Errors
-    /// Why the arm cannot reach the button.
+    /// The reason why the arm cannot reach the button.
     pub fn takes_s(&self, button: ButtonId) -> Result<f64, UnreachableReason> {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }
@@ -151,12 +154,12 @@ impl ArmController {
         way_to(&self.arm, &self.here, &at, &self.around)
     }
 
-    /// The obstacles around which the arm's paths are planned.
+    /// The obstacles around which the controller plans the arm's paths.
     pub fn around(&mut self) -> &mut ArmSurroundings {
         &mut self.around
     }
 
-    /// The simulated bodies: arm, buttons and hand.
+    /// The simulated bodies in the physics: arm, buttons and hand.
     pub fn world(&mut self) -> &mut PhysicsWorld {
         &mut self.world
     }
@@ -166,7 +169,7 @@ impl ArmController {
         self.may_press = true;
     }
 
-    /// Abandons the press: the arm slows down and goes up where it is.
+    /// Abandons the press: the arm slows down and goes up from where it is.
     pub fn give_up(&mut self) {
         self.goal = None;
         self.waited_s = 0.0;
@@ -190,7 +193,7 @@ impl ArmController {
         }
     }
 
-    /// Whether the arm moves without a button to press.
+    /// Whether the arm moves without a button that it is to press.
     pub fn withdraws(&self) -> bool {
         self.goal.is_none() && self.rate > 0.0
     }
@@ -205,13 +208,13 @@ impl ArmController {
         self.way = way_up(&self.arm, &self.here, &self.around).unwrap_or_default().into();
     }
 
-    /// Stops the arm in place, as fast as possible, until [`Self::resume`].
+    /// Stops the arm in place, as fast as possible, until [`Self::resume`] releases the arm.
     pub fn stop(&mut self, mode: SafetyMode) {
         self.mode = mode;
         self.goal = None;
     }
 
-    /// Releases the arm after a stop: it goes up and is ready for the next press.
+    /// Releases the arm after a stop: the arm goes up and is ready for the next press.
     pub fn resume(&mut self) {
         if self.mode.is_stopped() {
             self.mode = SafetyMode::Normal;
@@ -255,8 +258,8 @@ impl ArmController {
         self.world.distance(hand)
     }
 
-    /// Runs one controller cycle with the human's hand in this pose, if there is one. An idle arm without a hand nearby
-    /// costs no computing time.
+    /// Runs one controller cycle with the human's hand in this pose, if there is a hand. An idle arm without a hand
+    /// nearby costs no computing time.
     pub fn cycle(&mut self, hand: Option<HandPose>) -> ControlCycleResult {
         let hand = hand.filter(|hand| self.distance(hand) < FAR_M);
         let share = self.share_allowed(hand);
@@ -281,7 +284,7 @@ impl ArmController {
         ControlCycleResult { clicked, report, felt, touched_n }
     }
 
-    /// The share of the planned speed that the distance to the hand allows (speed and separation monitoring).
+    /// The share of the planned speed that the distance between hand and arm allows (speed and separation monitoring).
     fn share_allowed(&mut self, hand: Option<HandPose>) -> f64 {
         if self.mode.is_stopped() {
             return 0.0;
@@ -351,7 +354,7 @@ impl ArmController {
         }
     }
 
-    /// The failure of the press that follows from the measured forces, if any.
+    /// The failure of the press that follows from the measured contact forces; `None` if the press has not failed.
     fn judge(&mut self, felt: &ContactForces) -> Option<PressFailure> {
         if self.mode.is_stopped() {
             return None;
@@ -362,7 +365,7 @@ impl ArmController {
         }
         if let Some(joint) = self.joint_astray() {
             self.stop(SafetyMode::Fault);
-            // The brakes hold the arm where it is.
+            // The brakes hold the arm in its present pose.
             self.here = self.world.joints().0;
             self.way.clear();
             self.world.brake();
@@ -384,7 +387,7 @@ impl ArmController {
         None
     }
 
-    /// The joint whose tracking error has been too large for too long.
+    /// The joint whose tracking error has been too large for too many cycles; `None` if there is no such joint.
     fn joint_astray(&mut self) -> Option<usize> {
         let (angles, _) = self.world.joints();
         let off = |joint: &usize| (angles[*joint] - self.here[*joint]).abs();

@@ -1,6 +1,6 @@
-//! Inverse kinematics of the UR5: all joint angles at which its tip has a given pose, up to eight, in closed form
-//! (Hawkins 2013, "Analytic inverse kinematics for the Universal Robots UR-5/UR-10 arms"), then refined on the URDF's
-//! own kinematics.
+//! Inverse kinematics of the UR5: all joint angles, up to eight solutions, at which the arm's tip has a given pose. The
+//! solutions are computed in closed form (Hawkins 2013, "Analytic inverse kinematics for the Universal Robots
+//! UR-5/UR-10 arms"), then refined on the URDF's own kinematics.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -19,10 +19,10 @@ const D6: f64 = 0.0823;
 
 /// Tolerance for rounding errors by which a cosine may exceed 1.
 const ROUNDING: f64 = 1e-9;
-/// Sine of the fifth joint below which the fourth and the sixth joint turn about the same axis; the sixth then stays at
-/// 0.
+/// Sine of the fifth joint's angle below which the fourth and the sixth joint turn about the same axis; the sixth joint
+/// then stays at 0.
 const ALIGNED: f64 = 1e-7;
-/// Number of Newton steps that refine a solution, and the error at which they end: metres, radians.
+/// Number of Newton steps that refine a solution, and the error at which the refinement ends: metres, radians.
 const POLISHES: usize = 8;
 const NEAR: f64 = 1e-10;
 /// Largest error of a valid solution of the inverse kinematics.
@@ -31,11 +31,12 @@ const SOLVED: f64 = 1e-8;
 const DAMPING: f64 = 1e-6;
 
 impl SerialArm {
-    /// All joint angles, between -pi and pi, at which the arm's tip has this pose in the frame of the base; in a fixed
-    /// order.
+    /// All joint angles, between -pi and pi, at which the arm's tip has this pose in the frame of the base; the
+    /// solutions are in a fixed order.
     pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<JointAngles> {
         let stick = self.links.last().map_or_else(Isometry3::identity, |link| link.parent_from_joint);
-        // The last frame of the Denavit-Hartenberg table is on the flange, that of the last turning link in the joint.
+        // The last frame of the Denavit-Hartenberg table is on the flange; the frame of the last turning link is in the
+        // joint.
         let flange = Translation3::new(0.0, 0.0, D6);
         let controller_from_base = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -PI);
         let target = controller_from_base * base_from_tip * stick.inverse() * flange;
@@ -43,7 +44,8 @@ impl SerialArm {
         found.filter(|(_, away)| *away < SOLVED).map(|(joints, _)| joints.map(wrapped)).collect()
     }
 
-    /// Refines joint angles by Newton's method on the URDF's kinematics; returns them with the remaining error.
+    /// Refines joint angles by Newton's method on the URDF's kinematics; returns the refined angles with the remaining
+    /// error.
     fn polished(&self, target: &Isometry3<f64>, mut joints: JointAngles) -> (JointAngles, f64) {
         let mut best = (joints, f64::INFINITY);
         for _ in 0..POLISHES {
@@ -73,12 +75,13 @@ pub fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The same pose of the arm, with every joint turned by whole turns so that it is nearest to another pose's joint.
+/// The same pose of the arm, with every joint turned by whole turns so that the joint is nearest to the same joint in
+/// the other pose.
 pub fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 
-/// An angle from its cosine; none if the value is not a cosine.
+/// An angle from its cosine; none if the value cannot be a cosine.
 fn angle_of_cosine(cosine: f64) -> Option<f64> {
     (cosine.abs() <= 1.0 + ROUNDING).then(|| cosine.clamp(-1.0, 1.0).acos())
 }
@@ -104,7 +107,7 @@ fn closed_form(flange: &Isometry3<f64>) -> Vec<JointAngles> {
     found
 }
 
-/// The two solutions of the elbow, as of a planar arm, for given other joints.
+/// The two solutions for the elbow, as of a planar arm, for given angles of the other joints.
 fn elbows(flange: &Isometry3<f64>, [q1, q5, q6]: [f64; 3]) -> Vec<JointAngles> {
     let fourth = link(q1, D1, FRAC_PI_2).inverse() * flange * (link(q5, D5, -FRAC_PI_2) * link(q6, D6, 0.0)).inverse();
     let x_axis = fourth.rotation * Vector3::x();

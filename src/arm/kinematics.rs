@@ -1,7 +1,8 @@
-//! Forward kinematics of a serial arm: poses of its links for given joint angles, and the Jacobian of its tip.
+//! Forward kinematics of a serial robot arm: poses of the arm's links for given joint angles, and the Jacobian of the
+//! arm's tip.
 //!
-//! The arm is read from a URDF; that of the UR5 (`ur5.urdf` beside this file) is the project's own, written from the
-//! manufacturer's published data.
+//! The description of the arm is read from a URDF; the URDF of the UR5 (`ur5.urdf` beside this file) is the project's
+//! own, written from the manufacturer's published data.
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector6};
 
@@ -28,7 +29,7 @@ impl SerialArm {
     /// Reads a robot arm from a URDF: one chain of links with [`crate::robot::moment::JOINTS`] revolute joints.
     ///
     /// # Errors
-    /// The text is no URDF, or not of such an arm.
+    /// The text is no URDF, or the URDF does not describe such an arm.
     pub fn from_urdf(text: &str) -> Result<SerialArm, UrdfError> {
         Ok(SerialArm { links: read_links(text)? })
     }
@@ -58,13 +59,13 @@ impl SerialArm {
         self.links.iter().filter_map(|link| link.turns.as_ref())
     }
 
-    /// Whether all joint angles are within their limits.
+    /// Whether all joint angles are within the limits of their joints.
     pub fn is_within_limits(&self, joints: &JointAngles) -> bool {
         self.turns().zip(joints).all(|(turn, angle)| (turn.range_rad[0]..=turn.range_rad[1]).contains(angle))
     }
 
-    /// The pose of the arm's tip in the frame of the base, and its geometric Jacobian: metres, then radians, per radian
-    /// of each joint.
+    /// The pose of the arm's tip in the frame of the base, and the geometric Jacobian of the tip: metres, then radians,
+    /// per radian of each joint.
     pub fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
         let places = self.forward(joints);
         let tip = places.last().copied().unwrap_or_else(Isometry3::identity);

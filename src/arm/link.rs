@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 
-/// A simple collision shape of a link, about its own centre.
+/// A simple collision shape of a link, relative to the shape's own centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkShape {
     /// A box-shaped part of the link.
@@ -29,7 +29,7 @@ pub enum LinkShape {
 pub struct CollisionSolid {
     /// The kind and size of the collision shape.
     pub shape: LinkShape,
-    /// The pose of the shape in the frame of its link.
+    /// The pose of the collision shape in the frame of its link.
     pub link_from_solid: Isometry3<f64>,
 }
 
@@ -64,9 +64,9 @@ pub struct ArmLink {
     pub name: String,
     /// Pose of the joint in the frame of the previous link, at joint angle 0.
     pub parent_from_joint: Isometry3<f64>,
-    /// The link's revolute joint; none if the link is fixed to the previous one.
+    /// The joint between the link and the previous one; none if the link is fixed to the previous link.
     pub turns: Option<RevoluteJoint>,
-    /// Mass and inertia of the link; none if it has no mass.
+    /// Mass and inertia of the link; none if the link has no mass.
     pub weight: Option<LinkInertia>,
     /// The collision shapes of the link.
     pub solids: Vec<CollisionSolid>,

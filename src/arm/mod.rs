@@ -2,16 +2,16 @@
 //! in a physics simulation with a human hand beside it. The simulated UR5 needs the feature `physics`.
 //!
 //! `worker` makes the robot's presses with either arm. The timed arm draws the duration of a press. The simulated UR5
-//! has a controller at 125 Hz over the physics engine rapier with a fixed step of 2 ms. Its path to a button is planned
-//! before the motion starts (up, across, down; cubic legs with a quintic time law) and checked against table, own links
-//! and obstacles. Slowing down only stretches the time along the path, so the arm never leaves a checked path. Contact
-//! with the hand, and between hand and table, are springs with the stiffness of a hand, computed beside the physics,
-//! because the peak force of a rigid contact would depend on the step.
+//! has a controller at 125 Hz over the physics engine rapier with a fixed step of 2 ms. The path of the UR5 to a button
+//! is planned before the motion starts (up, across, down; cubic legs with a quintic time law) and checked against
+//! table, own links and obstacles. Slowing down only stretches the time along the path, so the arm never leaves a
+//! checked path. Contact with the hand, and between hand and table, are springs with the stiffness of a hand, computed
+//! beside the physics, because the peak force of a rigid contact would depend on the step.
 //!
 //! Control cycles are internal events of the session and happen only while the arm moves, is about to move, or the hand
-//! moves. Whether a press is still useful is decided again above the button. A press is a click of the button. The hand
-//! follows the presses and never changes them. The stop thresholds are in `crate::robot::safety`; a contact is recorded
-//! once, a tenth of a second after it began.
+//! moves. Above the button, the program decides again whether the press is still useful. A press is a click of the
+//! button. The hand follows the presses and never changes them. The stop thresholds are in `crate::robot::safety`; a
+//! contact is recorded once, a tenth of a second after the contact began.
 
 #[cfg(feature = "physics")]
 pub mod body;

@@ -1,6 +1,6 @@
 //! Joint angles of the timed robot arm between presses. The time at which the arm touches a button is drawn at random;
-//! this module interpolates the joints with a quintic (Craig, Introduction to Robotics), slowly at both ends of each
-//! leg: up from the last button, across, and down on the next.
+//! this module interpolates the joint angles with a quintic (Craig, Introduction to Robotics), so that the arm moves
+//! slowly at both ends of each leg: up from the last button, across, and down on the next button.
 
 use super::clearance::ArmSurroundings;
 use super::kinematics::SerialArm;
@@ -9,16 +9,16 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Shares of the motion's duration in which the arm goes up (first) and down (last).
+/// Share of the motion's duration in which the arm goes up (first), and share in which the arm goes down (last).
 const UP: f64 = 0.15;
 const DOWN: f64 = 0.2;
-/// Duration of going up if there is no next button, in seconds.
+/// Duration of the arm's motion upwards if there is no next button, in seconds.
 const UP_S: f64 = 0.4;
 /// The joint angles of the timed robot arm over time.
 #[derive(Clone, Debug)]
 pub struct JointMotion {
     /// Poses of the arm at each of the robot's buttons; none if the button is out of reach, in which case the arm stays
-    /// in place.
+    /// where it is.
     buttons: Vec<Option<ButtonPoses>>,
     /// Waypoints of the arm's motion with their times; never empty.
     way: Vec<(SessionTime, JointAngles)>,
@@ -50,12 +50,12 @@ impl JointMotion {
         std::array::from_fn::<f64, JOINTS, _>(|joint| from[joint] + (to[joint] - from[joint]) * eased)
     }
 
-    /// The time at which the arm comes to rest without interruption.
+    /// The time at which the arm comes to rest if nothing interrupts its motion.
     pub fn rests_at(&self) -> SessionTime {
         self.way.last().map_or(SessionTime::ZERO, |(time, _)| *time)
     }
 
-    /// Starts a motion of the arm that touches the button at `until`.
+    /// Starts a motion of the arm that touches the button at the time `until`.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId, until: SessionTime) {
         let Some(Some(goal)) = self.buttons.get(button.index()).copied() else { return };
         let takes_s = until.secs_since(now).max(0.0);
@@ -70,7 +70,7 @@ impl JointMotion {
         self.down_on = Some(button);
     }
 
-    /// Moves the arm up after a press was made or abandoned; an arm on its way to a button just stops.
+    /// Moves the arm up after a press was made or abandoned; an arm that is still on its way to a button just stops.
     pub fn go_up(&mut self, now: SessionTime) {
         let here = self.at(now);
         let goes_down = self.way.iter().rev().nth(1).is_none_or(|(since, _)| *since <= now);

@@ -1,5 +1,5 @@
-//! Poses of the robot arm at a button, above and touching it, with the stick down and with clearance from table and own
-//! links.
+//! Poses of the robot arm above a button and touching it, with the stick down and with clearance from the table and the
+//! arm's own links.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -16,9 +16,10 @@ use crate::robot::moment::{JOINTS, JointAngles};
 pub const BUTTON_M: f64 = 0.02;
 /// Height of the arm's tip above the buttons while the arm moves across, in metres.
 pub const ABOVE_M: f64 = 0.08;
-/// Preferred posture of the arm: elbow up, stick down. Of all inverse kinematic solutions the nearest to it is chosen.
+/// Preferred posture of the arm: elbow up, stick down. Of all solutions of the inverse kinematics, the one nearest to
+/// this posture is chosen.
 pub const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
-/// Index of the elbow joint, and limit of its angle in radians.
+/// Index of the elbow joint, and limit of the elbow's angle in radians.
 const ELBOW: usize = 2;
 const ELBOW_RAD: f64 = PI;
 /// Least singular value of the Jacobian below which a pose of the arm counts as singular.
@@ -38,7 +39,7 @@ pub enum UnreachableReason {
 }
 
 impl UnreachableReason {
-    /// The reason in words, after "a button of the robot".
+    /// The reason why a button cannot be pressed, in words that follow "a button of the robot".
     pub fn words(self) -> &'static str {
         match self {
             UnreachableReason::TooFar => "out of reach of its arm",
@@ -75,7 +76,7 @@ pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at_m), UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI))
 }
 
-/// The mean of the poses above the buttons.
+/// The arm's resting pose: the mean of the poses above the buttons.
 pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
     let above: Vec<&JointAngles> = buttons.iter().map(|poses| &poses.above).collect();
     let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
@@ -83,11 +84,11 @@ pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
 }
 
 impl SerialArm {
-    /// Joint angles with the stick down at a position in the frame of the base (metres): of all solutions the one
+    /// Joint angles with the stick down at a position in the frame of the base (metres): of all solutions, the solution
     /// nearest to `like`. The last joint, which only spins the stick, stays as in `like`.
     ///
     /// # Errors
-    /// Why the arm cannot reach the position, for the solution nearest to `like`.
+    /// The reason why the arm cannot reach the position in the solution nearest to `like`.
     pub fn standing_at(
         &self,
         at_m: [f64; 3],
@@ -112,7 +113,7 @@ impl SerialArm {
         Err(why)
     }
 
-    /// Why the arm must not take a pose; none if it may.
+    /// Why the arm must not take a pose; none if the arm may take the pose.
     pub fn fault(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<UnreachableReason> {
         if !self.is_within_limits(joints) || joints[ELBOW].abs() > ELBOW_RAD {
             return Some(UnreachableReason::JointLimit);
@@ -126,7 +127,7 @@ impl SerialArm {
     /// Joint angles for pressing a button at this position on a table of this height.
     ///
     /// # Errors
-    /// Why the arm cannot press the button.
+    /// The reason why the arm cannot press the button.
     pub fn at_button(&self, [x, y]: [f64; 2], around: &ArmSurroundings) -> Result<ButtonPoses, UnreachableReason> {
         let top_m = around.table_m + BUTTON_M;
         let like = [y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]];
@@ -135,7 +136,8 @@ impl SerialArm {
     }
 }
 
-/// The first of the robot's buttons that its arm cannot press with clearance, and the reason.
+/// The first of the robot's buttons that the robot's arm cannot press with clearance, and the reason; none if there is
+/// no such button.
 pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, UnreachableReason)> {
     let arm = SerialArm::ur5();
     let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };

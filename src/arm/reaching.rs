@@ -1,6 +1,6 @@
 //! Simulated motion of the human's hand between its resting place and the buttons: minimum-jerk reaches (Flash and
-//! Hogan 1985). The hand follows the recorded presses and never delays one, even if it is late or avoids the arm; its
-//! purpose is that the robot arm can meet it.
+//! Hogan 1985). The hand follows the recorded presses and never delays a press, even if the hand is late or avoids the
+//! arm; the hand is simulated so that the robot arm can meet it.
 
 use nalgebra::Point3;
 use rand::RngExt;
@@ -11,7 +11,7 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Kitchen};
 
-/// Duration of a reach of the hand in seconds: a constant part, and a part per metre.
+/// Duration of a reach of the hand in seconds: a constant part, and a part per metre of the reach.
 const REACH_S: f64 = 0.3;
 const REACH_S_M: f64 = 0.8;
 /// Height by which the hand is lifted in the middle of a reach, in metres.
@@ -23,8 +23,8 @@ const PRESSES_M: f64 = 0.05;
 /// Resting place of the hand: distance behind the last button and height above the table, in metres.
 const BEYOND_M: f64 = 0.16;
 const RESTS_M: f64 = 0.08;
-/// Distance that an attentive hand keeps from the robot arm, in metres, and time after which it gives up a blocked
-/// reach, in seconds.
+/// Distance that an attentive hand keeps from the robot arm, in metres, and time after which the hand gives up a
+/// blocked reach, in seconds.
 const KEEPS_OFF_M: f64 = 0.06;
 const GIVES_UP_S: f64 = 1.5;
 
@@ -40,8 +40,8 @@ pub struct ReachingBehaviour {
 impl ReachingBehaviour {
     /// Hand motion of simulated participants. The share of heedless reaches is an estimate.
     pub const SIMULATED: ReachingBehaviour = ReachingBehaviour { lingers_s: 0.3, heedless: 0.005 };
-    /// Hand motion assumed for real people, whose hands are not tracked: the hand stays at the last press for a while,
-    /// and never moves into the robot arm.
+    /// Hand motion assumed for real people, whose hands are not tracked: the hand stays at the last pressed button for
+    /// a while, and never moves into the robot arm.
     pub const UNSEEN: ReachingBehaviour = ReachingBehaviour { lingers_s: 1.5, heedless: 0.0 };
 }
 
@@ -74,9 +74,9 @@ pub struct ReachingHand {
     at_m: Point3<f64>,
     way: Option<Way>,
     planned: Option<Planned>,
-    /// Target of the present or last reach.
+    /// Target position of the hand's present or last reach.
     goal_m: Option<Point3<f64>>,
-    /// The time at which the hand returns after a press.
+    /// The time at which the hand returns from a button after a press.
     leaves: Option<SessionTime>,
     heedless: bool,
 }
@@ -115,8 +115,8 @@ impl ReachingHand {
         REACH_S + REACH_S_M * (to_m - self.at_m).norm()
     }
 
-    /// Starts or plans a reach: the person intends to press the button at this position on the table at `at`, as far as
-    /// is known now.
+    /// Starts or plans a reach: the person intends to press the button at this position on the table at the time `at`,
+    /// as far as the time is known now.
     pub fn means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         let to_m = self.on(button_m);
         let is_on_its_way = self.way.is_some_and(|way| way.presses && way.to_m == to_m);
@@ -133,7 +133,7 @@ impl ReachingHand {
         self.planned = None;
         let lingers = SessionTime::from_secs_f64(self.how.lingers_s);
         match self.way.filter(|way| way.presses && way.to_m == to_m) {
-            // A hand that is late turns back when it arrives.
+            // A hand that arrives late at the button turns back when it arrives.
             Some(_) => {}
             None if self.at_m == to_m => self.leaves = Some(now + lingers),
             None => self.reach(to_m),
@@ -182,8 +182,8 @@ impl ReachingHand {
         begins.into_iter().chain(self.leaves).min().map(|time| time.max(cycle))
     }
 
-    /// Moves the hand for the cycle that ends now. `distance_m` computes the distance between a hand pose and the robot
-    /// arm.
+    /// Moves the hand for the controller cycle that ends now. `distance_m` computes the distance between a hand pose
+    /// and the robot arm.
     pub fn cycle(&mut self, now: SessionTime, distance_m: impl Fn(&HandPose) -> f64) {
         if let Some(planned) = self.planned.take_if(|planned| planned.begins <= now) {
             self.reach(planned.to_m);

@@ -12,17 +12,18 @@ pub enum PressFailure {
     NoClick(ButtonId),
     /// The arm measured a contact force (newtons) above the threshold; it stops and abandons the press.
     Contact(f64),
-    /// This joint (0 is the first) did not follow its command; the brakes hold the arm, and the press is abandoned.
+    /// This joint (number 0 is the first) did not follow its command; the brakes hold the arm, and the press is
+    /// abandoned.
     Fault(usize),
 }
 
-/// The result of a controller cycle for the arm's press, and the events to record.
+/// The result of a controller cycle for the arm's press, and the events of the cycle to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmCycleReport {
     /// The button that clicked. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
-    /// Why the arm failed to press, if it did.
+    /// Why the arm failed to press; `None` if the arm did not fail.
     pub report: Option<PressFailure>,
-    /// The robot activities to record, in order.
+    /// The robot activities to record, in the order of their times.
     pub news: Vec<RobotActivity>,
 }

@@ -3,16 +3,16 @@
 
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
-/// Protective separation distance in metres: the arm does not approach a nearer hand.
+/// Protective separation distance in metres: the arm does not approach a hand that is nearer than this.
 const WAITS_M: f64 = 0.03;
-/// Highest speed of the arm's tip in m/s at the distance at which the arm begins to slow down; below that, the limit
-/// falls in proportion to the distance.
+/// Highest speed of the arm's tip in m/s at the distance at which the arm begins to slow down; nearer to the hand, the
+/// limit falls in proportion to the distance.
 const SLOWED_M_S: f64 = 0.8;
 /// Speeds of the arm's tip below this limit, in m/s, count as waiting.
 const CREEPS_M_S: f64 = 0.02;
 /// Speed limit of the arm's tip for motion away from a hand, in m/s.
 const LEAVES_M_S: f64 = 0.1;
-/// Hysteresis of the distances in metres, so that the safety mode does not flicker.
+/// Hysteresis of the distances between hand and arm in metres, so that the safety mode does not flicker.
 pub const MARGIN_M: f64 = 0.03;
 
 /// The speed limit of the arm's tip in m/s for a hand at this distance, depending on whether the arm approaches the

@@ -1,10 +1,10 @@
 //! Contacts between robot arm and human: each contact is reported once.
 
-/// Number of controller cycles after which a contact is reported, and number of cycles without force after which it has
-/// ended.
+/// Number of controller cycles after which a contact is reported, and number of cycles without force after which the
+/// contact has ended.
 const CYCLES: u32 = 12;
 
-/// The present contact between robot arm and human, if there is one.
+/// The present contact between robot arm and human; `None` without a contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactTracker(Option<Contact>);
 
@@ -12,12 +12,13 @@ pub(super) struct ContactTracker(Option<Contact>);
 struct Contact {
     most_n: f64,
     cycles: u32,
-    /// Number of controller cycles without force.
+    /// Number of controller cycles without force since the contact was last felt.
     quiet: u32,
 }
 
 impl ContactTracker {
-    /// Adds the contact force of a cycle, in newtons. Returns the peak force of a contact that has to be reported now.
+    /// Adds the contact force of a controller cycle, in newtons. Returns the peak force of a contact that has to be
+    /// reported now.
     pub fn feel(&mut self, force_n: f64) -> Option<f64> {
         if force_n > 0.0 {
             self.0.get_or_insert_default();

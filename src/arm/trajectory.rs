@@ -1,8 +1,9 @@
-//! The robot arm's trajectory to a button: up, across, and down on it, each leg slow at both ends.
+//! The robot arm's trajectory to a button: up, across, and down on the button; on each leg the arm is slow at both
+//! ends.
 //!
-//! A leg is a cubic through four poses; the time law along it is a quintic (Craig, Introduction to Robotics), so that
-//! speed and acceleration begin and end at 0 and never jump. The duration of a leg follows from the limits of its kind,
-//! which are the defaults of the manufacturer's commands `movej` and `movel`.
+//! A leg is a cubic through four poses; the time law along the leg is a quintic (Craig, Introduction to Robotics), so
+//! that speed and acceleration begin and end at 0 and never jump. The duration of a leg follows from the speed and
+//! acceleration limits of the leg's kind, which are the defaults of the manufacturer's commands `movej` and `movel`.
 
 use super::clearance::ArmSurroundings;
 use super::kinematics::SerialArm;
@@ -17,10 +18,10 @@ pub const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
 pub const TIP_SPEED_M_S: f64 = 0.25;
 /// Greatest acceleration of the arm's tip on a straight leg, in metres per second squared.
 pub const TIP_ACCELERATION_M_S2: f64 = 1.2;
-/// The greatest speed and acceleration of the quintic time law from 0 to 1 in a time of 1.
+/// The greatest speed and acceleration of the quintic time law from 0 to 1 within a time of 1.
 const QUINTIC_SPEED: f64 = 1.875;
 const QUINTIC_ACCELERATION: f64 = 5.7735;
-/// Depth below a button's top at which the arm's tip aims, in metres; more than the click needs.
+/// Depth below a button's top at which the arm's tip aims, in metres; this is more than the click needs.
 pub const BELOW_M: f64 = 0.006;
 /// Number of points of a leg that are checked for joint limits and clearance.
 const LOOKS: usize = 24;
@@ -34,7 +35,7 @@ pub enum LegKind {
     Up,
     /// Moves all joints from one pose above the buttons to another.
     Over,
-    /// Moves the tip straight down on the button, until the button clicks.
+    /// Moves the arm's tip straight down on the button, until the button clicks.
     Down,
 }
 
@@ -43,7 +44,7 @@ pub enum LegKind {
 pub struct TrajectoryLeg {
     /// The purpose of the leg of the trajectory.
     pub kind: LegKind,
-    /// Four poses at equal distances along the leg.
+    /// Four poses of the arm at equal distances along the leg.
     poses: [JointAngles; 4],
     /// Duration of the leg at full speed, in seconds.
     pub takes_s: f64,
@@ -77,7 +78,7 @@ impl TrajectoryLeg {
         let by_tip_s = (QUINTIC_SPEED * length_m / TIP_SPEED_M_S)
             .max((QUINTIC_ACCELERATION * length_m / TIP_ACCELERATION_M_S2).sqrt());
         let leg = TrajectoryLeg { kind, poses, takes_s: by_tip_s.max(0.05) };
-        // Near the base, a short path of the tip needs large joint motions.
+        // Near the arm's base, a short path of the tip needs large joint motions.
         let steepest = (0..=LOOKS).map(|look| leg.slope(look as f64 / LOOKS as f64)).fold(0.0, f64::max);
         let fastest = arm.turns().map(|turn| turn.speed_rad_s).fold(f64::INFINITY, f64::min);
         Ok(TrajectoryLeg { takes_s: leg.takes_s.max(QUINTIC_SPEED * steepest / fastest), ..leg })
@@ -109,12 +110,12 @@ impl TrajectoryLeg {
         self.pose(t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t))
     }
 
-    /// The final pose of the leg.
+    /// The pose of the arm at the end of the leg.
     pub fn end(&self) -> &JointAngles {
         &self.poses[3]
     }
 
-    /// The first reason for which the arm must not follow the leg.
+    /// The first reason why the arm must not follow the leg; none if the arm may follow the leg.
     fn fault(&self, arm: &SerialArm, around: &ArmSurroundings) -> Option<UnreachableReason> {
         (0..=LOOKS).find_map(|look| arm.fault(&self.pose(look as f64 / LOOKS as f64), around))
     }
@@ -123,7 +124,7 @@ impl TrajectoryLeg {
 /// The trajectory from a pose to a button until the tip is down on the button: up, across, down.
 ///
 /// # Errors
-/// What blocks the arm, after higher paths were tried.
+/// What blocks the arm's path, after higher paths were tried.
 pub fn way_to(
     arm: &SerialArm,
     from: &JointAngles,
@@ -144,7 +145,7 @@ pub fn way_to(
 /// The trajectory up to the height at which the arm moves between buttons, if the arm is lower.
 ///
 /// # Errors
-/// What blocks the arm.
+/// What blocks the arm's path.
 pub fn way_up(
     arm: &SerialArm,
     from: &JointAngles,

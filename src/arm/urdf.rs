@@ -19,7 +19,7 @@ pub struct UrdfError {
 /// Reads the links of a robot arm: one chain with [`JOINTS`] revolute joints.
 ///
 /// # Errors
-/// The text is no URDF, or not of such an arm.
+/// The text is no URDF, or the URDF does not describe such an arm.
 pub fn read_links(text: &str) -> Result<Vec<ArmLink>, UrdfError> {
     let wrong = |found: String, remedy| UrdfError { found, remedy };
     let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;

@@ -1,5 +1,6 @@
-//! Carries out the robot's task policy with timed presses. The duration of a press is drawn at random (timed arm) or
-//! results from the simulated arm. This module knows neither events nor clocks: the caller passes time and state.
+//! Carries out the robot's task policy with presses that take time. The duration of a press is drawn at random (timed
+//! arm) or results from the simulated arm. This module knows neither events nor clocks: the caller passes time and
+//! state.
 
 use rand_distr::{Distribution, LogNormal};
 
@@ -23,22 +24,23 @@ struct OngoingPress {
     button: ButtonId,
     /// The time at which the arm touches the button.
     until: SessionTime,
-    /// Whether the wizard chose this press: the arm then makes it even if it is not useful.
+    /// Whether the wizard chose this press: the arm then makes the press even if it is not useful.
     driven: bool,
 }
 
-/// The robot at work: it decides on presses and carries them out with its arm; it can be idle, held or stopped.
+/// The robot at work: it decides on presses and carries them out with its arm; the robot can be idle, held or stopped.
 #[derive(Clone, Debug)]
 pub struct RobotTaskExecutor {
     random: Stream,
     duration_s: LogNormal<f64>,
     busy: Option<OngoingPress>,
     stopped: bool,
-    /// Whether the wizard holds the robot: it then starts no press, and waits above the button of the present one.
+    /// Whether the wizard holds the robot: the robot then starts no press, and waits above the button of the present
+    /// press.
     held: bool,
-    /// The press that the wizard chose, until the arm starts to move to it.
+    /// The button that the wizard chose for the robot's next press, until the arm starts to move to the button.
     driven: Option<ButtonId>,
-    /// Presses that were skipped or failed, each with the time until which the robot does not choose it.
+    /// Presses that were skipped or failed, each with the time until which the robot does not choose the press.
     skipped: Vec<(ButtonId, SessionTime)>,
     /// The last reported reason for being idle, and the state of the kitchen at the last decision.
     idle: Option<(IdleReason, State)>,
@@ -70,14 +72,14 @@ impl RobotTaskExecutor {
         RobotTaskExecutor { body: Some(Box::new(body)), ..self }
     }
 
-    /// The simulated arm, for experiments with it.
+    /// The simulated arm with its controller, for experiments with the arm.
     #[cfg(feature = "physics")]
     pub fn arm(&mut self) -> Option<&mut ArmController> {
         self.body.as_mut().map(|body| &mut body.arm)
     }
 
-    /// The time of the robot's next action: a touch, a controller cycle, or a new decision after a skipped press. The
-    /// time may have passed already: a held arm touches as soon as it is released.
+    /// The time of the robot's next action: a touch of the button, a controller cycle, or a new decision after a
+    /// skipped press. The time may have passed already: a held arm touches the button as soon as the arm is released.
     pub fn next_due(&self) -> Option<SessionTime> {
         let again = match (self.busy, self.idle) {
             (None, Some((IdleReason::Skipped, _))) if !self.held => self.skipped.iter().map(|(_, until)| *until).min(),
@@ -91,7 +93,7 @@ impl RobotTaskExecutor {
         again.into_iter().chain(moves).min()
     }
 
-    /// Whether the wizard holds the arm above its button.
+    /// Whether the wizard holds the arm above the button of the present press.
     fn waits(&self) -> bool {
         self.held && self.busy.is_none_or(|errand| !errand.driven)
     }
@@ -184,7 +186,7 @@ impl RobotTaskExecutor {
         deeds
     }
 
-    /// Handles a failed press, and returns the robot activity to record.
+    /// Handles a failed press, and returns the robot activity to record, if there is one.
     fn follow(&mut self, now: SessionTime, report: PressFailure) -> Option<RobotActivity> {
         let (button, reason) = match report {
             PressFailure::Contact(_) => return self.halt(AbortReason::Contact),
@@ -195,7 +197,7 @@ impl RobotTaskExecutor {
         self.go_without(now, button, reason)
     }
 
-    /// Abandons a failed press, which the robot does not choose again for a while.
+    /// Abandons a failed press, which the robot then does not choose again for a while.
     fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotActivity> {
         self.leave_out(now, button);
         self.give_up(reason)
@@ -215,8 +217,8 @@ impl RobotTaskExecutor {
         self.idle = None;
     }
 
-    /// Lets the timed arm touch the button. The arm presses if the press is still among the best or the wizard chose
-    /// it; otherwise it abandons the press.
+    /// Lets the timed arm touch the button. The arm presses if the press is still among the best presses or the wizard
+    /// chose the press; otherwise the arm abandons the press.
     fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy.take()?;
         match is_useful(kitchen, cost, state, errand) {
@@ -255,8 +257,8 @@ impl RobotTaskExecutor {
         self.idle = None;
     }
 
-    /// Skips the present press at the wizard's command. The robot does not choose it again for a while; an earlier
-    /// skipped press becomes available again.
+    /// Skips the present press at the wizard's command. The robot does not choose the skipped press again for a while;
+    /// an earlier skipped press becomes available again.
     pub fn skip(&mut self, now: SessionTime) -> Option<RobotActivity> {
         let errand = self.busy?;
         self.skipped.clear();
@@ -277,7 +279,7 @@ impl RobotTaskExecutor {
     }
 
     /// Tells the simulated hand that the person intends to press the button at this position on the table (metres) at
-    /// `at`, as far as is known now.
+    /// the time `at`, as far as the time is known now.
     pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         if let Some(body) = &mut self.body {
             body.human_means(now, button_m, at);
@@ -299,7 +301,7 @@ impl RobotTaskExecutor {
         self.skipped.clear();
     }
 
-    /// Shifts all pending times by the duration of a pause.
+    /// Shifts all pending times of the robot and its arm by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(errand) = &mut self.busy {
             errand.until = errand.until + by;
@@ -313,7 +315,7 @@ impl RobotTaskExecutor {
     }
 }
 
-/// Whether a press of the robot is among the best, or the wizard chose it.
+/// Whether a press of the robot is among the best presses, or the wizard chose the press.
 fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: OngoingPress) -> bool {
     let best =
         |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Exact, state, &kitchen.true_recipes());

@@ -11,8 +11,8 @@ use super::{PhysicsWorld, button};
 use crate::arm::link::{ArmLink, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Reflected rotor inertia of large and small drives (rotor inertia times gear ratio squared), in kg m². The values are
-/// estimates: the manufacturer does not publish them.
+/// Reflected rotor inertia of the arm's large and small drives (rotor inertia times gear ratio squared), in kg m². The
+/// values are estimates: the manufacturer does not publish the inertia.
 const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
 
 impl PhysicsWorld {
@@ -51,7 +51,7 @@ impl PhysicsWorld {
         let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get_mut(*joint)) else {
             return;
         };
-        // Before this step the multibody does not know that its root is fixed.
+        // Before this step the multibody does not have the information that its root is fixed.
         multibody.forward_kinematics(&self.bodies, true);
         multibody.damping_mut().fill(0.0);
         multibody.armature_mut().copy_from_slice(&ARMATURE_KG_M2);

@@ -1,4 +1,4 @@
-//! A simulated button: a cap that slides down on a spring, clicks on its way, and ends at a stop.
+//! A simulated button: a cap that slides down on a spring, clicks on the way, and ends at a stop.
 
 use rapier3d::prelude::{
     ColliderBuilder, ColliderHandle, ColliderSet, Group, ImpulseJointSet, InteractionGroups, InteractionTestMode,
@@ -7,11 +7,11 @@ use rapier3d::prelude::{
 
 use crate::arm::reach::BUTTON_M;
 
-/// Travel of the button's cap, and the depths at which the electrical contact closes and opens, in metres.
+/// Travel of the button's cap, and the depths of the cap at which the electrical contact closes and opens, in metres.
 const TRAVEL_M: f32 = 0.004;
 const CLOSES_M: f32 = 0.0025;
 const OPENS_M: f32 = 0.001;
-/// Spring constant of a button in N/m, and preload of a released button.
+/// Spring constant of a button in N/m, and preload of the spring while the button is released.
 const SPRING_N_M: f32 = 600.0;
 const PRELOAD_M: f32 = 0.003;
 const DAMPING_NS_M: f32 = 3.0;
@@ -63,7 +63,7 @@ impl PhysicalButton {
         self.collider
     }
 
-    /// Activates the button in the simulation, or releases and deactivates it.
+    /// Activates the button in the simulation; or releases the button and deactivates it.
     pub fn set_active(&mut self, bodies: &mut RigidBodySet, active: bool) {
         let Some(body) = bodies.get_mut(self.body) else { return };
         let at = body.translation();
@@ -80,7 +80,7 @@ impl PhysicalButton {
         }
     }
 
-    /// Whether the button's contact closed since the last call.
+    /// Whether the button's electrical contact closed since the last call.
     pub fn clicks(&mut self, bodies: &RigidBodySet) -> bool {
         let down_m = bodies.get(self.body).map_or(0.0, |body| self.up_m - body.translation().z);
         let was_closed = self.closed;
@@ -89,7 +89,7 @@ impl PhysicalButton {
     }
 }
 
-/// Collision groups: caps collide with the stick only.
+/// Collision groups of the button's cap: caps collide with the stick only.
 const CAP: InteractionGroups = InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
 /// Collision group of the robot's stick.
 pub(super) const STICK: InteractionGroups =

@@ -9,10 +9,11 @@ use crate::arm::clearance::Capsule;
 const MASS_KG: f32 = 0.6;
 /// Stiffness of a hand, in N/m (ISO/TS 15066, annex A).
 pub const STIFFNESS_N_M: f64 = 75_000.0;
-/// Damping of skin and flesh in a contact, in N s/m; small, so that the spring determines the peak force.
+/// Damping of skin and flesh in a contact, in N s/m; the damping is small, so that the spring determines the peak
+/// force.
 pub const FLESH_NS_M: f64 = 40.0;
-/// Stiffness and damping of the person's arm, in N/m and N s/m: near measured values for an arm at rest (Mussa-Ivaldi,
-/// Hogan and Bizzi 1985), critically damped.
+/// Stiffness and damping of the person's arm, in N/m and N s/m: the stiffness is near measured values for an arm at
+/// rest (Mussa-Ivaldi, Hogan and Bizzi 1985), and the damping is critical.
 const HELD_N_M: f64 = 400.0;
 const HELD_NS_M: f64 = 24.0;
 /// Radii of hand and forearm, and the length of the hand, in metres.
@@ -34,8 +35,8 @@ const REACHES_M: f64 = 0.27;
 const ELBOW_M: f64 = 0.12;
 
 impl HandPose {
-    /// A hand over a table of this height, reached out from the human's side: the elbow is further from the robot arm's
-    /// base.
+    /// A hand over a table of this height, stretched out from the human's side: the elbow is further away from the
+    /// robot arm's base than the hand.
     pub fn reaching(at_m: Point3<f64>, table_m: f64) -> HandPose {
         HandPose { at_m, elbow_m: Point3::new(at_m.x + REACHES_M, at_m.y, table_m + ELBOW_M) }
     }
@@ -78,7 +79,7 @@ impl PhysicalHand {
         self.body
     }
 
-    /// The present pose of the hand, displaced by contact forces.
+    /// The present pose of the hand, which contact forces displace.
     pub fn place(&self, bodies: &RigidBodySet) -> HandPose {
         let Some(body) = bodies.get(self.body) else { return self.wanted };
         let at_m = Point3::from(double(body.translation()));
@@ -91,7 +92,8 @@ impl PhysicalHand {
         bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
     }
 
-    /// Applies the forces of a step: the spring of the person's arm, and the contact with the robot (newtons).
+    /// Applies the forces of a physics step to the hand: the spring of the person's arm, and the contact with the robot
+    /// (newtons).
     pub fn push(&self, bodies: &mut RigidBodySet, by_robot_n: Vector3<f64>) {
         let at_m = self.place(bodies).at_m;
         let away = self.wanted.at_m - at_m;

@@ -3,7 +3,7 @@
 //! The arm is a multibody from the URDF; each joint is driven by a motor that follows a commanded angle with no more
 //! torque than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a
 //! spring, which stands for the person's arm. The contact between hand and robot arm is a spring, too, as stiff as a
-//! hand (ISO/TS 15066), because the peak force of a rigid contact would depend on the step.
+//! hand (ISO/TS 15066), because the peak force of a rigid contact would depend on the step of the physics.
 
 mod build;
 mod button;
@@ -27,22 +27,22 @@ pub const STEP_S: f64 = 0.002;
 pub const STEPS_A_CYCLE: usize = 4;
 /// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
 pub const CYCLE_S: f64 = STEP_S * STEPS_A_CYCLE as f64;
-/// Number of iterations of the physics solver in each step; few suffice, since steps are short.
+/// Number of iterations of the physics solver in each step; few iterations suffice, since the steps are short.
 const ITERATIONS: usize = 2;
 const GRAVITY_M_S2: f32 = -9.81;
 /// Index of the angle among a joint's coordinates in the physics engine.
 const ANGLE: usize = 3;
 /// Number of controller cycles that a new arm needs to settle.
 const SETTLES: usize = 125;
-/// Joint drive gains: stiffness per radian, and critical damping.
+/// Gains of a joint's drive: stiffness per radian, and critical damping.
 const STIFFNESS: f32 = 10_000.0;
 const DAMPING: f32 = 200.0;
 
 /// Share of the tracking error by which joint commands are corrected per cycle, and the limit of the correction in
-/// radians: compensates the arm's weight.
+/// radians: the correction compensates the arm's weight.
 const CORRECTED: f64 = 0.1;
 const MOST_CORRECTED_RAD: f64 = 0.05;
-/// Distance in metres beyond which human and robot arm cannot touch within a cycle.
+/// Distance in metres beyond which human and robot arm cannot touch within one controller cycle.
 const APART_M: f64 = 0.05;
 
 /// The contact forces measured in one controller cycle.
@@ -81,7 +81,7 @@ pub struct PhysicsWorld {
     pipeline: PhysicsPipeline,
     /// Handles of the arm's revolute joints in the physics engine.
     joints: Vec<MultibodyJointHandle>,
-    /// The rigid body of each link of the arm; parts fixed to a link belong to its body.
+    /// The rigid body of each link of the arm; parts that are fixed to a link belong to the link's body.
     links: Vec<RigidBodyHandle>,
     stick: Option<ColliderHandle>,
     buttons: Vec<PhysicalButton>,
@@ -89,7 +89,7 @@ pub struct PhysicsWorld {
     active: Option<usize>,
     hand: Option<PhysicalHand>,
     table_m: f64,
-    /// The last commanded joint angles, and their correction.
+    /// The last commanded joint angles, and the correction added to them.
     commanded: JointAngles,
     correction: JointAngles,
 }
@@ -163,7 +163,7 @@ impl PhysicsWorld {
             let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
             world.buttons.push(PhysicalButton::new(at_m, table_m, bodies, colliders, &mut world.impulse_joints));
         }
-        // In these cycles the motors take up the arm's weight.
+        // In these cycles the motors come to hold the arm's weight.
         for _ in 0..SETTLES {
             world.cycle(joints, None);
         }
@@ -184,12 +184,12 @@ impl PhysicsWorld {
         (angles, std::array::from_fn(|joint| f64::from(speeds[joint])))
     }
 
-    /// The pose of the human's hand, if there is one.
+    /// The pose of the human's hand, if there is a hand in the simulation.
     pub fn hand(&self) -> Option<HandPose> {
         self.hand.as_ref().map(|hand| hand.place(&self.bodies))
     }
 
-    /// Selects the button that the stick can touch; none while the stick is above all buttons.
+    /// Selects the button that the stick can touch; `None` while the stick is above all buttons.
     pub fn aim_at(&mut self, button: Option<usize>) {
         if let Some(before) = self.active.filter(|_| self.active != button) {
             self.buttons[before].set_active(&mut self.bodies, false);
@@ -200,12 +200,12 @@ impl PhysicsWorld {
         self.active = button;
     }
 
-    /// The button that the stick can touch.
+    /// The button that the stick can touch at present.
     pub fn aimed_at(&self) -> Option<usize> {
         self.active
     }
 
-    /// Disables the motor of this joint to simulate a fault, or restores all motors.
+    /// Disables the motor of this joint to simulate a fault; with `None`, restores all motors.
     pub fn fail(&mut self, joint: Option<usize>) {
         for (index, (handle, turn)) in self.joints.iter().zip(self.arm.turns()).enumerate() {
             let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
@@ -216,8 +216,8 @@ impl PhysicsWorld {
         }
     }
 
-    /// Runs a cycle of the controller: the joints move towards `command` (radians), the hand to where the person wants
-    /// it.
+    /// Runs a cycle of the controller: the joints move towards the angles in `command` (radians), the hand to the pose
+    /// that the person wants.
     pub fn cycle(&mut self, command: &JointAngles, hand: Option<HandPose>) -> ContactForces {
         let before = self.commanded;
         self.set_hand(hand);
@@ -247,7 +247,7 @@ impl PhysicsWorld {
         felt
     }
 
-    /// The force of the stick on a button in the last step, in newtons.
+    /// The force of the stick on a button in the last physics step, in newtons.
     fn force_on(&self, button: usize) -> f64 {
         let Some(stick) = self.stick else { return 0.0 };
         let pair = self.narrow_phase.contact_pair(stick, self.buttons[button].collider());
@@ -303,7 +303,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// Applies the contact force between arm and human at the deepest overlap. Returns the force in newtons.
+    /// Applies the contact force between arm and human at their deepest overlap. Returns the force in newtons.
     fn touch(&mut self, near: bool) -> f64 {
         let Some(hand) = self.hand else { return 0.0 };
         let deepest = if near { self.deepest(&hand) } else { None };

@@ -1,16 +1,16 @@
-//! Accuracy check of an eye tracker: targets on the wall display, and the angular distance of gaze samples from the
-//! shown target.
+//! Accuracy check of an eye tracker: the wall display shows targets, and the check measures the angular distance
+//! between gaze samples and the shown target.
 
 use serde::{Deserialize, Serialize};
 
 use super::GazeSample;
 
-/// Positions of the accuracy check's targets, in fractions of the display: the centre first.
+/// Positions of the accuracy check's targets, in fractions of the display: the first target is in the centre.
 pub const TARGETS: [[f64; 2]; 5] = [[0.5, 0.5], [0.2, 0.25], [0.8, 0.25], [0.8, 0.75], [0.2, 0.75]];
 /// Time for which the accuracy check shows a target, in seconds.
 pub const TARGET_S: f64 = 1.8;
-/// Gaze samples of the accuracy check count from this time after the target appears, in seconds: before, the eyes are
-/// moving to the target.
+/// Gaze samples of the accuracy check count from this time after the target appears, in seconds: before that time, the
+/// eyes are still moving to the target.
 pub const SETTLE_S: f64 = 0.7;
 /// A target with fewer gaze samples does not count: the participant did not look at it, or the tracker lost the eyes.
 pub const LEAST_SAMPLES: usize = 10;
@@ -28,12 +28,13 @@ pub const USABLE_DEG: f64 = 3.0;
 pub struct GazeAccuracy {
     /// Accuracy: mean angle between target and gaze, over the targets, in degrees.
     pub accuracy_deg: f64,
-    /// Accuracy after the constant offset is subtracted, in degrees.
+    /// Accuracy of the gaze after the constant offset is subtracted, in degrees.
     pub corrected_deg: f64,
-    /// Precision: root mean square of the angles between successive samples, in degrees (Holmqvist et al. 2012).
+    /// Precision of the gaze: root mean square of the angles between successive samples, in degrees (Holmqvist et al.
+    /// 2012).
     pub precision_deg: f64,
-    /// Correction to add to gaze, in fractions of the display: mean over the targets of the vector from median gaze to
-    /// target.
+    /// Correction to add to gaze, in fractions of the display: mean over the targets of the vector from the median gaze
+    /// to the target.
     pub offset: [f64; 2],
     /// The result for each target, in the order in which the targets were shown.
     pub targets: Vec<TargetAccuracy>,
@@ -45,7 +46,7 @@ pub struct GazeAccuracy {
 pub struct TargetAccuracy {
     /// Number of gaze samples with sufficient confidence.
     pub samples: usize,
-    /// Mean angle between target and gaze in degrees; none if there were too few samples.
+    /// Mean angle between target and gaze in degrees; none if there were too few gaze samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy_deg: Option<f64>,
 }
@@ -74,8 +75,8 @@ impl ViewingGeometry {
     }
 }
 
-/// The gaze accuracy from samples that were taken while targets were shown. `samples` has a list per target: samples
-/// with sufficient confidence, in order of time. `None` if too few targets have enough samples.
+/// The gaze accuracy from samples that were taken while the targets were shown. `samples` has one list per target, with
+/// the samples of sufficient confidence in order of time. `None` if too few targets have enough samples.
 pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<GazeSample>]) -> Option<GazeAccuracy> {
     let looked: Vec<([f64; 2], &Vec<GazeSample>)> =
         targets.iter().copied().zip(samples).filter(|(_, samples)| samples.len() >= LEAST_SAMPLES).collect();

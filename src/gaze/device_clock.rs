@@ -3,18 +3,18 @@
 
 use crate::base::time::SessionTime;
 
-/// Length of the time window whose shortest delay gives the clock offset, in seconds: longer than a network delay,
-/// shorter than the time in which clocks drift by a millisecond.
+/// Length of the time window in which the sample with the shortest delay gives the clock offset, in seconds: the window
+/// is longer than a network delay, and shorter than the time in which clocks drift by a millisecond.
 const WINDOW_S: f64 = 10.0;
-/// A gaze sample whose clock offset differs by more than this is in doubt, in seconds: it was delayed, its time stamp
-/// is wrong, or the tracker's clock was set.
+/// A gaze sample is in doubt if its clock offset differs from the known offset by more than this, in seconds: the
+/// sample was delayed, its time stamp is wrong, or the tracker's clock was set.
 const DOUBT_S: f64 = 0.05;
 /// Samples in doubt agree on a new clock offset if their offsets differ by no more than this, in seconds.
 const AGREE_S: f64 = 0.01;
 /// Number of samples that have to agree before the tracker's clock counts as set.
 const AGREEING: u32 = 5;
 /// Time for which samples have to agree that the tracker's clock was set back, in seconds. A network that delays
-/// samples looks the same and takes longer to rule out; no delay makes samples look too early.
+/// samples looks like a clock set back and takes longer to rule out; no delay makes samples look too early.
 const BACK_S: f64 = 0.4;
 const AHEAD_S: f64 = 0.1;
 
@@ -24,7 +24,7 @@ const AHEAD_S: f64 = 0.1;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeviceClock {
     /// Least difference between arrival and device time in the previous time window, in nanoseconds; the next field has
-    /// that of the present window.
+    /// the least difference in the present window.
     before: Option<i128>,
     least: Option<i128>,
     since: SessionTime,
@@ -36,16 +36,16 @@ pub struct DeviceClock {
 struct Doubt {
     /// Whether the samples suggest that the tracker's clock was set ahead.
     is_ahead: bool,
-    /// Arrival times of the first deviating sample, and of the first one that agrees with the present least offset.
+    /// Arrival time of the first deviating sample, and of the first sample that agrees with the present least offset.
     since: SessionTime,
     agreed_since: SessionTime,
     /// The least clock offset of the deviating samples, in nanoseconds.
     least: i128,
-    /// Number of samples that agree with the least offset.
+    /// Number of samples whose clock offset agrees with the least offset.
     agreeing: u32,
 }
 
-/// The eye tracker's clock was set during the session.
+/// A step of the eye tracker's clock: the clock was set during the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockStep {
     /// By how much the tracker's clock was set ahead, in nanoseconds; negative if it was set back.
@@ -59,8 +59,8 @@ const fn ns(seconds: f64) -> i128 {
 }
 
 impl DeviceClock {
-    /// The session time at which a sample with this device time was taken, never later than its arrival; and the clock
-    /// step, if the tracker's clock turned out to have been set.
+    /// The session time at which a sample with this device time was taken, which is never later than the sample's
+    /// arrival; and the clock step, if samples now show that the tracker's clock was set.
     pub fn session_time(&mut self, device_ns: u64, arrived: SessionTime) -> (SessionTime, Option<ClockStep>) {
         let offset = i128::from(arrived.0) - i128::from(device_ns);
         let step = match self.offset() {

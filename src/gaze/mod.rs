@@ -1,9 +1,9 @@
 //! Gaze: samples on the wall display, and the locations that the participant may have looked at.
 //!
 //! All gaze sources lead to the same event with three times: arrival (the event's time), the tracker's time, and the
-//! session time at which the sample was taken. Faults are judged when an event is applied, so a recording keeps every
-//! sample and a replay judges the same way. Recorded gaze stays raw; an accepted offset is corrected where gaze is
-//! used.
+//! session time at which the sample was taken. Faults of gaze are judged when the event is applied, so a recording
+//! keeps every sample and a replay judges the same way. Recorded gaze stays raw; an accepted offset is corrected where
+//! gaze is used.
 
 pub mod calibration;
 pub mod device_clock;
@@ -32,8 +32,8 @@ pub struct GazeSample {
     /// Time of the sample on the tracker's clock in nanoseconds, if the tracker reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub device_ns: Option<u64>,
-    /// Session time at which the sample was taken, if the offset of the tracker's clock is known; otherwise the arrival
-    /// time counts.
+    /// Session time at which the sample was taken, if the offset of the tracker's clock is known; otherwise the
+    /// sample's arrival time counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taken_ns: Option<SessionTime>,
 }

@@ -7,7 +7,7 @@ use super::GazeSample;
 use crate::base::time::SessionTime;
 
 /// The belief filter ignores gaze samples older than this, in seconds: the display may have shown something else when
-/// they were taken.
+/// such samples were taken.
 pub const TOO_OLD_S: f64 = 0.5;
 /// Upper limit of an eye tracker's sampling rate, in Hz.
 pub const MAX_HZ: f64 = 2000.0;
@@ -23,7 +23,7 @@ pub enum GazeFault {
     Duplicate,
     /// The gaze sample was taken too long before it arrived.
     TooOld,
-    /// A gaze sample that was taken later had arrived before.
+    /// A gaze sample that was taken later had already arrived.
     OutOfOrder,
 }
 
@@ -39,7 +39,7 @@ pub struct GazeFaultCounts {
 }
 
 impl GazeFaultCounts {
-    /// Number of faulty samples of all kinds.
+    /// Number of faulty gaze samples of all kinds.
     pub fn sum(self) -> u64 {
         self.duplicate + self.too_old + self.out_of_order
     }
@@ -58,7 +58,7 @@ pub struct DroppedInputCounts {
 }
 
 impl DroppedInputCounts {
-    /// Number of dropped inputs of all kinds.
+    /// Number of dropped gaze inputs of all kinds.
     pub fn sum(self) -> u64 {
         self.malformed + self.too_frequent + self.overrun
     }
@@ -70,12 +70,12 @@ pub struct GazeFaultDetector {
     newest: Option<SessionTime>,
     recent: Vec<(Option<u64>, [u64; 2])>,
     next: usize,
-    /// Number of faults found so far, by kind.
+    /// Number of faults found so far in the gaze stream, by kind.
     pub counts: GazeFaultCounts,
 }
 
 impl GazeFaultDetector {
-    /// The fault of a gaze sample that arrived now; none if the sample can be used.
+    /// The fault of a gaze sample that arrived now; none if the sample has no fault.
     pub fn judge(&mut self, sample: &GazeSample, arrived: SessionTime) -> Option<GazeFault> {
         let taken = sample.taken_ns?.min(arrived);
         let mark = (sample.device_ns, [sample.x.to_bits(), sample.y.to_bits()]);

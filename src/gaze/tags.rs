@@ -1,5 +1,5 @@
-//! The printed markers on the wall display by which an eye tracker finds it: AprilTags of the family tag36h11, one in
-//! each corner.
+//! The printed markers on the wall display by which an eye tracker finds the display: AprilTags of the family tag36h11,
+//! one in each corner.
 //!
 //! Pupil Labs asks for at least four tags with unique ids, a black edge of at least 8 cm at 2 m, and a white border of
 //! one cell around each tag.
@@ -8,11 +8,11 @@ use crate::kitchen::{DisplayArea, Kitchen};
 
 /// The AprilTag ids of the display's corners: top left, top right, bottom right, bottom left.
 pub const IDS: [u16; 4] = [0, 1, 2, 3];
-/// Smallest and largest edge of an AprilTag's black square, in millimetres; the largest that fits is used.
+/// Smallest and largest edge of an AprilTag's black square, in millimetres; the largest edge that fits is used.
 const EDGE_MM: (u32, u32) = (80, 100);
-/// Cells along a side of an AprilTag's black square: six of data, and the black border.
+/// Number of cells along a side of an AprilTag's black square: six cells of data, and the black border.
 const BLACK_CELLS: usize = 8;
-/// Cells along a side of a whole AprilTag, with the white border.
+/// Number of cells along a side of a whole AprilTag, with the white border.
 pub const CELLS: usize = 10;
 /// The data bits of the AprilTags with these ids: six rows of six bits, the first bit top left, 1 for white (Olson
 /// 2011; Wang and Olson 2016).
@@ -44,7 +44,7 @@ pub struct DisplayTags {
 pub struct TagError {
     /// Which tag does not fit, and what is in its place.
     pub found: String,
-    /// What would have to change, in words.
+    /// What would have to change so that the tag fits, in words.
     pub remedy: String,
 }
 

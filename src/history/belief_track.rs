@@ -9,7 +9,7 @@ use crate::mind::dirichlet::DirichletBelief;
 const STEP_S: f64 = 0.2;
 /// Change of a P(truth), the estimated probability of an aspect's true value, for which a snapshot is kept at once.
 const JUMP: f64 = 0.1;
-/// A change of a P(truth) by gaze of at least [`NEWS`] is marked on screens for this long, in seconds.
+/// On screens, a change of a P(truth) by gaze of at least [`NEWS`] is marked for this long, in seconds.
 const NEWS_S: f64 = 2.0;
 const NEWS: f64 = 0.2;
 
@@ -41,14 +41,14 @@ pub struct BeliefSnapshot {
     pub time: SessionTime,
     /// Whether only gaze samples, and no other events, came since the previous snapshot.
     by_gaze: bool,
-    /// Estimated belief about each state aspect.
+    /// Estimate of the participant's belief about each state aspect.
     pub held: Vec<AspectBeliefSnapshot>,
-    /// For each state aspect, the start of the present false belief; `None` where the belief is right.
+    /// For each state aspect, the start of the present false belief about the aspect; `None` where the belief is right.
     wrong_since: Vec<Option<SessionTime>>,
 }
 
 impl BeliefSnapshot {
-    /// Snapshot of the belief estimate at a time, when the kitchen's true state is `state`.
+    /// Creates a snapshot of the belief estimate at a time at which the kitchen's true state is `state`.
     pub fn new(
         kitchen: &Kitchen,
         state: State,
@@ -104,13 +104,15 @@ impl BeliefHistory {
     /// Removes snapshots older than `kept_s` seconds, so that memory does not grow with the length of a session.
     pub fn forget(&mut self, now: SessionTime, kept_s: f64) {
         let old = self.moments.partition_point(|moment| now.secs_since(moment.time) > kept_s);
-        // Old snapshots are removed in batches; the last one before the limit stays, since it holds at the limit.
+        // Old snapshots are removed in batches; the last snapshot before the limit stays, since that estimate still
+        // holds at the limit.
         if old > 2 * (self.moments.len() - old) {
             self.moments.drain(..old.min(self.moments.len() - 1));
         }
     }
 
-    /// Appends those snapshots of another history of the same session that are later than the last one here.
+    /// Appends those snapshots of another history of the same session that are later than the last snapshot of this
+    /// history.
     pub fn catch_up(&mut self, other: &BeliefHistory) {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);

@@ -1,5 +1,5 @@
-//! Comparison of wizard and assistants: the communications of each in a lane, their matches, and the differences with
-//! context.
+//! Comparison of wizard and assistants: the communications of each sender in a lane, the matches between lanes, and the
+//! differences with context.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub struct CommunicationContext {
     pub seq: u64,
     /// The true state of the kitchen at that event.
     pub state: State,
-    /// Estimate by state aspect, without the effect of signals sent within the matching window.
+    /// Estimated belief by state aspect, without the effect of signals that were sent within the matching window.
     pub held: Vec<AspectBeliefSnapshot>,
     /// Recommendation of each assistant, in the order of the assistants' lanes.
     pub advice: Vec<Recommendation>,
@@ -35,7 +35,7 @@ pub struct CommunicationContext {
     pub screen: Option<WizardScreenContent>,
 }
 
-/// What one communication says: a signal, or proposed presses.
+/// What one communication tells the participant: a signal, or proposed presses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommunicationContent {
     /// A signal that the wizard or an assistant sends.
@@ -53,7 +53,7 @@ impl CommunicationContent {
         }
     }
 
-    /// Content in the form that the matching of communications compares.
+    /// Content of the communication in the form that the matching of communications compares.
     pub fn content(&self, kitchen: &Kitchen) -> CommunicationTarget {
         let kind = match self {
             CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
@@ -72,7 +72,7 @@ impl CommunicationContent {
         }
     }
 
-    /// What the communication says, in words.
+    /// Content of the communication in words.
     pub fn words(&self) -> String {
         match self {
             CommunicationContent::Signal(signal) => wording::signal(signal),
@@ -88,9 +88,9 @@ pub struct Communication {
     pub said: CommunicationEvent,
     /// Session time of the communication.
     pub time: SessionTime,
-    /// The signal or the proposal.
+    /// The signal, or the proposed presses, that the communication consists of.
     pub what: CommunicationContent,
-    /// Context at the last time before it at which the assistants were asked for advice.
+    /// Context of the communication: what was known when the assistants were last asked for advice before it.
     pub known: Option<Arc<CommunicationContext>>,
 }
 
@@ -106,7 +106,7 @@ pub struct SenderCommunications {
 }
 
 impl SenderCommunications {
-    /// Communications in the form that the matching takes, in the order of time.
+    /// Communications of the sender in the form that the matching takes, in the order of time.
     pub fn said(&self) -> Vec<CommunicationEvent> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
     }
@@ -119,7 +119,7 @@ pub struct UnmatchedCommunication {
     pub lane: usize,
     /// Index of the communication in its lane.
     pub index: usize,
-    /// Index of the lane that has no matching communication.
+    /// Index of the lane that has no communication matching this one.
     pub not: usize,
 }
 
@@ -141,13 +141,13 @@ pub struct SenderComparison {
     pub lanes: Vec<SenderCommunications>,
     /// Comparisons of the first lane with each assistant's lane.
     pub pairs: Vec<SenderPair>,
-    /// Communications without a match, in order of time; those that later ones can still match are left out.
+    /// Communications without a match, in order of time; a communication that a later one can still match is left out.
     pub differences: Vec<UnmatchedCommunication>,
 }
 
 impl SenderComparison {
-    /// Compares the communications of all senders in a trial after `presses` presses of the human; `over`: the trial
-    /// has ended.
+    /// Compares the communications of all senders in a trial after `presses` presses of the human; `over` says whether
+    /// the trial has ended.
     pub fn new(lanes: Vec<SenderCommunications>, window: u32, presses: u32, over: bool) -> SenderComparison {
         let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(SenderCommunications::said).collect();
         let pair = |with: &Vec<CommunicationEvent>| {
@@ -184,7 +184,8 @@ impl SenderComparison {
         difference.lane.max(difference.not)
     }
 
-    /// Recommendation, at the time of an unmatched communication, of the assistant that is compared.
+    /// Recommendation, at the time of an unmatched communication, of the assistant that is compared with the first
+    /// lane.
     pub fn advice(&self, difference: &UnmatchedCommunication) -> Option<&Recommendation> {
         self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
     }
@@ -258,8 +259,8 @@ fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
     }
 }
 
-/// Two lists of state aspects in words: false beliefs (lowest P(truth) first), and beliefs that are right but
-/// uncertain.
+/// Two lists of state aspects in words: the aspects with false beliefs (lowest P(truth) first), and the aspects with
+/// beliefs that are right but uncertain.
 fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let mut doubtful: Vec<(usize, &AspectBeliefSnapshot)> =
         known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();

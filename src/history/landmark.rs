@@ -3,12 +3,12 @@
 /// Kind of event in a recording to which a replay can jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayLandmark {
-    /// The human's press was an error.
+    /// The human made an erroneous press.
     Error,
-    /// A signal was shown to the participant.
+    /// The participant's display began to show a signal.
     Signal,
-    /// A marker that the wizard set.
+    /// The wizard set a marker.
     Marker,
-    /// A false belief began in the belief estimate.
+    /// A false belief about a state aspect began in the belief estimate.
     FalseBelief,
 }

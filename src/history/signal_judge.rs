@@ -1,8 +1,9 @@
-//! Judges the signals of a running trial as they are sent, for the summary at its end: was the belief that a signal
-//! corrects false?
+//! Judges the signals of a running trial as they are sent, for the summary at the trial's end: was the belief that a
+//! signal corrects false?
 //!
 //! The measures of a study look at the whole trial and leave out false beliefs that led to no error
-//! ([`crate::measures::wizard_performance`]); here a signal is judged by the beliefs at the time it was sent.
+//! ([`crate::measures::wizard_performance`]); this module judges a signal by the beliefs at the time the signal was
+//! sent.
 
 use crate::communication::recommendation::aspects_told;
 use crate::communication::{Sender, Signal};
@@ -11,16 +12,16 @@ use crate::measures::wizard_performance::LATE_PRESSES;
 use crate::session::event::SignalEndReason;
 use crate::session::{Event, Session, TimestampedEvent};
 
-/// Counts of a sender's signals by how they were judged.
+/// Counts of a sender's signals by the judgement of the signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SignalJudgementCounts {
     /// Number of signals about a false belief of the participant.
     pub hits: u64,
-    /// Signals about a belief that became right at most [`LATE_PRESSES`] presses of the human before.
+    /// Number of signals about a belief that became right at most [`LATE_PRESSES`] presses of the human before.
     pub late: u64,
     /// Number of signals about a belief that was right already.
     pub needless: u64,
-    /// Signals that the sender took back; they count among hits, late and needless ones, too.
+    /// Number of signals that the sender took back; these signals also count among hits, late and needless ones.
     pub taken_back: u64,
 }
 
@@ -35,7 +36,7 @@ impl SignalJudgementCounts {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Standing {
     is_false: bool,
-    /// Number of the human's presses when the belief became right.
+    /// Number of the human's presses at the time the belief became right; `None` if the belief was not corrected.
     corrected: Option<u32>,
 }
 
@@ -45,7 +46,7 @@ pub struct SignalJudge {
     beliefs: Vec<Standing>,
     wizard: SignalJudgementCounts,
     assistant: SignalJudgementCounts,
-    /// Who sent the last signal: wizard or assistant.
+    /// Who sent the last signal, the wizard or the assistant; `None` before the first signal of the trial.
     last: Option<Sender>,
 }
 
@@ -79,7 +80,7 @@ impl SignalJudge {
         }
     }
 
-    /// Notes which of the participant's beliefs are false now.
+    /// Stores which of the participant's beliefs are false now.
     pub fn note(&mut self, session: &Session, is_false: impl Fn(AspectId) -> bool) {
         let presses = session.presses[Agent::Human.index()];
         self.beliefs.resize(session.kitchen.aspects.len(), Standing::default());
@@ -92,7 +93,7 @@ impl SignalJudge {
         }
     }
 
-    /// Counts of the signals of a sender so far.
+    /// Counts of the judged signals of a sender so far.
     pub fn tally(&self, by: Sender) -> SignalJudgementCounts {
         match by {
             Sender::Wizard => self.wizard,

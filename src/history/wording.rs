@@ -42,14 +42,14 @@ pub fn code(code: &ErrorCauseCode) -> String {
 }
 
 /// Why a press of this button by the human would have no effect now, as text: "no effect: the cooking pot is empty";
-/// `None` if the press would have one. The text is short, since it stands beside the keys on a terminal with 80
+/// `None` if the press would have an effect. The text is short, since it stands beside the keys on a terminal with 80
 /// columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
     Some(format!("no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
 }
 
-/// Why a press has no effect, in words; `content` is what the location in question holds.
+/// Why a press has no effect, in words; `content` is the content of the location that the reason is about.
 fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &str) -> String {
     let name = kitchen.location(about).label();
     match why {
@@ -66,7 +66,7 @@ fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &
     }
 }
 
-/// Location at which a button acts: its own location, or the agent's hand.
+/// Location at which a button acts: the button's own location, or the agent's hand.
 pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
@@ -99,7 +99,7 @@ pub fn offered(what: &OfferedCommunication) -> String {
     }
 }
 
-/// The reason of a recommendation with contents in words, as screens show them; the recorded reason has the names of
+/// The reason of a recommendation, with contents in words as screens show them; the recorded reason has the names of
 /// the log.
 pub fn reason(kitchen: &Kitchen, reason: &SignalReason) -> SignalReason {
     let worded = |name: &str| kitchen.worded(name).to_string();
@@ -127,7 +127,7 @@ pub fn dish(kitchen: &Kitchen, dish: &Dish) -> String {
     names.join(" + ")
 }
 
-/// Phase of the study's protocol and of the trial, in a word.
+/// Phase of the study's protocol and phase of the trial, in a word.
 pub fn stage(session: &Session) -> String {
     match session.study_phase().map(PhaseSpec::phase) {
         Some(around) if !around.has_trial() && session.phase != TrialPhase::Closed => around.name().to_uppercase(),
@@ -160,8 +160,8 @@ pub fn protocol(event: &ProtocolEvent) -> String {
         ProtocolEvent::Tutorial(event) => tutorial(event),
         ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
         ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
-        // Answers in words and choices can be personal, and people who watch the stream are not the ones who analyse
-        // the study.
+        // Answers in words and choices can be personal, and the people who watch the stream need not be those who
+        // analyse the study.
         ProtocolEvent::ItemAnswered { item, answer: AnswerValue::Number(number) } => format!("item {item}: {number}"),
         ProtocolEvent::ItemAnswered { item, .. } => format!("item {item} is answered"),
         ProtocolEvent::ItemSkipped { item } => format!("item {item}: no answer"),
@@ -186,7 +186,7 @@ fn tutorial(event: &TutorialEvent) -> String {
     }
 }
 
-/// An entry of the timeline in words, together with who caused it.
+/// An entry of the timeline in words, together with who caused the entry.
 pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
         TimelineEvent::Press { agent, button: id, no_effect } => {
@@ -288,7 +288,7 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
     })
 }
 
-/// These names, each in quotation marks.
+/// Joins these names, each in quotation marks.
 pub fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }
@@ -322,7 +322,8 @@ pub fn calibration(event: &GazeCheckEvent) -> String {
     }
 }
 
-/// An error of the human in words: its cost compared with the human's best press, and its cause, where that is known.
+/// An error of the human in words: the cost of the press compared with the human's best press, and the cause of the
+/// error, where the cause is known.
 pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),

@@ -1,5 +1,4 @@
-//! The robot: its task policy, and its recorded activity. The simulated arms that carry the policy out are in
-//! `crate::arm`.
+//! The robot: its task policy, and its recorded activity. The robot arms that carry the policy out are in `crate::arm`.
 
 pub mod moment;
 pub mod policy;
@@ -16,7 +15,7 @@ use crate::kitchen::ButtonId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AbortReason {
-    /// When the arm was about to touch the button, pressing it no longer brought the orders nearer.
+    /// When the arm was about to touch the button, a press of the button no longer brought the orders nearer.
     NoLongerUseful,
     /// The wizard stopped the robot.
     Stopped,
@@ -56,13 +55,13 @@ impl AbortReason {
         AbortReason::Fault,
     ];
 
-    /// Whether only the arm in the physics simulation can have this reason.
+    /// Whether only the arm in the physics simulation can abandon a press for this reason.
     pub fn is_of_physics(self) -> bool {
         use AbortReason::{Driven, NoLongerUseful, Skipped, Stopped};
         !matches!(self, NoLongerUseful | Stopped | Skipped | Driven)
     }
 
-    /// The reason in words, after "gives up the press:".
+    /// The reason for abandoning the press in words, after "gives up the press:".
     pub fn words(self) -> &'static str {
         match self {
             AbortReason::NoLongerUseful => "no longer useful",
@@ -80,7 +79,7 @@ impl AbortReason {
     }
 }
 
-/// Why the robot waits.
+/// Why the robot is idle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IdleReason {
@@ -114,9 +113,11 @@ pub enum RobotActivity {
     Safety {
         /// The safety mode from now on.
         mode: SafetyMode,
-        /// The contact force that caused the change of the safety mode, in newtons, if a contact did.
+        /// The contact force in newtons that caused the change of the safety mode; `None` if no contact caused the
+        /// change.
         force_n: Option<f64>,
-        /// The number of the faulty joint that caused the change of the safety mode, if one did; 1 is the first.
+        /// The number of the faulty joint that caused the change of the safety mode, where 1 is the first joint; `None`
+        /// if no joint caused the change.
         joint: Option<u8>,
     },
     /// Somebody touched the robot's arm.

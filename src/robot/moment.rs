@@ -36,7 +36,7 @@ pub struct ArmSample {
     /// The greatest contact force since the previous sample, on a button or a person, in newtons.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub force_n: f64,
-    /// The centre of the human's hand, in the frame of the arm's base, in metres.
+    /// The centre of the human's hand, in the frame of the robot arm's base, in metres.
     pub hand_m: [f64; 3],
     /// The distance between the human's hand and the arm, in metres.
     pub hand_away_m: f64,

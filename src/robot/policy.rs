@@ -1,5 +1,5 @@
-//! The robot's task policy (paper, "Robot task policy"): it plans backwards from the current goal and takes one of the
-//! best presses at random.
+//! The robot's task policy (paper, "Robot task policy"): the robot plans backwards from the current goal and takes one
+//! of the best presses at random.
 
 use rand::RngExt;
 
@@ -17,7 +17,7 @@ pub enum PolicyDecision {
     Idle(IdleReason),
 }
 
-/// The presses of the robot that lower the cost to go by one.
+/// The presses of the robot that lower the cost to go by one press.
 pub fn best_presses(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -30,8 +30,8 @@ pub fn best_presses(
     buttons.filter(|button| nearer >> button.0 & 1 == 1).collect()
 }
 
-/// Of these best presses, those for the order that is nearer to completion, on which the human mostly works; all of
-/// them if none is for that order, or if both orders are equally near.
+/// Of these best presses, the presses for the order that is nearer to completion, on which the human mostly works; all
+/// best presses if none is for that order, or if both orders are equally near to completion.
 fn for_the_nearer_order(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -58,8 +58,8 @@ fn for_the_nearer_order(
     if helping.is_empty() { presses } else { helping }
 }
 
-/// The presses among which the robot would choose in this state, all equally likely, if these were the recipes; none if
-/// no press lowers the cost to go.
+/// The presses among which the robot would choose in this state, each equally likely, if these were the recipes; none
+/// if no press lowers the cost to go.
 pub fn choices(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -71,7 +71,7 @@ pub fn choices(
     chosen(kitchen, cost, fidelity, state, recipes, best)
 }
 
-/// Of these best presses, those among which the robot chooses at random.
+/// Of these best presses, the presses among which the robot chooses at random.
 pub fn chosen(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -81,13 +81,13 @@ pub fn chosen(
     best: Vec<ButtonId>,
 ) -> Vec<ButtonId> {
     let best = for_the_nearer_order(kitchen, cost, fidelity, state, recipes, best);
-    // Useless contents are thrown away: put down somewhere, they would soon be in the way again.
+    // Contents without use are thrown away: put down somewhere, they would soon be in the way again.
     let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == ButtonAction::Trash);
     trash.map_or(best, |trash| vec![trash])
 }
 
-/// The robot's decision in the true state: one of its best presses at random, idle if no press lowers the cost to go.
-/// Presses in `skipped` are left out.
+/// The robot's decision in the true state: one of its best presses at random, or idling if no press lowers the cost to
+/// go. Presses in `skipped` are left out.
 pub fn decide(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -106,7 +106,7 @@ pub fn decide(
     }
     match chosen(kitchen, cost, Fidelity::Exact, state, &recipes, best)[..] {
         [] => PolicyDecision::Idle(IdleReason::HumanTurn),
-        // Throwing away is never a random choice, so no random number is drawn.
+        // A press that throws a content away is never a random choice, so no random number is drawn.
         [only] if kitchen.button(Agent::Robot, only).action == ButtonAction::Trash => PolicyDecision::Press(only),
         ref choices => PolicyDecision::Press(choices[random.random_range(0..choices.len())]),
     }

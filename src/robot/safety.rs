@@ -5,24 +5,24 @@ use serde::{Deserialize, Serialize};
 
 /// Contact force above which the arm stops at normal speed, in newtons.
 pub const STOP_N: f64 = 60.0;
-/// Contact force above which the arm stops while it moves slowly near a hand, in newtons: contacts of a slow arm are
-/// weaker.
+/// Contact force above which the arm stops while it moves slowly near a hand, in newtons: the contacts of a slow arm
+/// are weaker.
 pub const STOP_REDUCED_N: f64 = 20.0;
-/// Distance of the human's hand below which the arm moves slowly, in metres.
+/// Distance between the human's hand and the arm below which the arm moves slowly, in metres.
 pub const SLOWS_M: f64 = 0.25;
-/// Safety modes of the robot arm's controller, named as by the manufacturer (Universal Robots); only those that the
-/// program uses.
+/// Safety modes of the robot arm's controller, with the names of the manufacturer (Universal Robots); only the modes
+/// that the program uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SafetyMode {
-    /// Nobody is near: the arm moves at full speed.
+    /// Nobody is near the arm: the arm moves at full speed.
     #[default]
     Normal,
-    /// A hand is near: the arm moves slowly.
+    /// A hand is near the arm: the arm moves slowly.
     Reduced,
     /// The arm stopped after a contact, and stays where it is until the wizard releases it.
     ProtectiveStop,
-    /// A hand is in the way: the arm waits until the hand is gone.
+    /// A hand is in the arm's way: the arm waits until the hand is gone.
     Safeguard,
     /// The wizard stopped the arm.
     EmergencyStop,

@@ -1,4 +1,4 @@
-//! The optional parts of the crate (Cargo features), and which of them this build contains.
+//! The optional parts of the crate (Cargo features), and which of these parts this build contains.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ impl Feature {
         }
     }
 
-    /// The name of the Cargo feature.
+    /// The name of the optional part's Cargo feature.
     pub const fn key(self) -> &'static str {
         match self {
             Feature::Console => "console",

@@ -1,6 +1,6 @@
 //! The regularised incomplete beta function: the distribution function of the beta distribution.
 
-/// Largest number of terms of the continued fraction. It converges in O(sqrt(max(a, b))) terms.
+/// Largest number of terms of the continued fraction, which converges in O(sqrt(max(a, b))) terms.
 const MAX_TERMS: u32 = 1000;
 /// Relative change of the continued fraction at which it has converged.
 const CONVERGED: f64 = 1e-14;
@@ -52,8 +52,8 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
 /// Argument from which Stirling's series is exact to double precision with the terms below.
 const STIRLING_FROM: f64 = 10.0;
 
-/// ln Gamma(x) for x above 0, by Stirling's series (5.11.1 of the same library) after steps of Gamma(x + 1) = x
-/// Gamma(x).
+/// ln Gamma(x) for x above 0, by Stirling's series (5.11.1 of the Digital Library of Mathematical Functions) after
+/// steps of Gamma(x + 1) = x Gamma(x).
 fn ln_gamma(x: f64) -> f64 {
     // B_2k / (2k (2k - 1)) for k = 1 to 7.
     const SERIES: [f64; 7] =

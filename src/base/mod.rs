@@ -1,5 +1,5 @@
-//! Basics that every module may use: session time, random streams, bit sets, words, printable text, the beta
-//! distribution.
+//! Basics that every module may use: session time, random streams, bit sets, words, printable text, number ranges, the
+//! beta distribution.
 
 pub mod bits;
 pub mod features;

@@ -43,9 +43,9 @@ pub struct OutOfRange {
     pub path: String,
     /// The number as it was found: `tau = -3`.
     pub found: String,
-    /// What the number would have to be.
+    /// What the number would have to be, in words.
     pub remedy: String,
-    /// Position of the number in the file's text, in bytes, if a text was checked.
+    /// Position of the number in the file's text, in bytes; `None` if no text was checked.
     pub place: Option<Range<usize>>,
 }
 
@@ -60,7 +60,7 @@ impl NumberRange {
         NumberRange { path, least: range[0], most: range[1], is_whole: true, unit, reason, recorded: range }
     }
 
-    /// This range for files, with bounds of its own for the headers of recordings.
+    /// This range for files, with a range of its own for the headers of recordings.
     pub const fn recorded(self, recorded: [f64; 2]) -> NumberRange {
         NumberRange { recorded, ..self }
     }
@@ -123,7 +123,8 @@ pub fn range_of<'a>(ranges: &'a [NumberRange], path: &str) -> Option<&'a NumberR
 }
 
 /// All numbers of a settings object with their paths, in the order of the settings; the numbers of a list have the path
-/// of the list. `around` is the path of the tables that contain the settings ("human"), or empty.
+/// of the list. `around` is the path of the tables that contain the settings ("human"), or empty if no table contains
+/// them.
 ///
 /// # Errors
 /// A whole number that no TOML file can hold.

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// The text on one line. Control characters, directional formatting characters and line separators are escaped as in
+/// The text in one line. Control characters, directional formatting characters and line separators are escaped as in
 /// JSON (`\u001b`, `\n`).
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |_, _| false)

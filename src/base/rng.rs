@@ -1,5 +1,6 @@
-//! Named random streams: every use of randomness draws from a stream of its own, named and seeded. One part of the
-//! program therefore never changes the draws of another, and trial k does not depend on the number of trials.
+//! Named random streams: every use of randomness draws from a stream of its own, which has a name and a seed. One part
+//! of the program therefore never changes the draws of another part, and trial k does not depend on the number of
+//! trials.
 
 use rand::SeedableRng;
 pub use rand_chacha::ChaCha8Rng as Stream;
@@ -13,7 +14,7 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
     Stream::seed_from_u64(mix(key ^ mix(index)))
 }
 
-/// The random seed for everything that depends on this trial alone.
+/// The random seed for everything that depends on this trial of the run alone.
 pub fn of_trial(seed: u64, trial: u64) -> u64 {
     mix(seed ^ mix(trial))
 }

@@ -1,4 +1,5 @@
-//! Session time: nanoseconds since the session began. Eye trackers' clocks and the wall clock are kept apart from it.
+//! Session time: nanoseconds since the session began. The clocks of eye trackers and the wall clock are kept apart from
+//! session time.
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -14,7 +15,7 @@ impl SessionTime {
     /// The beginning of the session.
     pub const ZERO: SessionTime = SessionTime(0);
 
-    /// The session time `seconds` after the beginning; negative values and NaN give zero.
+    /// The session time `seconds` after the beginning of the session; negative values and NaN give zero.
     pub fn from_secs_f64(seconds: f64) -> Self {
         SessionTime((seconds.max(0.0) * 1e9).round() as u64)
     }
@@ -24,7 +25,7 @@ impl SessionTime {
         self.0 as f64 / 1e9
     }
 
-    /// Seconds from `earlier` to this time; zero if `earlier` is later.
+    /// Seconds from the session time `earlier` to this time; zero if `earlier` is later.
     pub fn secs_since(self, earlier: SessionTime) -> f64 {
         (self - earlier).as_secs_f64()
     }

@@ -1,4 +1,4 @@
-//! Robot arm, table, buttons and the participant's hand in 3D, for Rerun.
+//! The robot arm, the table, the buttons and the participant's hand in 3D, for Rerun.
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -34,7 +34,7 @@ const SHOWN_N: f64 = 0.5;
 const FELT_M: f64 = 0.015;
 /// Radius of the mark at a contact, in metres.
 const CONTACT_M: f64 = 0.05;
-/// Paths of the entities of the simulated arm: force, distance of the hand, safety mode, contact, hand.
+/// Paths of the entities of the simulated arm: contact force, distance of the hand, safety mode, contact, hand.
 const FORCE: &str = "robot/force";
 const AWAY: &str = "robot/hand_away";
 const SAFETY: &str = "robot/safety/mode";
@@ -61,12 +61,12 @@ pub struct RobotArmScene {
     /// Session time and joint angles of the last update.
     until: SessionTime,
     joints: JointAngles,
-    /// Whether a force is shown at the arm's tip at present.
+    /// Whether the arm's tip shows a contact force at present.
     feels: bool,
 }
 
 impl RobotArmScene {
-    /// The arm's pose in this session.
+    /// Creates the scene of the arm with the arm's pose in this session.
     pub fn new(session: &Session) -> RobotArmScene {
         let arm = SerialArm::ur5();
         let motion = JointMotion::new(&session.kitchen, &arm);
@@ -76,7 +76,7 @@ impl RobotArmScene {
         RobotArmScene { arm, motion, until: session.time, joints, feels: false }
     }
 
-    /// Entities that do not change: table, buttons, and the shapes of the arm's links.
+    /// Entities of the scene that do not change: table, buttons, and the shapes of the arm's links.
     pub fn fixed(&self, kitchen: &Kitchen) -> Vec<EntityUpdate> {
         let mut rows = vec![EntityUpdate::new("robot/table", table(kitchen))];
         for (alone, name) in [(None, "shared"), (Some(Agent::Human), "human"), (Some(Agent::Robot), "robot")] {
@@ -101,7 +101,7 @@ impl RobotArmScene {
         rows
     }
 
-    /// Poses of the arm and of the hand at the beginning.
+    /// Entity updates with the poses of the arm and of the hand at the beginning of the session.
     pub fn opening(&self, session: &Session) -> Vec<EntityUpdate> {
         let mut rows = places(&self.arm, &self.joints);
         if self.motion.is_none() {
@@ -112,11 +112,11 @@ impl RobotArmScene {
         rows
     }
 
-    /// Entity updates of the arm's motion up to a time.
+    /// Entity updates of the arm's motion, up to a session time.
     pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<EntityUpdate>)> {
         let mut moments = Vec::new();
         let Some(motion) = &self.motion else { return moments };
-        // The arm at rest needs no updates.
+        // An arm at rest needs no updates.
         let end = time.min(motion.rests_at() + SessionTime(EVERY_NS));
         let mut at = SessionTime((self.until.0 / EVERY_NS + 1) * EVERY_NS);
         while at <= end {
@@ -131,7 +131,7 @@ impl RobotArmScene {
         moments
     }
 
-    /// Entity updates of arm and hand from an event that has just been applied.
+    /// Entity updates of arm and hand from an event that has just been applied to the session.
     pub fn follow(
         &mut self,
         session: &Session,
@@ -180,7 +180,7 @@ impl RobotArmScene {
         }
     }
 
-    /// Entity updates from a sample of the simulated arm: pose, force, hand.
+    /// Entity updates from a sample of the simulated arm: the arm's pose, the contact force, the hand.
     fn moves(&mut self, moment: &ArmSample) -> Vec<EntityUpdate> {
         self.joints = moment.joints;
         let mut rows = places(&self.arm, &self.joints);
@@ -283,7 +283,7 @@ fn table(kitchen: &Kitchen) -> EntityData {
     )
 }
 
-/// Buttons that only one agent can press, or with `None` those that both share.
+/// Buttons that only one agent can press; with `None`, the buttons that both agents can press.
 fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> EntityData {
     let of = |agent: Agent| &kitchen.buttons[agent.index()];
     let is_shared = |agent: Agent, button: &Button| of(agent.other()).iter().any(|other| other.at_m == button.at_m);

@@ -1,4 +1,4 @@
-//! The participant's beliefs for Rerun: the estimate, and for simulated participants the recorded belief.
+//! The participant's beliefs for Rerun: the estimate of them, and for simulated participants the recorded belief.
 
 use super::colours;
 use super::entity_content::{EntityData, EntityUpdate, MarkShape, SceneSeries, slug};
@@ -13,7 +13,7 @@ use crate::session::{Event, Session, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;
-/// Aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
+/// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
 const KNOWN: f64 = 0.95;
 
 /// Believed value of a state aspect with its probability.
@@ -22,13 +22,13 @@ struct Held<'a> {
     p_truth: f64,
 }
 
-/// State of the entities that show beliefs.
+/// State of the Rerun entities that show beliefs.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefScene {
     /// Time of the last update of the belief estimate, in units of [`EVERY_NS`].
     tick: Option<u64>,
     page: String,
-    /// For each state aspect, the falsely believed value; empty if the belief is right.
+    /// For each state aspect, the falsely believed value; empty if the belief about the aspect is right.
     taken_for: Vec<String>,
 }
 
@@ -50,7 +50,7 @@ fn truly_wrong(aspect: &str) -> String {
     format!("human/belief/truly_wrong/{}", slug(aspect))
 }
 
-/// Updates that add a value of P(truth) to the aspect's thin curve, and to its marks if the belief is false.
+/// Updates that add a value of P(truth) to the aspect's thin curve, and a mark if the belief is false.
 fn p_truth_rows(curve: String, marks: String, p_truth: f64) -> impl Iterator<Item = EntityUpdate> {
     let mark = (p_truth < FALSE_BELOW).then(|| EntityUpdate::new(marks, EntityData::Value(p_truth)));
     std::iter::once(EntityUpdate::new(curve, EntityData::Value(p_truth))).chain(mark)
@@ -64,7 +64,7 @@ fn wrong(aspect: &str) -> String {
     format!("human/belief/wrong/{}", slug(aspect))
 }
 
-/// Names and colours of the curves and marks.
+/// Entity updates with the names and colours of the curves and marks.
 pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
@@ -90,7 +90,8 @@ impl BeliefScene {
         self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
     }
 
-    /// Entity updates from an event that has just been applied; `belief` is the estimate after it.
+    /// Entity updates from an event that has just been applied to the session; `belief` is the estimate after the
+    /// event.
     pub fn follow(
         &mut self,
         session: &Session,
@@ -136,7 +137,7 @@ impl BeliefScene {
         rows
     }
 
-    /// Updates of the page of beliefs and of the lanes whose text has changed.
+    /// Entity updates of the page of beliefs and of the lanes whose text has changed.
     fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
@@ -164,7 +165,7 @@ fn truly(witness: &RecordedBelief) -> Vec<EntityUpdate> {
     witness.aspects.iter().flat_map(rows).collect()
 }
 
-/// A page in Markdown with the false beliefs (lowest P(truth) first) and the uncertain ones.
+/// A page in Markdown with the false beliefs (lowest P(truth) first) and the uncertain beliefs.
 fn page(session: &Session, held: &[Held]) -> String {
     let kitchen = &session.kitchen;
     let mut doubtful: Vec<usize> = (0..held.len()).filter(|&index| held[index].p_truth < KNOWN).collect();

@@ -1,5 +1,5 @@
-//! Colours of the scene in Rerun, which can be told apart and read on dark and on light background. An agent has the
-//! same colour everywhere; ingredients that look alike have similar colours.
+//! Colours of the scene in Rerun, which can be told apart and read on a dark and on a light background. An agent has
+//! the same colour everywhere in the scene; ingredients that look alike have similar colours.
 
 use crate::kitchen::{Agent, AspectId, ContentId, Kitchen};
 
@@ -20,15 +20,15 @@ pub const SKIN: SceneColour = [222, 170, 136, 255];
 pub const ROBOT: SceneColour = [236, 136, 32, 255];
 /// Colour of signals, and of usable gaze samples.
 pub const SIGNAL: SceneColour = [236, 184, 0, 255];
-/// Colour of what the wizard sends.
+/// Colour of signals that the wizard sends.
 pub const WIZARD: SceneColour = [180, 100, 230, 255];
-/// Colour of what the assistant advises or sends.
+/// Colour of signals that the assistant recommends or sends.
 pub const ASSISTANT: SceneColour = [40, 176, 104, 255];
-/// Colour of errors and stops.
+/// Colour of the human's errors and of stops of the arm.
 pub const ERROR: SceneColour = [232, 60, 60, 255];
 /// Colour of less important curves and texts.
 pub const QUIET: SceneColour = [134, 140, 152, 255];
-/// Colour of gaze samples that cannot be used.
+/// Colour of gaze samples that the belief filter cannot use.
 pub const LOST: SceneColour = [120, 120, 120, 255];
 /// Colour of the table.
 pub const TABLE: SceneColour = [92, 84, 76, 255];
@@ -50,7 +50,8 @@ pub fn agent_colour(agent: Agent) -> SceneColour {
     }
 }
 
-/// The colour of an item: ingredients that look alike share a hue, and further processed ones are paler.
+/// The colour of an item: ingredients that look alike share a hue, and the further an ingredient is processed, the
+/// paler it is.
 pub fn of_item(kitchen: &Kitchen, item: ContentId) -> SceneColour {
     let content = kitchen.content(item);
     let own = content.ingredient.unwrap_or_default();
@@ -68,7 +69,7 @@ pub fn of_aspect(aspect: AspectId) -> SceneColour {
     of_hue((0.02 + nth as f64 * 0.618).fract(), if nth.is_multiple_of(2) { 0.75 } else { 0.45 }, 0.95)
 }
 
-/// The colour with this hue, saturation and value, each from 0 to 1.
+/// Computes the colour with this hue, saturation and value, each from 0 to 1.
 fn of_hue(hue: f64, saturation: f64, value: f64) -> SceneColour {
     let channel = |shift: f64| {
         let k = (shift + hue * 6.0) % 6.0;

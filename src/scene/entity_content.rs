@@ -1,5 +1,5 @@
 //! Content of an entity in Rerun's scene: shapes, values, text. Lengths in the kitchen are in millimetres on the wall
-//! display from its top left corner, lengths of the arm in metres in the frame of the robot's base.
+//! display, measured from its top left corner; lengths of the arm are in metres in the frame of the robot's base.
 
 use nalgebra::Isometry3;
 
@@ -16,7 +16,7 @@ pub struct EntityUpdate {
 }
 
 impl EntityUpdate {
-    /// An update by which the entity shows this content from now on.
+    /// Creates an update after which the entity shows this content.
     pub fn new(entity: impl Into<String>, shown: EntityData) -> EntityUpdate {
         EntityUpdate { entity: entity.into(), shown }
     }
@@ -29,16 +29,16 @@ pub enum EntityData {
     Areas(Vec<SceneArea>),
     /// Discs with labels in the kitchen.
     Discs(Vec<SceneDisc>),
-    /// A point with a circle around it in the kitchen, for gaze.
+    /// The gaze point with a circle around the point, in the kitchen.
     Sight {
         /// Position of the point, in millimetres from the display's upper left corner.
         at: [f64; 2],
         /// Radius of the circle, in millimetres.
         around: f64,
-        /// Colour of point and circle.
+        /// Colour of the gaze point and its circle.
         colour: SceneColour,
     },
-    /// Points in space, with labels.
+    /// Points in space, each with a label.
     Points(Vec<ScenePoint>),
     /// Solids in the entity's own coordinate frame.
     Solids(Vec<CollisionSolid>, SceneColour),
@@ -54,11 +54,11 @@ pub enum EntityData {
     Marks(SceneSeries, MarkShape),
     /// A line of the text log.
     Words {
-        /// Level of the line in the log.
+        /// Severity of the line in the text log.
         level: SceneLogLevel,
-        /// Text of the line.
+        /// Text of the line in the text log.
         text: String,
-        /// Colour of the line.
+        /// Colour of the line in the text log.
         colour: SceneColour,
     },
     /// A page of text in Markdown, which replaces the previous page.
@@ -78,9 +78,9 @@ pub struct SceneArea {
     pub width: f64,
     /// Height of the rectangle, in millimetres.
     pub height: f64,
-    /// Colour of the outline.
+    /// Colour of the rectangle's outline.
     pub colour: SceneColour,
-    /// Half the width of the outline, in millimetres.
+    /// Half the width of the rectangle's outline, in millimetres.
     pub line: f64,
 }
 
@@ -91,7 +91,7 @@ pub struct SceneDisc {
     pub at: [f64; 2],
     /// Radius of the disc in millimetres; 0 shows the label only.
     pub radius: f64,
-    /// Label below the disc's centre; empty for none.
+    /// Label below the disc's centre; empty for no label.
     pub words: String,
     /// Colour of the disc.
     pub colour: SceneColour,
@@ -104,7 +104,7 @@ pub struct ScenePoint {
     pub at_m: [f64; 3],
     /// Radius with which the point is drawn, in metres.
     pub radius_m: f64,
-    /// Label beside the point; empty for none.
+    /// Label beside the point; empty for no label.
     pub words: String,
     /// Colour of the point.
     pub colour: SceneColour,
@@ -115,7 +115,7 @@ pub struct ScenePoint {
 pub struct SceneSeries {
     /// Name of the series in the legend.
     pub name: String,
-    /// Colour of the line or the marks.
+    /// Colour of the series' line or marks.
     pub colour: SceneColour,
 }
 
@@ -133,11 +133,11 @@ pub enum MarkShape {
 /// Severity of a line in the text log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneLogLevel {
-    /// Something happened as intended.
+    /// The line reports something that happened as intended.
     Info,
-    /// A press had no effect, or a signal was taken back.
+    /// The line reports that a press had no effect, or that a signal was taken back.
     Warning,
-    /// A press of the human was an error.
+    /// The line reports an error of the human.
     Error,
 }
 

@@ -25,7 +25,7 @@ fn benefit(signal: &Signal) -> String {
     format!("assistant/benefit/{}", slug(signal.target().unwrap_or_default()))
 }
 
-/// Names and colours of curves and marks.
+/// Entity updates with the names and colours of curves and marks.
 pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
     let line = |entity: String, name: String, colour: SceneColour| {
@@ -50,7 +50,7 @@ fn say(entity: &str, level: SceneLogLevel, text: String, colour: SceneColour) ->
     EntityUpdate::new(entity, EntityData::Words { level, text, colour })
 }
 
-/// All lines of the text log in order of time.
+/// Only the lines of the text log among these updates, in the order of time.
 pub fn in_order(rows: &[EntityUpdate]) -> Vec<EntityUpdate> {
     let lines = rows.iter().filter(|row| matches!(row.shown, EntityData::Words { .. }));
     lines.map(|row| EntityUpdate::new(HAPPENED, row.shown.clone())).collect()
@@ -99,12 +99,12 @@ pub fn error<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Optio
     press.filter(|press| press.verdict.error)
 }
 
-/// Update that marks an error below the belief curves.
+/// Entity update that marks an error below the belief curves.
 pub fn mark() -> EntityUpdate {
     EntityUpdate::new(ERROR_MARKS, EntityData::Value(0.0))
 }
 
-/// Updates with the expected saving of each signal before its cost, and the recommendation.
+/// Entity updates with the expected saving of each signal before its cost is subtracted, and with the recommendation.
 pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
     let mut rows: Vec<EntityUpdate> = advice
         .options
@@ -133,7 +133,7 @@ pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
     say("assistant/offers", SceneLogLevel::Info, text, colours::ASSISTANT)
 }
 
-/// A line of the text log for the closing of an offer.
+/// A line of the text log for the closing of an offer to the wizard.
 pub fn offer_closed(reason: OfferCloseReason) -> EntityUpdate {
     say("assistant/offers", SceneLogLevel::Info, format!("offer closes: {}", reason.words()), colours::ASSISTANT)
 }

@@ -1,5 +1,5 @@
-//! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm,
-//! beliefs, net benefits of signals, probes, and a text log.
+//! The scene: a session as Rerun shows it, as plain data, namely updates of entities with their times. Entities are the
+//! kitchen, the arm, beliefs, net benefits of signals, probes, and a text log.
 //!
 //! A [`SessionScene`] follows a session event by event, live and from a recording. The scene does not depend on the
 //! viewer.
@@ -32,13 +32,13 @@ pub struct SceneUpdate {
     pub time: SessionTime,
     /// Time on the trial's clock, which starts with the trial and stops in pauses, as on the console.
     pub trial: SessionTime,
-    /// Sequence number of the newest event at that time.
+    /// Sequence number of the newest event at the time of the updates.
     pub step: u64,
     /// The entities that change, with their new content.
     pub rows: Vec<EntityUpdate>,
 }
 
-/// What the scene shows beside the session itself: judged presses and the belief estimate.
+/// What the scene shows beside the session itself: judged presses and the estimate of the participant's belief.
 #[derive(Clone, Copy, Debug)]
 pub struct DerivedData<'a> {
     /// Every press of the human so far, with its judgement.
@@ -54,14 +54,14 @@ pub struct SessionScene {
     arm: RobotArmScene,
     belief: BeliefScene,
     probes: ProbeScene,
-    /// Sequence number of the first event that the scene has not shown.
+    /// Sequence number of the first event that the scene has not shown yet.
     next: u64,
     /// Number of timeline entries that the scene has shown.
     told: usize,
 }
 
 impl SessionScene {
-    /// The scene of a session whose next event has the sequence number `next`.
+    /// Creates the scene of a session whose next event has the sequence number `next`.
     pub fn new(session: &Session, next: u64) -> SessionScene {
         SessionScene {
             session: session.clone(),
@@ -103,8 +103,8 @@ impl SessionScene {
         self.belief.is_due(time)
     }
 
-    /// Applies the next event and returns the entity updates in order of time. An event that is not valid in the
-    /// session's state, or was applied before, has none.
+    /// Applies the next event and returns the entity updates in the order of time. An event that is not valid in the
+    /// session's state, or that the scene has already shown, gives no updates.
     pub fn see(&mut self, stamped: &TimestampedEvent, derived: DerivedData<'_>) -> Vec<SceneUpdate> {
         if stamped.seq < self.next {
             return Vec::new();
@@ -120,7 +120,7 @@ impl SessionScene {
         moments
     }
 
-    /// Entity updates between events, up to a time, which show the arm's motion.
+    /// Entity updates between events, up to a session time; these updates show the arm's motion.
     pub fn until(&mut self, time: SessionTime) -> Vec<SceneUpdate> {
         let step = self.step();
         let session = &self.session;

@@ -11,7 +11,7 @@ use crate::kitchen::{
 };
 use crate::session::{Session, proposals};
 
-/// Half widths of outlines, in millimetres.
+/// Half widths of the outlines in the kitchen, in millimetres.
 const THIN: f64 = 2.0;
 const THICK: f64 = 6.0;
 /// Distance of a label's anchor above the edge of its location, in millimetres; Rerun draws text below its anchor.
@@ -35,7 +35,7 @@ fn words_at(at: [f64; 2], words: &str, colour: SceneColour) -> SceneDisc {
     SceneDisc { at, radius: 0.0, words: words.to_string(), colour }
 }
 
-/// The display's edge, the names of the locations, and the storages.
+/// Entity updates with the display's edge, the names of the locations, and the storages.
 pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
     let name = |(index, location): (usize, &Location)| {
@@ -65,7 +65,8 @@ fn dimmed([red, green, blue, opacity]: SceneColour) -> SceneColour {
     [red / 2, green / 2, blue / 2, opacity]
 }
 
-/// Contents of the locations that differ from the state `before`, or of all locations without `before`.
+/// Entity updates with the contents of the locations that differ from the state `before`, or of all locations without
+/// `before`.
 pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = EntityUpdate> {
     let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
     let changed = locations.filter(move |&id| before.is_none_or(|before| before.code(id) != state.code(id)));
@@ -88,7 +89,7 @@ pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl 
     })
 }
 
-/// Ingredient items at a location; for an order, those of its dish.
+/// Ingredient items at a location; for an order location, the items of the order's dish.
 fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
     let content = match kitchen.location(id).kind {
         LocationKind::Order => match state.order(id) {
@@ -100,7 +101,7 @@ fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
     if content.is_empty() { Vec::new() } else { kitchen.content(content).items.clone() }
 }
 
-/// A disc for each item, side by side in an area, with a label below.
+/// A disc for each item of a content, side by side in an area, with a label below.
 fn content(
     kitchen: &Kitchen,
     on: kitchen::DisplayArea,
@@ -166,7 +167,7 @@ pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     vec![outline(vec![outer]), label(vec![words_at(below, &words, colours::SIGNAL)])]
 }
 
-/// The gaze point, with the area around it that can be read.
+/// Entity update with the gaze point, and with the area around the point that the participant can read.
 pub fn gaze(session: &Session, sample: GazeSample) -> EntityUpdate {
     let [width_m, height_m] = session.kitchen.display_m;
     let at = [sample.x * width_m * MM, sample.y * height_m * MM];

@@ -1,4 +1,4 @@
-//! Freeze probes for Rerun: the question asked, and the participant's answers beside the estimate at that time.
+//! Freeze probes for Rerun: the question that is asked, and the participant's answers beside the estimate at that time.
 
 use super::EntityUpdate;
 use super::colours;
@@ -11,19 +11,20 @@ use crate::session::{Session, probe_sampling};
 
 /// Path of the lane with the question that is being asked.
 const ASKED: &str = "human/probes/asked";
-/// Path of the text log of answers.
+/// Path of the text log of the participant's answers.
 const SAID: &str = "human/answers";
 
 /// State of the lanes that show freeze probes.
 #[derive(Clone, Debug, Default)]
 pub struct ProbeScene {
-    /// Lanes that contain text. Answers stay until the next probe begins, since the trial's clock stands still during a
-    /// probe.
+    /// Lanes that contain text. Answers stay in their lanes until the next probe begins, since the trial's clock stands
+    /// still during a probe.
     filled: Vec<String>,
 }
 
 impl ProbeScene {
-    /// Entity updates from an event that has just been applied; `belief` is the estimate after it.
+    /// Entity updates from an event that has just been applied to the session; `belief` is the estimate after the
+    /// event.
     pub fn follow(
         &mut self,
         session: &Session,

@@ -10,13 +10,13 @@ use crate::session::settings::ArmKind;
 pub(super) struct ArmTip(SerialArm);
 
 impl ArmTip {
-    /// Kinematics of a session's arm; `None` if the session has no physical arm.
+    /// The kinematics of a session's arm; `None` if the session has no physical arm.
     pub fn of_session(session: &Session) -> Option<ArmTip> {
         (session.spec.robot.arm == ArmKind::Physics).then(|| ArmTip(SerialArm::ur5()))
     }
 
-    /// Position of the tip at the last recorded pose, in metres in the frame of the arm's base, and whether the tip is
-    /// down on a button; `None` before the first pose.
+    /// Position of the arm's tip at the last recorded pose, in metres in the frame of the arm's base, and whether the
+    /// tip is down on a button; `None` before the first pose.
     pub fn at(&self, session: &Session) -> Option<([f64; 2], bool)> {
         let (_, sample) = session.robot.arm.last.as_ref()?;
         let tip = self.0.tip(&sample.joints).translation.vector;

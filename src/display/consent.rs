@@ -1,4 +1,4 @@
-//! Content of the participant's display while consent is asked for.
+//! Content of the participant's display while the participant is asked for consent.
 
 use super::displayed_item::{DisplayedAnswerForm, DisplayedQuestionnaireItem};
 use super::page_language::DisplayWords;

@@ -13,11 +13,11 @@ use crate::session::wall_display::AnswerEntry;
 pub struct DisplayedQuestionnaireItem {
     /// Heading above the questionnaire's items.
     pub title: String,
-    /// Name of the item; `None` when all items are answered and only their confirmation is left.
+    /// Name of the item; `None` when all items are answered and the participant only has to confirm the answers.
     pub item: Option<String>,
-    /// Statement of the item; once all are answered, an instruction to confirm.
+    /// Statement of the item; once all items are answered, an instruction to confirm the answers.
     pub text: String,
-    /// Number of the item, from 1.
+    /// Number of the item, counted from 1.
     pub number: usize,
     /// Number of items of the questionnaire.
     pub of: usize,
@@ -44,7 +44,7 @@ pub enum DisplayedAnswerForm {
         /// Meaning of the scale's highest point.
         high: String,
     },
-    /// One or several of listed options.
+    /// One or several options of a list.
     Choice {
         /// Options from which to choose, in their order.
         options: Vec<ItemOption>,
@@ -57,7 +57,7 @@ pub enum DisplayedAnswerForm {
         min: i64,
         /// Greatest number that may be entered.
         max: i64,
-        /// Unit of the number; empty for none.
+        /// Unit of the number; empty if the number has no unit.
         unit: String,
     },
     /// Text that the participant writes.
@@ -65,7 +65,7 @@ pub enum DisplayedAnswerForm {
         /// Largest number of characters of the text.
         length: u32,
     },
-    /// No questionnaire item: consent to a text, given by holding a button.
+    /// No answer to a questionnaire item, but consent to a text, given by holding a button.
     Consent {
         /// Time for which the button has to be held, in seconds.
         hold_s: f64,
@@ -84,7 +84,7 @@ pub enum DisplayedAnswerForm {
 /// A questionnaire item with the participant's answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedAnswer {
-    /// Statement of the item.
+    /// Statement of the answered item.
     pub text: String,
     /// The answer in words; `None` if the participant left the item out.
     pub answer: Option<String>,
@@ -110,7 +110,8 @@ impl From<AnswerFormat<'_>> for DisplayedAnswerForm {
     }
 }
 
-/// The item that the participant has to answer on the display now; `None` also where the wizard reads items out.
+/// The item that the participant has to answer on the display now; `None` also where the wizard reads the items to the
+/// participant.
 pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> {
     if session.spec.display.questionnaire == AnswerEntry::Console {
         return None;

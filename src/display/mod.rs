@@ -1,9 +1,9 @@
-//! What the participant may see. [`scene`] is what stays the same during a recording, [`sight`] what changes,
-//! [`RobotHand`] where the robot's hand is now. These pick what the page receives; anything else (beliefs, advice,
-//! recipes, the robot's intention) has no way to the page.
+//! What the participant may see. [`scene`] is what stays the same during a recording, [`sight`] is what changes, and
+//! [`RobotHand`] is where the robot's hand is now. These modules choose what the page receives; anything else (beliefs,
+//! advice, recipes, the robot's intention) has no way to the page.
 //!
-//! This is a whitelist: a new field of the session is invisible until it is added here. The page always receives the
-//! complete content, so a lost message, a second page and a restart are handled alike.
+//! The choice is a whitelist: a new field of the session is invisible until code here adds the field. The page always
+//! receives the complete content, so a lost message, a second page and a restart of the page are handled alike.
 
 #[cfg(feature = "physics")]
 mod arm_tip;

@@ -8,7 +8,7 @@ use crate::session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");
 const GERMAN: &str = include_str!("languages/de.toml");
-/// Prefix of the names of the page's own texts; all other names are from the kitchen.
+/// Prefix of the names of the page's own texts; all other texts have names from the kitchen.
 const PAGE: &str = "page ";
 
 /// Texts of the display in the participant's language, by their English names.
@@ -20,7 +20,8 @@ pub struct DisplayWords {
 }
 
 impl DisplayWords {
-    /// English texts, replaced by those of the chosen language, and these by the texts of the session file.
+    /// Creates the display's texts: English texts, which the texts of the chosen language replace, and these are
+    /// replaced by the texts of the session file.
     pub fn for_display(spec: &DisplaySpec) -> DisplayWords {
         let read = |text: &str| toml::from_str::<BTreeMap<String, String>>(text).unwrap_or_default();
         let mut words = read(ENGLISH);
@@ -32,8 +33,8 @@ impl DisplayWords {
         DisplayWords { language, words }
     }
 
-    /// The display's texts with the kitchen's own words for its contents: in this language, or else in the language of
-    /// the screens. Texts of the session file take precedence.
+    /// The display's texts with the kitchen's own words for its contents: in the display's language, or else in the
+    /// language of the screens. Texts of the session file take precedence.
     pub fn for_kitchen(kitchen: &Kitchen, spec: &DisplaySpec) -> DisplayWords {
         let DisplayWords { language, words: others } = DisplayWords::for_display(spec);
         let mut words = kitchen.words.in_language(SCREEN_LANGUAGE).clone();
@@ -43,13 +44,13 @@ impl DisplayWords {
         DisplayWords { language, words }
     }
 
-    /// A name of the kitchen in this language; unchanged where the language has no word for it.
+    /// A name of the kitchen in the display's language; the name is unchanged where the language has no word for it.
     pub fn of_name(&self, name: &str) -> String {
         let plain = name.replace('_', " ");
         if let Some(word) = self.words.get(&plain) {
             return word.clone();
         }
-        // Names such as "take rice" and "order 1" are translated word by word if each word is known.
+        // Names such as "take rice" and "order 1" are translated word by word if the language has each word.
         let parts: Vec<&str> = plain.split(' ').collect();
         let known = parts.iter().all(|part| self.words.contains_key(*part) || part.parse::<u32>().is_ok());
         match known {
@@ -62,12 +63,12 @@ impl DisplayWords {
         }
     }
 
-    /// The text for exactly this name; `None` if the language has none.
+    /// The text for exactly this name; `None` if the language has no such text.
     pub(super) fn known(&self, name: &str) -> Option<String> {
         self.words.get(name).cloned()
     }
 
-    /// The text of this name, with `what` inserted for its "#".
+    /// The text with this name, in which `what` replaces the "#".
     pub(super) fn filled(&self, name: &str, what: &str) -> String {
         self.of_name(name).replace('#', what)
     }

@@ -14,25 +14,25 @@ use crate::session::{Session, TrialPhase};
 const MOST_CARDS: usize = 16;
 
 /// An open freeze probe as the participant's display shows it: a question, or the page before the first or after the
-/// last one. It contains nothing about the truth, the drawing of the question, or earlier answers.
+/// last question. The page contains nothing about the truth, the drawing of the question, or earlier answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedProbe {
     /// Number of the probe in its trial, which the page sends back with the answer.
     pub probe: u32,
-    /// Number of the question, from 1; 0 before the first question.
+    /// Number of the question within the probe, from 1; 0 before the first question.
     pub question: u32,
     /// Number of questions in the probe.
     pub of: usize,
-    /// Text of the question.
+    /// Text of the freeze probe question.
     pub text: String,
-    /// Picture of what the question is about.
+    /// Picture of the thing that the question is about.
     pub about: Option<ProbePicture>,
-    /// Choices, in the order of the log; empty if no question is shown.
+    /// Choices of the question, in the order of the log; empty if no question is shown.
     pub choices: Vec<ProbeChoice>,
-    /// Lists of items from which the participant composes a stack, with at most one item of each list; empty if one
-    /// choice is the answer.
+    /// Lists of items from which the participant composes a stack, with at most one item of each list; empty if the
+    /// answer is one of the choices.
     pub parts: Vec<Vec<String>>,
-    /// Whether the participant is asked for the confidence in the answer.
+    /// Whether the participant is asked how confident they are in the answer.
     pub confidence: bool,
     /// Longest duration of the freeze probe, in seconds.
     pub limit_s: f64,
@@ -43,7 +43,7 @@ pub struct DisplayedProbe {
 /// One choice of a freeze probe question.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeChoice {
-    /// Number of the choice, from 1.
+    /// Number of the choice within the question, from 1.
     pub number: usize,
     /// Text of the choice.
     pub words: String,
@@ -55,21 +55,21 @@ pub struct ProbeChoice {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbePicture {
-    /// An empty location.
+    /// Picture of an empty location.
     Empty,
-    /// A single item, by name.
+    /// Picture of a single item, by the item's name.
     Item(String),
-    /// A stack of items, by name.
+    /// Picture of a stack of items, by the items' names.
     Stack(Vec<String>),
-    /// A dish, by name.
+    /// Picture of a dish, by the dish's name.
     Dish(String),
     /// A recipe card with the ingredients of a dish.
     Recipe(Vec<String>),
-    /// An order, by its index among the orders.
+    /// Picture of an order, by its index among the orders.
     Order(usize),
-    /// A location, by its index in the scene.
+    /// Picture of a location, by its index in the scene.
     Location(usize),
-    /// A storage, by its index in the scene.
+    /// Picture of a storage, by its index in the scene.
     Storage(usize),
 }
 
@@ -78,11 +78,11 @@ pub enum ProbePicture {
 pub struct ProbeWording {
     /// Text of the question.
     pub question: String,
-    /// Texts of the choices, in their order.
+    /// Texts of the question's choices, in the order of the choices.
     pub choices: Vec<String>,
 }
 
-/// The open probe as the participant sees it; `None` without a probe, and while the wizard pauses it.
+/// The open freeze probe as the participant sees it; `None` without a probe, and while the wizard pauses the probe.
 pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
     let open = shown_probe(session)?;
     let (kitchen, settings) = (&session.kitchen, session.spec.probes.as_ref()?);
@@ -105,18 +105,18 @@ pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
     })
 }
 
-/// The open probe, unless the wizard pauses it.
+/// The open freeze probe, unless the wizard pauses the probe.
 fn shown_probe(session: &Session) -> Option<&OpenProbe> {
     session.probes.open.as_ref().filter(|open| session.phase == TrialPhase::Paused && !open.is_paused())
 }
 
-/// The freeze probe question that is shown now, with its index.
+/// The freeze probe question that the display shows now, with its index.
 fn asked(open: &OpenProbe) -> Option<(usize, &ProbeQuestion)> {
     let index = open.shown.filter(|_| open.closed.is_none())?;
     Some((index, open.questions.get(index)?))
 }
 
-/// Remaining time of the probe for its questions, or of its count-down; `None` while no time runs.
+/// Time that the probe still has for its questions, or that its count-down still has; `None` while no time runs.
 pub fn probe_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
     let open = shown_probe(session)?;
     let settings = session.spec.probes.as_ref()?;
@@ -128,7 +128,7 @@ pub fn probe_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
     Some(SessionTime(ends.0.saturating_sub(now.0)))
 }
 
-/// Question and choices in the participant's language.
+/// Text of a question and of its choices in the participant's language.
 pub fn probe_wording(session: &Session, question: &ProbeQuestion) -> ProbeWording {
     let words = DisplayWords::for_kitchen(&session.kitchen, &session.spec.display);
     let all = choices(&session.kitchen, &words, question);
@@ -138,7 +138,7 @@ pub fn probe_wording(session: &Session, question: &ProbeQuestion) -> ProbeWordin
     }
 }
 
-/// Name in the log of the choice that consists of these items; `None` if the question has no such choice.
+/// The choice that consists of these items, by its name in the log; `None` if the question has no such choice.
 pub fn choice_made_of(kitchen: &Kitchen, question: &ProbeQuestion, items: &[String]) -> Option<String> {
     let sorted = |ids: &[ContentId]| {
         let mut names: Vec<&str> = ids.iter().map(|id| kitchen.content(*id).name.as_str()).collect();
@@ -219,8 +219,8 @@ fn content(kitchen: &Kitchen, words: &DisplayWords, location: &str, name: &str) 
     }
 }
 
-/// Text and picture of a recipe given by the name of its stack. That name can be the name of another dish, so the items
-/// of the stack are shown.
+/// Text and picture of a recipe that is given by the name of its stack. The name of the stack can be the name of
+/// another dish, so the items of the stack are shown.
 fn recipe(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option<ProbePicture>) {
     let items = kitchen.content_named(name).map_or(&[][..], |id| &kitchen.content(id).items);
     let names: Vec<String> = items.iter().map(|item| kitchen.content(*item).name.clone()).collect();
@@ -250,7 +250,7 @@ fn joined(words: &DisplayWords, names: &[String]) -> String {
 }
 
 /// The items from which the participant composes a stack, by slot of the stacking rule, where a list of all stacks
-/// would be too long. They do not reveal which full stacks are on the menu.
+/// would be too long. The items do not reveal which full stacks are on the menu.
 fn parts(kitchen: &Kitchen, question: &ProbeQuestion, choices: &[ProbeChoice]) -> Vec<Vec<String>> {
     let has_stacks = choices.iter().any(|choice| matches!(choice.shows, Some(ProbePicture::Stack(_))));
     if choices.len() <= MOST_CARDS || !has_stacks {

@@ -1,9 +1,11 @@
 //! The robot's hand on the participant's display, for sessions without a real robot to see. An approaching hand reveals
-//! an intention, as a real robot's does; the page is told where the hand is now, and never where or when it goes.
+//! an intention, as a real robot's hand does; the page is told where the hand is now, and never where or when the hand
+//! goes.
 //!
-//! The hand moves from place to place on the display. The timed arm's hand follows a quintic polynomial, slow at both
-//! ends (Craig, Introduction to Robotics), and arrives when the press is made. The physical arm's hand has covered the
-//! same share of its way as the arm's tip has towards the button, so that it slows down and stops with the arm.
+//! The hand moves from place to place on the display. The timed arm's hand follows a quintic polynomial, which is slow
+//! at both ends (Craig, Introduction to Robotics), and arrives when the press is made. The physical arm's hand has
+//! covered the same share of its way as the arm's tip has covered of the way to the button, so that the hand slows down
+//! and stops with the arm.
 
 #[cfg(feature = "physics")]
 use super::arm_tip::ArmTip;
@@ -14,9 +16,9 @@ use crate::kitchen::{Agent, ButtonId};
 use crate::session::wall_display::DisplayedArm;
 use crate::session::{Session, TrialPhase};
 
-/// Share of the timed arm's motion after which the hand is above its target and goes down.
+/// Share of the timed arm's motion after which the hand is above its target and begins to go down.
 const ABOVE: f64 = 0.85;
-/// Time for the hand to go up after a press, in seconds.
+/// Time that the hand takes to go up after a press, in seconds.
 const UP_S: f64 = 0.3;
 /// Distance, in metres, below which the physical arm's tip counts as being at its button.
 #[cfg(feature = "physics")]
@@ -33,7 +35,7 @@ struct Motion {
     /// Position of the physical arm's tip when the motion began, in metres.
     #[cfg(feature = "physics")]
     tip_from: Option<[f64; 2]>,
-    /// Share of the motion that is completed, from 0 to 1.
+    /// Share of the hand's motion that is completed, from 0 to 1.
     done: f64,
 }
 
@@ -48,7 +50,7 @@ pub struct RobotHand {
 }
 
 impl RobotHand {
-    /// The hand at its resting position; `None` if the session does not show the hand.
+    /// Creates the hand at its resting position; `None` if the session does not show the hand.
     pub fn new(session: &Session) -> Option<RobotHand> {
         session.spec.display.arm.filter(|arm| *arm != DisplayedArm::None)?;
         let kitchen = &session.kitchen;
@@ -97,7 +99,7 @@ impl RobotHand {
         self.motion = Some(Motion { done, ..motion });
     }
 
-    /// Share of a motion that is completed at this time.
+    /// Share of the hand's motion that is completed at this time.
     fn share(&self, session: &Session, motion: &Motion, now: SessionTime) -> f64 {
         #[cfg(feature = "physics")]
         if let Some(arm) = &self.arm {

@@ -14,7 +14,7 @@ pub struct RobotHandPose {
 }
 
 impl RobotHandPose {
-    /// The pose rounded to a thousandth, which is invisible, so that a resting hand causes no messages.
+    /// The pose rounded to thousandths, which nobody can see, so that a resting hand causes no messages.
     pub(super) fn rounded(self) -> RobotHandPose {
         let to_thousandth = |value: f64| (1000.0 * value).round() / 1000.0;
         RobotHandPose { x: to_thousandth(self.x), y: to_thousandth(self.y), down: to_thousandth(self.down) }

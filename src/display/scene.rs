@@ -1,4 +1,5 @@
-//! What stays the same on the participant's display during a recording: areas, pictures, names and buttons.
+//! The scene: what stays the same on the participant's display during a recording, namely areas, pictures, names and
+//! buttons.
 
 use std::collections::BTreeMap;
 
@@ -24,13 +25,13 @@ pub struct DisplayScene {
     pub language: String,
     /// Width and height of the display in metres.
     pub display_m: [f64; 2],
-    /// Locations, in the order of [`super::DisplayUpdate::contents`].
+    /// Locations on the display, in the order of [`super::DisplayUpdate::contents`].
     pub locations: Vec<DisplayLocation>,
     /// The storages with their areas and pictures.
     pub storages: Vec<DisplayStorage>,
-    /// Buttons of the human.
+    /// Buttons of the human, as the display shows them.
     pub buttons: Vec<DisplayButton>,
-    /// AprilTags in the corners; empty if the session wants none or there is no room for them.
+    /// AprilTags in the corners of the display; empty if the session wants no tags or there is no room for them.
     pub tags: Vec<TagPicture>,
     /// Appearance of items, by their names.
     pub items: BTreeMap<String, LabelledAppearance>,
@@ -44,13 +45,13 @@ pub struct DisplayScene {
     pub keys: bool,
     /// How the display shows the robot: "none", "hand" or "arm".
     pub arm: &'static str,
-    /// Whether new events are marked by a flash, for recordings with a camera.
+    /// Whether the display marks new events by a flash, for recordings with a camera.
     pub flash: bool,
-    /// The page has room for the time that the trial still has.
+    /// Whether the page has room for the time that the trial still has.
     pub clock: bool,
-    /// The page has room for the number of served orders.
+    /// Whether the page has room for the number of served orders.
     pub served: bool,
-    /// A press without effect and a signal are heard.
+    /// Whether the page makes a sound at a press without effect and at a signal.
     pub sound: bool,
     /// Whether the mouse pointer stands for the participant's gaze.
     pub pointer: bool,
@@ -108,7 +109,7 @@ pub struct DisplayButton {
     pub colour: Option<ButtonColour>,
     /// Name of the button's area on the table.
     pub area: Option<String>,
-    /// What a press of the button does: "take", "use", "process", "trash" or "serve".
+    /// What a press of the button does, in a word: "take", "use", "process", "trash" or "serve".
     pub does: &'static str,
     /// Index of the location at which the button acts; for a storage, index in [`DisplayScene::storages`].
     pub at: usize,
@@ -123,7 +124,7 @@ pub struct LabelledAppearance {
     pub look: Option<Appearance>,
 }
 
-/// The constant part of the participant's display in a session.
+/// Creates the constant part of the participant's display in a session.
 pub fn scene(session: &Session) -> DisplayScene {
     let (kitchen, spec) = (&session.kitchen, &session.spec);
     let words = DisplayWords::for_kitchen(kitchen, &spec.display);

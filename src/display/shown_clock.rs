@@ -1,4 +1,5 @@
-//! The trial's clock on the display. The page counts down by itself: it is told whether the clock goes, and the time that is left.
+//! The trial's clock on the display. The page counts down by itself: a message tells the page whether the clock goes,
+//! and the time that is left.
 
 use serde::Serialize;
 
@@ -6,17 +7,18 @@ use super::probe_page::probe_left;
 use crate::base::time::SessionTime;
 use crate::session::Session;
 
-/// The trial's clock.
+/// Whether the trial's clock on the display goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedClock {
-    /// It goes.
+    /// The trial's clock goes.
     Goes,
-    /// It stands still: before the trial, in a pause, and at the end.
+    /// The trial's clock stands still: before the trial, in a pause, and at the end.
     Stands,
 }
 
-/// The time that the page shows at `now`: of an open probe what that still has, or else of the trial, if its clock is shown.
+/// The time left that the page shows at `now`: the time that an open probe still has, or else the time that the trial
+/// still has, if the display shows the trial's clock.
 pub fn time_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
     let of_trial = || {
         let limit = SessionTime::from_secs_f64(session.spec.trial.seconds);

@@ -23,19 +23,20 @@ pub struct DisplayUpdate {
     pub practice: bool,
     /// What each location shows, in the order of [`super::DisplayScene::locations`]; empty during a freeze probe.
     pub contents: Vec<ShownContent>,
-    /// Orders served in this trial, if the session shows their number.
+    /// Number of orders served in this trial, if the session shows this number.
     pub served: Option<usize>,
-    /// Whether the trial's clock goes, if the session shows it. The message has the time that is left.
+    /// Whether the trial's clock goes, if the session shows the clock. The message to the page has the time that is
+    /// left.
     pub clock: Option<DisplayedClock>,
-    /// Last press of the human and of the robot, by [`Agent::index`].
+    /// Last press of the human and last press of the robot, by [`Agent::index`].
     pub presses: [Option<DisplayedPress>; 2],
     /// Location or storage where the robot is about to press, if the session shows the robot's intention.
     pub intention: Option<DisplayPlace>,
-    /// The signal on the display, if any.
+    /// The signal that the display shows, if any.
     pub signal: Option<DisplayedSignal>,
     /// Number of the newest event that is marked by a flash.
     pub cue: Option<u64>,
-    /// The questionnaire item that is asked, if any.
+    /// The questionnaire item that the participant is asked, if any.
     pub question: Option<DisplayedQuestionnaireItem>,
     /// The present step of the tutorial, if any.
     pub tutorial: Option<DisplayedTutorial>,
@@ -43,7 +44,7 @@ pub struct DisplayUpdate {
     pub probe: Option<DisplayedProbe>,
     /// Target for the eyes while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
-    /// Whether the gaze is being checked, in which case nothing else is shown.
+    /// Whether the accuracy of the gaze is being checked, in which case the display shows nothing else.
     pub checks: bool,
 }
 
@@ -54,17 +55,17 @@ pub struct DisplayUpdate {
 pub enum DisplayStage {
     /// A greeting before a trial or before the first step of the protocol.
     Welcome,
-    /// The experimenter instructs the participant.
+    /// Instruction: the experimenter instructs the participant.
     Instruction,
     /// The participant goes through a tutorial.
     Tutorial,
-    /// The kitchen before the trial starts.
+    /// The kitchen is shown before the trial starts.
     Ready,
     /// The trial is running.
     Running,
     /// The trial is paused.
     Paused,
-    /// A freeze probe: the trial stands still, and the participant is asked what they believe.
+    /// A freeze probe is open: the trial stands still, and the participant is asked what they believe.
     Probe,
     /// The trial is over.
     Over,
@@ -72,7 +73,7 @@ pub enum DisplayStage {
     Questionnaire,
     /// All items are answered, and the participant confirms the answers.
     Answered,
-    /// Thanks to the participant, in the debriefing and after the session's end.
+    /// The participant is thanked, in the debriefing and after the session's end.
     Thanks,
 }
 
@@ -82,11 +83,11 @@ pub enum DisplayStage {
 pub enum ShownContent {
     /// The location is empty.
     Empty,
-    /// A single item, by its name.
+    /// A single item, by the item's name.
     Item(String),
-    /// A stack of items, by name; a stack that is a dish of the menu is shown as that dish.
+    /// A stack of items, by the items' names; a stack that is a dish of the menu is shown as that dish.
     Stack(Vec<String>),
-    /// A dish, by name: ordered, or finished at a location.
+    /// A dish, by the dish's name: ordered, or finished at a location.
     Dish(String),
     /// An order that was served a moment ago.
     Served,
@@ -95,7 +96,7 @@ pub enum ShownContent {
 /// A press and its effect, as the participant's display shows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DisplayedPress {
-    /// Number of this agent's presses so far.
+    /// Number of presses that the agent has made so far.
     pub number: u32,
     /// Location or storage of the pressed button.
     pub at: DisplayPlace,
@@ -109,7 +110,7 @@ pub struct DisplayedPress {
 /// Reason why a press had no effect, as the participant's display shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DisplayedNoEffectReason {
-    /// The reason, for which the page has a text.
+    /// The reason why the press had no effect; the page has a text for each reason.
     pub reason: NoEffectReason,
     /// The location that the reason is about, by its index in the scene.
     pub about: usize,
@@ -119,7 +120,7 @@ pub struct DisplayedNoEffectReason {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedSignal {
-    /// The recipe of the dish that an order asks for.
+    /// A signal that shows the recipe of the dish that an order asks for.
     Recipe {
         /// The order's location, by its index in the scene.
         order: usize,
@@ -128,14 +129,14 @@ pub enum DisplayedSignal {
         /// Ingredients of the dish.
         items: Vec<String>,
     },
-    /// A highlighted location, by its index in the scene.
+    /// A signal that highlights a location, given by its index in the scene.
     Highlight(usize),
-    /// Proposed presses that are not made yet, the next one first, by their indices in
+    /// Proposed presses that the participant has not made yet, the next press first, by the indices of the buttons in
     /// [`super::DisplayScene::buttons`].
     Next(Vec<usize>),
 }
 
-/// The changing part of the participant's display in a session.
+/// Creates the changing part of the participant's display in a session.
 pub fn sight(session: &Session) -> DisplayUpdate {
     let kitchen = &session.kitchen;
     let practised = session.tutorial_step();
@@ -172,7 +173,8 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     }
 }
 
-/// The clock, if the session shows it and there is a trial. A probe shows the time that it has itself instead.
+/// The trial's clock, if the session shows the clock and there is a trial. During a probe, the display shows the time
+/// that the probe still has instead.
 fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
     if !session.spec.display.clock {
         return None;
@@ -273,7 +275,7 @@ pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     }
 }
 
-/// The proposed presses that the display shows, if any.
+/// The proposed presses that the display shows; `None` if no proposal is shown.
 fn proposed(session: &Session) -> Option<DisplayedSignal> {
     let button = |name: &String| session.kitchen.button_named(Agent::Human, name).map(ButtonId::index);
     Some(DisplayedSignal::Next(proposals::left(session)?.iter().filter_map(button).collect()))

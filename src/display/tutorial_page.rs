@@ -1,4 +1,4 @@
-//! Page of a tutorial's step on the participant's display.
+//! Page on the participant's display for a step of the tutorial.
 
 use serde::Serialize;
 
@@ -15,23 +15,23 @@ pub struct DisplayedTutorial {
     pub step: String,
     /// Kind of the tutorial's step.
     pub kind: TutorialStepKind,
-    /// Heading of the page.
+    /// Heading of the step's page.
     pub title: String,
-    /// Text of the page.
+    /// Text of the step's page.
     pub text: String,
-    /// Number of the step, from 1.
+    /// Number of the tutorial's step, from 1.
     pub number: usize,
     /// Number of steps in the tutorial.
     pub of: usize,
-    /// Whether the step is completed, so that the participant can go on.
+    /// Whether the step of the tutorial is completed, so that the participant can go on.
     pub done: bool,
-    /// What the page marks with a frame.
+    /// Things that the page marks with a frame.
     pub frames: Vec<TutorialFrameTarget>,
     /// The button that the participant has to press now.
     pub hint: Option<TutorialHint>,
     /// Number of presses made and number of presses required, if the step has presses.
     pub presses: Option<[usize; 2]>,
-    /// Whether the last press was another than the required one.
+    /// Whether the participant's last press was another than the required press.
     pub missed: bool,
     /// Recipe cards, while they are shown.
     pub cards: Vec<RecipeCard>,
@@ -76,9 +76,10 @@ pub struct RecipeCard {
 pub struct DisplayedTutorialQuestion {
     /// Answers from which the participant chooses.
     pub choices: Vec<String>,
-    /// Number, from 1, of the wrong answer that the participant gave last; `None` once another is given.
+    /// Number, from 1, of the wrong answer that the participant gave last; `None` once the participant has given
+    /// another answer.
     pub wrong: Option<u8>,
-    /// Explanation shown after a wrong answer.
+    /// Explanation that the page shows after a wrong answer.
     pub explanation: Option<String>,
     /// Number of the right answer, once the participant has given it.
     pub right: Option<u8>,
@@ -92,7 +93,7 @@ pub(super) fn card(kitchen: &Kitchen, dish: DishId) -> RecipeCard {
     RecipeCard { dish: dish.name.clone(), items }
 }
 
-/// The page of the present step; `None` without a tutorial, or after its end.
+/// The page of the tutorial's present step; `None` without a tutorial, or after the tutorial's end.
 pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let kitchen = &session.kitchen;
     let (tutorial, _) = session.tutorial()?;
@@ -101,7 +102,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let are_shown = step.kind == TutorialStepKind::Recipes && !state.are_cards_hidden;
     let dishes = (0..kitchen.dishes.len()).filter(|_| are_shown);
     let hint = state.wanted(step).map(|button| {
-        // After a wrong press, the required button is marked at once.
+        // After a wrong press, the page marks the required button at once.
         let is_missed = state.last.is_some_and(|last| !last.is_right);
         let after_s = if is_missed { 0.0 } else { step.hint_after_s(state.presses) };
         TutorialHint { button: button.clone(), after_s }

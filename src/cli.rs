@@ -1,4 +1,4 @@
-//! The command line. A command is listed when it works.
+//! The command line of the program. A command is listed only when it works.
 
 mod args;
 mod choices;
@@ -63,7 +63,7 @@ const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Runs the command that the program's arguments name. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
 pub fn main() -> ExitCode {
-    // Messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
+    // Lines of messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let cli = Cli::parse();
     let command = cli.command.unwrap_or(CliCommand::Operate(operate::OperateArgs {
@@ -120,7 +120,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     print(args.format, &frozen, || frozen.describe())
 }
 
-/// Warns of recordings whose settings are outside the ranges that settings files allow.
+/// Warns of recordings that have settings outside of the ranges that settings files allow.
 fn warn_of(recordings: &[PathBuf]) -> Result<(), Failure> {
     for recording in recordings {
         if let Some(OutOfRange { found, remedy, .. }) = LogReader::open(recording)?.unusual() {
@@ -202,7 +202,7 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let recording = list::chosen(&args.recording)?;
     let ruling = log::rule(&recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
-    // A recording that is included again can still be left out because its trial was aborted; that is reported.
+    // A recording that is included again can still be left out because its trial was aborted; the message says so.
     let aborted = if ruling.excluded { None } else { standing::aborted(&recording)? };
     let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),

@@ -189,8 +189,8 @@ pub(super) struct SimulateArgs {
 
 /// Fits the human model to recordings.
 ///
-/// Maximum likelihood estimates of parameters from recorded presses, with standard errors; with --people a population whose persons
-/// differ.
+/// Maximum likelihood estimates of parameters from recorded presses, with standard errors; with --people a population
+/// whose persons differ.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nExample: tomcom fit recordings/* --people --out sessions/fitted.toml\nMore: docs/human-model.md"
@@ -199,11 +199,12 @@ pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Fit a population whose persons have parameters of their own: estimates for both, shrinkage, and how likely each person's last trial is
-    /// after a fit without it.
+    /// Fit a population whose persons have parameters of their own: estimates for both, shrinkage, and how likely each
+    /// person's last trial is after a fit without it.
     #[arg(long)]
     pub(super) people: bool,
-    /// Parameters to fit, separated by commas. With --people by default tau, lapse, reading, half-life and recipe-knowledge.
+    /// Parameters to fit, separated by commas. With --people by default tau, lapse, reading, half-life and
+    /// recipe-knowledge.
     #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL,
           default_value_if("people", "true", FitParameter::OF_PERSONS))]
     pub(super) parameters: Vec<FitParameter>,

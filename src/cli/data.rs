@@ -70,7 +70,7 @@ pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure>
     Ok(review_console::settle(recording, [&one, &other])?)
 }
 
-/// Parses two different raters from the values of an option.
+/// Parses the names of two different raters from the values of an option.
 pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2], Failure> {
     raters.iter().try_for_each(|rater| check_rater(rater))?;
     let wrong = |found: String| {
@@ -126,7 +126,7 @@ pub(super) struct ForgetArgs {
     format: OutputFormat,
 }
 
-/// JSON output of the deletion: what is or was to be deleted, and what stays.
+/// JSON output of the deletion: what is deleted or would be deleted, and what stays.
 #[derive(Debug, Serialize)]
 struct ForgetSummary<'a> {
     code: &'a str,
@@ -192,7 +192,7 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     if deletes && done.left.is_empty() { Ok(()) } else { Err(Failure::No) }
 }
 
-/// Shows what would be deleted, and asks for the participant's code as confirmation.
+/// Shows what the deletion would remove, and asks for the participant's code as confirmation.
 fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
     let input = std::io::stdin();
     put_aside(&format!("to be deleted:\n{}{}\n", listed(found), left(found)));
@@ -209,7 +209,7 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
     Ok(answer.trim() == args.code)
 }
 
-/// What is deleted, as text with one line each; the files of a recording stand below their folder.
+/// What is deleted, as text with one line each; the files of a recording are listed below the recording's folder.
 fn listed(found: &ParticipantData) -> String {
     let line = |path: &Path, what: &str| format!("  {}{what}\n", path.display());
     let recording = |folder: &PathBuf| {
@@ -226,7 +226,8 @@ fn listed(found: &ParticipantData) -> String {
     recordings.chain(files).chain(tables).chain(trainings).collect()
 }
 
-/// What stays although it is about the participant, as text with one line and reason each; empty if nothing stays.
+/// What is not deleted although it is about the participant, as text with a line and a reason each; empty if nothing
+/// stays.
 fn left(found: &ParticipantData) -> String {
     let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
     if lines.is_empty() { lines } else { format!("left:\n{lines}") }

@@ -26,7 +26,7 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
         steps: args.steps as usize,
         reference_steps: args.reference_steps.min(args.steps) as usize,
     };
-    // Each step is planned twice: with the budget of a session, and with the larger one.
+    // Each step is planned twice: with the budget of a session, and with the larger budget.
     let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -72,7 +72,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     print(args.format, &found, || fitting::describe(&found))
 }
 
-/// `tomcom fit RECORDING... --people`.
+/// Runs the command `tomcom fit RECORDING... --people`.
 fn fit_people(
     args: &FitArgs,
     trials: &fit::FitTrials,

@@ -70,7 +70,7 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
     print(args.format, &ExportSummary { bids, mcap: files }, || text)
 }
 
-/// The recordings at or below these paths, each once.
+/// Collects the recordings at or below these paths, each recording once.
 fn meant(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {

@@ -12,13 +12,13 @@ use crate::session::settings::SettingError;
 /// Failure of a command, which decides the program's exit code and message.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// Arguments or files are invalid.
+    /// Arguments or files of the command are invalid.
     Wrong(miette::Report),
     /// The command could not do its work.
     Failed(miette::Report),
-    /// The command ran, and the result of its check is negative and has been printed.
+    /// The command ran, and the result of its check is negative; the result has been printed.
     No,
-    /// The program that reads the output closed the pipe, as `head` does.
+    /// The program that reads the output has closed the pipe, as `head` does.
     Unread,
 }
 
@@ -93,12 +93,12 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// Failure by an invalid setting on the command line.
+/// The failure of a command because a setting on the command line is invalid.
 pub(super) fn wrong_setting(error: SettingError) -> Failure {
     Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found))
 }
 
-/// Failure by an argument that is invalid for this file.
+/// The failure of a command because an argument is invalid for this file.
 pub(super) fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
     Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }

@@ -43,12 +43,12 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     print(args.format, &list, || list.describe())
 }
 
-/// One recording per path: if a path is a folder of recordings, the user chooses one at the terminal.
+/// Chooses one recording per path: if a path is a folder of recordings, the user chooses a recording at the terminal.
 pub(super) fn each_chosen(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     paths.iter().map(|path| chosen(path)).collect()
 }
 
-/// The recording at a path: if the path is a folder of recordings, the user chooses one at the terminal.
+/// Finds the recording at a path: if the path is a folder of recordings, the user chooses a recording at the terminal.
 pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
     exists(path)?;
     if !path.is_dir() || path.join(LOG_NAME).exists() {
@@ -71,7 +71,7 @@ pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
     )))
 }
 
-/// Refuses a path that does not exist, and suggests an existing one with a similar name.
+/// Refuses a path that does not exist, and suggests an existing path with a similar name.
 pub(super) fn exists(path: &Path) -> Result<(), Failure> {
     let Some(near) = Some(path).filter(|path| !path.exists()).and_then(near_path::nearest) else { return Ok(()) };
     Err(Failure::Wrong(miette::miette!(

@@ -1,4 +1,4 @@
-//! Recordings as MCAP files, for `tomcom export`.
+//! Export of recordings as MCAP files, for `tomcom export`.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::output::progress;
 use crate::run::mcap_export::{self, McapSummary};
 
-/// Exports recordings; returns the summary as JSON and as text.
+/// Exports recordings as MCAP files; returns the summary as JSON and as text.
 pub(super) fn export(recordings: &[PathBuf]) -> Result<(Value, String), Failure> {
     let bar = progress(recordings.len() as u64, "recordings");
     let done = crate::run::parallel::each(recordings, |recording| mcap_export::export(recording), || bar.inc(1));

@@ -126,7 +126,8 @@ pub(super) fn new_session(
     }
 }
 
-/// Parses an address of this computer; a port is refused, since none is needed here.
+/// Parses the address of a network interface of this computer; an address with a port is refused, since no port is
+/// needed here.
 pub(super) fn address_without_port(text: &str) -> Result<IpAddr, String> {
     text.parse().map_err(|_| match text.parse::<SocketAddr>() {
         Ok(with_port) => format!(

@@ -43,18 +43,18 @@ pub(super) fn put(text: &str) -> io::Result<()> {
 
 /// Prints a text on standard error.
 pub(super) fn put_aside(text: &str) {
-    // If standard error cannot be written, nobody can be told.
+    // If standard error cannot be written, nobody can be told about it.
     let _ = terminal::print(true, printable_lines(text).into_owned().into_bytes());
 }
 
 /// Prints an error report on standard error.
 pub(super) fn put_error(report: Report) {
     let report = Report::new(PrintableReport(report));
-    // If standard error cannot be written, nobody can be told.
+    // If standard error cannot be written, nobody can be told about it.
     let _ = terminal::print(true, format!("{report:?}\n").into_bytes());
 }
 
-/// An error with escaped control characters; excerpts of files are escaped already.
+/// An error report whose control characters are escaped when it is printed; excerpts of files are escaped already.
 #[derive(Debug)]
 struct PrintableReport(Report);
 
@@ -84,7 +84,7 @@ impl Diagnostic for PrintableReport {
     }
 }
 
-/// A progress bar on stderr; hidden if stderr is not a terminal.
+/// A progress bar on standard error; hidden if standard error is not a terminal.
 pub(super) fn progress(of: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(of);
     if io::stderr().is_terminal()

@@ -113,7 +113,7 @@ fn ratio(text: &str) -> Result<f64, String> {
 }
 
 impl PoolArgs {
-    /// The pool that these options ask for; `None` if they ask for a shard, which is written to a file. `arms`:
+    /// The pool that these options ask for; `None` if the options ask for a shard, which is written to a file. `arms`:
     /// simulate trials in the plan's arms; `unassisted`: simulate trials without signals.
     fn pool(&self, arms: bool, unassisted: bool) -> Result<Option<SimulationPool>, Failure> {
         let mut files = read_session(&self.plan)?;
@@ -146,7 +146,7 @@ impl PoolArgs {
         Ok(Some(pool))
     }
 
-    /// The pool from the files of `--from`, which must have been simulated for this plan.
+    /// Reads the pool from the files of `--from`, which must have been simulated for this plan.
     fn read(&self, mut files: SessionFiles) -> Result<SimulationPool, Failure> {
         let pool = pool_file::read_pool(&self.from)?;
         files.spec.seed = pool.header.seed;
@@ -166,7 +166,7 @@ impl PoolArgs {
         Ok(pool)
     }
 
-    /// Path that error messages about the pool name.
+    /// Path to which error messages about the pool refer.
     fn source(&self) -> &PathBuf {
         self.from.first().unwrap_or(&self.plan)
     }

@@ -52,7 +52,7 @@ fn moment(text: &str) -> Result<SessionTime, String> {
 pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
     Feature::Rerun.require()?;
     let (mut recordings, mut save) = (args.recordings.clone(), args.save.clone());
-    // A path that ends with `.rrd` is no recording, but the stream's file: `--save FILE` without `=` ends up here.
+    // A path that ends with `.rrd` is no recording, but the file of a stream: `--save FILE` without `=` ends up here.
     let is_stream = |path: &mut PathBuf| path.extension().is_some_and(|extension| extension == "rrd");
     if save == Some(None)
         && recordings.len() > 1

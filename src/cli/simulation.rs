@@ -45,7 +45,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     check_condition(args, files.spec.plan.is_some())?;
     tell_unused(args, &files.spec);
     tell_absent_wizard(args, &files.spec);
-    // The plan defines the conditions, if there is one.
+    // If there is a plan, the plan defines the conditions.
     files.spec.trial.condition = match args.condition {
         None if !args.sweep.is_empty() => Condition::Assistant,
         None => Condition::None,
@@ -75,8 +75,8 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     print(args.format, &figures, || simulate::describe(&figures))
 }
 
-/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore them unless
-/// options ask for the assistant.
+/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore these
+/// settings unless options ask for the assistant.
 fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     if spec.plan.is_some() || !args.sweep.is_empty() {
         return;
@@ -106,7 +106,7 @@ fn tell_absent_wizard(args: &SimulateArgs, spec: &SessionSpec) {
     }
 }
 
-/// Refuses options that have no effect in the given condition.
+/// Refuses options that have no effect in the given condition of the simulated trials.
 fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure> {
     let condition = args.condition.map(Condition::from);
     let is_silent = matches!(condition, None | Some(Condition::None));

@@ -28,7 +28,8 @@ pub(super) struct StudyArgs {
     /// Folders with recordings in them, or recordings, of one kitchen.
     #[arg(required_unless_present = "from", value_name = "DIR")]
     paths: Vec<PathBuf>,
-    /// Folder for report.html and the tables; by default the folder "study" in the first DIR. With --shard, the file of the part.
+    /// Folder for report.html and the tables; by default the folder "study" in the first DIR. With --shard, the file of
+    /// the part.
     #[arg(long)]
     out: Option<PathBuf>,
     /// The two raters whose codes of errors are taken; by default the two with the most complete codes of a recording.
@@ -37,11 +38,12 @@ pub(super) struct StudyArgs {
     /// Compare the recordings with a plan that was frozen with tomcom plan PLAN --freeze FILE, and say what differs.
     #[arg(long, value_name = "FILE")]
     frozen: Option<PathBuf>,
-    /// Analyse one shard of the recordings, such as "3/8", the third of eight, for job arrays, and only write what the analysis of all needs of it
-    /// to the file --out. Shards are those of tomcom simulate.
+    /// Analyse one shard of the recordings, such as "3/8", the third of eight, for job arrays, and only write what the
+    /// analysis of all needs of it to the file --out. Shards are those of tomcom simulate.
     #[arg(long, value_name = "PART/PARTS", requires = "out", conflicts_with_all = ["frozen", "format"])]
     shard: Option<SimulationShard>,
-    /// Join these parts, written with --shard, instead of reading recordings; the results are those of one analysis of all recordings.
+    /// Join these parts, written with --shard, instead of reading recordings; the results are those of one analysis of
+    /// all recordings.
     #[arg(long, value_name = "FILE", num_args = 1.., requires = "out", conflicts_with_all = ["paths", "shard", "raters", "skip"])]
     from: Vec<PathBuf>,
     /// Steps of the analysis to skip, separated by commas.
@@ -70,14 +72,14 @@ impl From<StudyError> for Failure {
     }
 }
 
-/// `tomcom study`.
+/// Runs the command `tomcom study`.
 pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
     args.paths.iter().try_for_each(|path| exists(path))?;
     let extent =
         AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
     let raters = args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?;
     let paths = if args.from.is_empty() { args.paths.clone() } else { args.from.clone() };
-    // Parts are joined into a folder that is named.
+    // The parts of an analysis are joined into a folder that the option `--out` names.
     let out = args.out.clone().unwrap_or_else(|| paths[0].join("study"));
     let request = AnalysisRequest { paths, out, extent, raters, frozen: args.frozen.clone() };
     if !args.from.is_empty() {
@@ -99,7 +101,7 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
     told(args.format, &figures, &report)
 }
 
-/// Prints the summary.
+/// Prints the summary of the study's analysis.
 fn told(format: OutputFormat, figures: &StudySummary, report: &Path) -> Result<(), Failure> {
     print(format, figures, || format!("{}report: {}\n", study::describe(figures), report.display()))
 }

@@ -1,4 +1,4 @@
-//! Export of recordings as MCAP files in a build without MCAP: refused.
+//! The export of recordings as MCAP files in a build without MCAP, which refuses the export.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Rerun commands in a build without Rerun: refused.
+//! The Rerun commands in a build without Rerun, which refuses them.
 
 use std::path::PathBuf;
 
@@ -6,12 +6,12 @@ use super::failure::Failure;
 use crate::base::features::{Feature, MissingFeature};
 use crate::base::time::SessionTime;
 
-/// Refuses to write streams, since this build lacks Rerun.
+/// Refuses to write Rerun streams, since this build lacks Rerun.
 pub(super) fn save_all(_: &[String]) -> Result<(), Failure> {
     Err(MissingFeature(Feature::Rerun).into())
 }
 
-/// Refuses to open a viewer, since this build lacks Rerun.
+/// Refuses to open a Rerun viewer, since this build lacks Rerun.
 pub(super) fn open(
     _: Vec<PathBuf>,
     _: Option<Option<PathBuf>>,

@@ -22,9 +22,9 @@ const REMEMBERED_PRESSES: usize = 6;
 /// An action of the scripted wizard: a signal, or taking an offer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WizardAction {
-    /// Sends a signal by its own judgement.
+    /// The wizard sends a signal by its own judgement.
     Send(Signal),
-    /// Takes the offer with this sequence number.
+    /// The wizard takes the offer with this sequence number.
     TakeOffer(u64),
 }
 
@@ -38,13 +38,13 @@ pub struct ScriptedWizard {
     seen: SeenKitchen,
     /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
-    /// The planned signal: its time, and the suspected false belief that it is about.
+    /// The planned signal: the time to send it, and the suspected false belief that the signal is about.
     about_to: Option<(SessionTime, SuspectedFalseBelief)>,
     /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the
     /// change.
     watched: Vec<(SessionTime, LocationId)>,
     signalled_at: Option<SessionTime>,
-    /// The part that reads the assistant's offers, if the wizard does.
+    /// The part that reads the assistant's offers; `None` if the wizard ignores offers.
     reader: Option<OfferReader>,
 }
 
@@ -59,7 +59,7 @@ impl ScriptedWizard {
         ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at, reader }
     }
 
-    /// The same wizard, but reading offers as the settings say, with a random stream of its own for that.
+    /// Lets the wizard read offers as the settings say, with a random stream of its own for that.
     pub fn reading_offers(self, seed: u64, trial: u64) -> ScriptedWizard {
         let spread = self.spec.reaction_spread;
         let reader = self.spec.offers.map(|offers| OfferReader::new(offers, spread, seed, trial));
@@ -100,7 +100,7 @@ impl ScriptedWizard {
                 self.think_of(now, cause, after);
             }
         }
-        // The participant knows the effects of its own press.
+        // The participant knows the effects of their own press.
         for location in self.kitchen.changed(before, after) {
             self.seen.told(location, after);
         }
@@ -119,7 +119,7 @@ impl ScriptedWizard {
     pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
         self.seen.told(location, state);
         self.signalled_at = Some(now);
-        // A planned signal is dropped if an offer has already sent it.
+        // A planned signal is dropped if an offer has already led to the same signal.
         self.about_to.take_if(|(_, thought)| thought.location() == location);
     }
 
@@ -163,7 +163,8 @@ impl ScriptedWizard {
         None
     }
 
-    /// The offer that the wizard takes now; it waits until some time has passed since the last signal.
+    /// The offer that the wizard takes now; the wizard waits with an offer until some time has passed since the last
+    /// signal.
     fn take_offer(&mut self, now: SessionTime) -> Option<u64> {
         let rested = self.rested().filter(|&rested| rested > now);
         let reader = self.reader.as_mut()?;
@@ -176,7 +177,7 @@ impl ScriptedWizard {
         }
     }
 
-    /// The earliest time of the next signal after the last one; `None` before the first signal.
+    /// The earliest time of the wizard's next signal after the last one; `None` before the first signal.
     fn rested(&self) -> Option<SessionTime> {
         self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s))
     }
@@ -192,8 +193,8 @@ impl ScriptedWizard {
         self.about_to = Some((now + SessionTime::from_secs_f64(reaction_s), thought));
     }
 
-    /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that it has
-    /// not seen since its last change.
+    /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that the
+    /// participant has not seen since its last change.
     fn another(&mut self, cause: SuspectedFalseBelief, state: State) -> Option<SuspectedFalseBelief> {
         let suspected = cause.location();
         let could_be = |at: LocationId| match state.order(at) {
@@ -214,8 +215,8 @@ impl ScriptedWizard {
         }
     }
 
-    /// Sends the planned signal, unless the false belief has ended, its order is gone, or it would no longer mislead
-    /// anybody.
+    /// Sends the planned signal, unless the false belief has ended, its order is gone, or the false belief would no
+    /// longer mislead anybody.
     fn say(
         &mut self,
         now: SessionTime,

@@ -1,4 +1,4 @@
-//! What an observer of kitchen and gaze can infer about the participant's knowledge, and false beliefs that explain a
+//! What an observer of kitchen and gaze can infer about the participant's knowledge, and which false beliefs explain a
 //! press.
 
 use super::thought::SuspectedFalseBelief;
@@ -11,12 +11,12 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 pub struct SeenKitchen {
     /// The last seen content of every location.
     pub state: State,
-    /// Location on which the gaze rests, and the time at which it arrived there.
+    /// Location on which the gaze rests, and the time at which the gaze arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
 impl SeenKitchen {
-    /// A kitchen that the participant last saw in this state.
+    /// Creates the kitchen that the participant last saw in this state.
     pub fn new(state: State) -> SeenKitchen {
         SeenKitchen { state, resting: None }
     }
@@ -34,8 +34,7 @@ impl SeenKitchen {
         }
     }
 
-    /// Marks the content of a location as known to the participant: it was read, signalled, or changed by the
-    /// participant.
+    /// Marks the content of a location as known to the participant, who read it, saw it in a signal, or changed it.
     pub fn told(&mut self, location: LocationId, truth: State) {
         self.state.set_code(location, truth.code(location));
     }
@@ -56,15 +55,16 @@ impl SeenKitchen {
 pub struct ObservedPress {
     /// The true state before the press.
     pub truth: State,
-    /// The state as the participant last saw it.
+    /// The state of the kitchen as the participant last saw it before the press.
     pub seen: State,
     /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,
 }
 
-/// Finds single false beliefs that explain the last press, because it would be useful under them: the last seen content
-/// of a location, or another version of a requested recipe. Of these, the ones that explain most of the presses are
-/// returned; an empty list if no single false belief explains the last press.
+/// Finds single false beliefs that explain the last press: the press would be useful if the participant held the
+/// belief. Candidates are the last seen content of a location, and another version of a requested recipe. Of the
+/// explanations, those that explain most of the presses are returned; an empty list if no single false belief explains
+/// the last press.
 pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]) -> Vec<SuspectedFalseBelief> {
     let Some(last) = presses.last() else { return Vec::new() };
     let places = kitchen.changed(last.seen, last.truth).map(SuspectedFalseBelief::Place);
@@ -86,14 +86,14 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]
         causes.into_iter().filter(|(explained, _)| Some(*explained) == most).map(|(_, thought)| thought).collect();
     // One signal corrects all false versions of a recipe.
     best.dedup_by_key(|thought| thought.location());
-    // False beliefs about several locations together explain the press; the first of them is returned.
+    // False beliefs about several locations together explain the press; only the first of these beliefs is returned.
     if best.is_empty() && helps(kitchen, cost, last.seen, &kitchen.true_recipes(), last.button) {
         best.extend(kitchen.changed(last.seen, last.truth).next().map(SuspectedFalseBelief::Place));
     }
     best
 }
 
-/// Whether a press seems useful with this one false belief but does not reduce the true cost to go.
+/// Whether a press seems useful to a person with this one false belief but does not reduce the true cost to go.
 pub fn misleads(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -108,7 +108,7 @@ pub fn misleads(
         .any(|button| helps(kitchen, cost, state, &recalled, button) && !helps(kitchen, cost, truth, &recipes, button))
 }
 
-/// Believed state and recipes of a person with this one false belief.
+/// State and recipes that a person with this one false belief believes in.
 fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen: State) -> (State, Recipes) {
     let (mut state, mut recipes) = (truth, kitchen.true_recipes());
     match thought {
@@ -119,7 +119,7 @@ fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen
     (state, recipes)
 }
 
-/// Whether a human press reduces the cost to go, given `state` and `recipes`.
+/// Whether a human press reduces the cost to go, given the kitchen's `state` and `recipes`.
 fn helps(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes, button: ButtonId) -> bool {
     let next = kitchen.press(state, recipes, Agent::Human, button);
     next.is_some_and(|next| cost.all_orders(next, recipes) < cost.all_orders(state, recipes))

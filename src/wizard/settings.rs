@@ -24,21 +24,21 @@ pub struct WizardSpec {
     pub guesses_wrong: f64,
     /// Shortest time between two signals, in seconds.
     pub rest_s: f64,
-    /// How the scripted wizard treats the assistant's offers where the session shows recommendations; `None`: it
-    /// ignores them.
+    /// How the scripted wizard treats the assistant's offers where the session shows recommendations; `None`: the
+    /// wizard ignores offers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub offers: Option<OfferReading>,
 }
 
 /// How the scripted wizard treats the assistant's offers. Nobody has measured how often people take offers: the values
-/// are assumptions.
+/// of these settings are assumptions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OfferReading {
-    /// Probability that the script takes an offer; else it follows its own judgement alone.
+    /// Probability that the scripted wizard takes an offer; otherwise the wizard follows its own judgement alone.
     pub takes: f64,
-    /// Median time from the opening of an offer to the key that takes it, in seconds. Its relative spread is that of
-    /// the reaction time.
+    /// Median time from the opening of an offer to the key that takes the offer, in seconds. The relative spread of
+    /// this time is that of the reaction time.
     pub reads_s: f64,
 }
 
@@ -52,9 +52,9 @@ impl Default for OfferReading {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WizardKind {
-    /// A person at the console.
+    /// A person at the console acts as the wizard.
     Person,
-    /// The scripted wizard, for simulated studies.
+    /// The scripted wizard, for simulated studies, acts as the wizard.
     Scripted,
 }
 
@@ -76,7 +76,7 @@ impl Default for WizardSpec {
 }
 
 impl WizardSpec {
-    /// Whether all settings of the wizard have their defaults.
+    /// Whether all settings of the wizard have their default values.
     pub fn is_default(&self) -> bool {
         *self == WizardSpec::default()
     }

@@ -9,12 +9,12 @@ pub enum SuspectedFalseBelief {
     Place(LocationId),
     /// A false belief about a recipe: the order, its dish, and the stack that the participant takes for the recipe.
     Recipe(LocationId, DishId, ContentId),
-    /// A wrong guess of the wizard: a location that did not cause the error, but plausibly could have.
+    /// A wrong guess of the wizard: a location that did not cause the error, but could plausibly have caused it.
     Guess(LocationId),
 }
 
 impl SuspectedFalseBelief {
-    /// The location that a signal correcting the false belief would be about.
+    /// The location that a signal would be about if it corrected the false belief.
     pub fn location(self) -> LocationId {
         match self {
             SuspectedFalseBelief::Place(location)

@@ -7,9 +7,9 @@ use crate::session::Session;
 /// Whether a trial was aborted or excluded; an analysis leaves out aborted and excluded trials.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ExclusionStatus {
-    /// Reason for aborting the trial; null if it was not aborted.
+    /// Reason for aborting the trial; null if the trial was not aborted.
     pub aborted: Option<String>,
-    /// Reason for excluding the trial; null if it is not excluded.
+    /// Reason for excluding the trial; null if the trial is not excluded.
     pub excluded: Option<String>,
 }
 

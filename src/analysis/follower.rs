@@ -38,7 +38,7 @@ pub struct SessionFollower {
     pub filter: BeliefFilter,
     /// Rule that says which signals the assistant is not to repeat yet.
     pub repeats: SignalRepeatRule,
-    /// Computing times of updates of the belief estimate; `None` if they are not measured.
+    /// Computing times of updates of the belief estimate; `None` if the times are not measured.
     pub timing: Option<InferenceTiming>,
     pub(crate) cost: CostToGo,
     judge: PressJudge,

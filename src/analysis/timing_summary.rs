@@ -40,7 +40,7 @@ pub struct DurationPercentiles {
     pub p50: f64,
     /// 99th percentile of the computing times.
     pub p99: f64,
-    /// Longest computing time.
+    /// Longest of the computing times.
     pub max: f64,
 }
 

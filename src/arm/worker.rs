@@ -266,7 +266,7 @@ impl RobotTaskExecutor {
         self.give_up(AbortReason::Skipped)
     }
 
-    /// Makes the robot's next press the one that the wizard chose; the present press is abandoned.
+    /// Lets the robot next press the button that the wizard chose; the present press is abandoned.
     pub fn drive(&mut self, button: ButtonId) -> Option<RobotActivity> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)

@@ -73,8 +73,8 @@ pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal>
     all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
 }
 
-/// Why a signal cannot be sent now; `None` if it can be sent. Only an order that wants a dish has a recipe to show, and
-/// the first press of a proposal must have an effect.
+/// Why a signal cannot be sent now; `None` if the signal can be sent. Only an order that wants a dish has a recipe to
+/// show, and the first press of a proposal must have an effect.
 pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
     if let Signal::Propose(presses) = signal {
         return not_proposable(kitchen, state, presses);

@@ -28,7 +28,7 @@ use crate::wizard::settings::WizardKind;
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
 pub struct SessionFiles {
-    /// Settings of the session.
+    /// Settings of the session, from the session file.
     pub spec: SessionSpec,
     /// Kitchen of the session, with its layout and recipe files.
     pub kitchen: KitchenFiles,

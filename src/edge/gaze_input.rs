@@ -54,7 +54,7 @@ pub enum TrackerMessage {
     Fixation(TrackerFixation),
     /// Onset or offset of the participant's blink.
     Blink {
-        /// Whether the eyes closed (onset); false if they opened (offset).
+        /// Whether the eyes closed (onset); false if the eyes opened (offset).
         is_onset: bool,
         /// Confidence of the tracker in the blink, 0 to 1.
         confidence: f64,
@@ -100,7 +100,7 @@ pub struct TrackerTime {
 /// A fixation detected by a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerFixation {
-    /// Position of the fixation in fractions of the display; `None` if it was not on the display.
+    /// Position of the fixation in fractions of the display; `None` if the fixation was not on the display.
     pub at: Option<[f64; 2]>,
     /// Duration of the fixation, in milliseconds.
     pub duration_ms: f64,

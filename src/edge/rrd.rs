@@ -101,7 +101,7 @@ impl Seal {
         PathBuf::from(name)
     }
 
-    /// Reads the seal file; `None` if it is missing or unreadable, in which case the Rerun file is made anew.
+    /// Reads the seal file; `None` if the file is missing or unreadable, in which case the Rerun file is made anew.
     fn read(stream: &Path) -> Option<Seal> {
         toml::from_str(&read_regular(&Seal::path(stream)).ok()?).ok()
     }

@@ -48,7 +48,7 @@ struct Doubt {
 /// A step of the eye tracker's clock: the clock was set during the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockStep {
-    /// By how much the tracker's clock was set ahead, in nanoseconds; negative if it was set back.
+    /// By how much the tracker's clock was set ahead, in nanoseconds; negative if the clock was set back.
     pub by_ns: i64,
     /// Arrival of the first gaze sample whose session time was uncertain until the clock step was detected.
     pub uncertain_since: SessionTime,

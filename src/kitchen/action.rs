@@ -56,16 +56,16 @@ pub struct Button {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ButtonColour {
-    /// A red button cap.
+    /// The button has a red cap.
     Red,
-    /// A yellow button cap.
+    /// The button has a yellow cap.
     Yellow,
-    /// A green button cap.
+    /// The button has a green cap.
     Green,
-    /// A blue button cap.
+    /// The button has a blue cap.
     Blue,
-    /// A white button cap.
+    /// The button has a white cap.
     White,
-    /// A black button cap.
+    /// The button has a black cap.
     Black,
 }

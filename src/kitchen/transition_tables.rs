@@ -10,8 +10,9 @@ pub struct TransitionTables {
     pub(super) width: usize,
     /// `accepts[location * width + content]`: whether the location, when empty, accepts the content.
     pub(super) accepts: Vec<bool>,
-    /// `stacks[a * width + b]`: the stack of contents a and b; 0 if they cannot be stacked.
+    /// `stacks[a * width + b]`: the stack of contents a and b; 0 if these contents cannot be stacked.
     pub(super) stacks: Vec<ContentId>,
-    /// `becomes[process * width + content]`: the result of the processing step; 0 if it does not apply to the content.
+    /// `becomes[process * width + content]`: the result of the processing step; 0 if the step does not apply to the
+    /// content.
     pub(super) becomes: Vec<ContentId>,
 }

@@ -114,8 +114,8 @@ impl Belief {
         worlds
     }
 
-    /// Whether decisions of the human can depend on the state aspect. They cannot depend on the recipe of a dish that
-    /// no order is believed to want.
+    /// Whether decisions of the human can depend on the state aspect. Decisions cannot depend on the recipe of a dish
+    /// that no order is believed to want.
     fn matters(&self, kitchen: &Kitchen, aspect: AspectId) -> bool {
         let AspectKind::Recipe(dish) = kitchen.aspects[aspect.index()].kind else { return true };
         let code = OrderContent::Dish(dish).code();

@@ -194,7 +194,7 @@ pub struct FitObservations {
     pub seed: u64,
     /// The observations of the trial for the belief filter.
     pub observations: Vec<Observation>,
-    /// The answers to freeze probes; empty if they are not used.
+    /// The answers to freeze probes; empty if the answers are not used.
     pub answers: Vec<ProbedValue>,
 }
 

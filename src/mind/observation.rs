@@ -45,7 +45,7 @@ pub struct Observation {
     pub what: ObservedEvidence,
 }
 
-/// Kinds of evidence about the human's belief. A `state` in them is the true state, which the display shows.
+/// Kinds of evidence about the human's belief. A `state` in such evidence is the true state, which the display shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ObservedEvidence {
     /// The trial starts; the human knows the state of the kitchen.

@@ -30,7 +30,7 @@ pub enum FixationProgress {
     Nothing,
     /// The fixation has lasted long enough for its location to be read.
     Read,
-    /// The fixation is over.
+    /// The fixation of the eyes is over.
     Done,
 }
 

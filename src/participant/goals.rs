@@ -9,14 +9,14 @@ use crate::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind
 pub struct PartSource {
     /// The location where the content is.
     pub at: LocationId,
-    /// The content as it is now, before further processing.
+    /// The content in its present state, before further processing.
     pub content: ContentId,
 }
 
 /// A part that is still missing for a dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartNeed {
-    /// The part as it is put on the board: an item, or a stack of several items.
+    /// The part in the form in which it is put on the board: an item, or a stack of several items.
     pub part: ContentId,
     /// The content that can be made into the part; `None` if the part has to come from a storage.
     pub source: Option<PartSource>,

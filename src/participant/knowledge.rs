@@ -10,9 +10,9 @@ const MOST_STEPS: usize = 8;
 pub struct ItemPreparation {
     /// The processing step, as an index into the kitchen's list [`Kitchen::processes`].
     pub process: u8,
-    /// The item as it is before the processing step.
+    /// The item before the processing step.
     pub from: ContentId,
-    /// Place of the processing step; `None` if it is done in the hand of the agent who presses.
+    /// Place of the processing step; `None` if the step is done in the hand of the agent who presses.
     pub place: Option<LocationId>,
 }
 

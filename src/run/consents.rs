@@ -8,7 +8,8 @@ use crate::session::Event;
 use crate::session::protocol::ProtocolEvent;
 use crate::study::recorded_consent::RecordedConsent;
 
-/// The consent with which the recording begins (in its first part); `None` if it does not begin with a consent.
+/// The consent with which the recording begins (in its first part); `None` if the recording does not begin with a
+/// consent.
 ///
 /// # Errors
 /// The recording cannot be read.

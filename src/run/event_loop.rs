@@ -27,7 +27,8 @@ const FILES: Duration = Duration::from_millis(50);
 /// Period of [`LoopEvent::WatchTick`], at which recording and devices are checked.
 const WATCH: Duration = Duration::from_millis(250);
 
-/// An event of the console's event loop. Of several pending events, the one whose variant comes first is handled first.
+/// An event of the console's event loop. Of several pending events, the event whose variant comes first is handled
+/// first.
 pub(super) enum LoopEvent {
     /// The program has to end: a termination signal arrived, or the terminal was closed.
     EndRequest,

@@ -110,11 +110,11 @@ pub struct RerunStreamFile {
 pub struct OngoingRecording {
     /// Folder of the recording.
     pub recording: PathBuf,
-    /// Network address at which viewers of the running session connect; `None` if it has no stream.
+    /// Network address at which viewers of the running session connect; `None` if the session has no stream.
     pub viewers: Option<String>,
 }
 
-/// Those of the recordings whose sessions are still running; the review shows them up to the present.
+/// The recordings among these whose sessions are still running; the review shows them up to the present.
 ///
 /// # Errors
 /// A recording cannot be read.

@@ -8,7 +8,7 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::{ExclusionRecord, LogReader, ruling};
 use crate::session::{Event, Session};
 
-/// Reason for which the trial of a recording was aborted; `None` if it was not.
+/// Reason for which the trial of a recording was aborted; `None` if the trial was not aborted.
 ///
 /// # Errors
 /// The errors of reading a log.

@@ -50,7 +50,7 @@ pub struct VerificationDifference {
     pub line: usize,
     /// The recorded event, as a line of the log.
     pub recorded: String,
-    /// The event's line from running the session again; null if running it again gives no such event.
+    /// The event's line from running the session again; null if the repeated run gives no such event.
     pub again: Option<String>,
 }
 

@@ -93,7 +93,7 @@ pub struct SceneDisc {
     pub radius: f64,
     /// Label below the disc's centre; empty for no label.
     pub words: String,
-    /// Colour of the disc.
+    /// Colour in which the disc is drawn.
     pub colour: SceneColour,
 }
 
@@ -106,7 +106,7 @@ pub struct ScenePoint {
     pub radius_m: f64,
     /// Label beside the point; empty for no label.
     pub words: String,
-    /// Colour of the point.
+    /// Colour in which the point is drawn.
     pub colour: SceneColour,
 }
 
@@ -122,11 +122,11 @@ pub struct SceneSeries {
 /// Shape of the marks of a time series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkShape {
-    /// Crosses as marks.
+    /// The marks are crosses.
     Cross,
-    /// Filled circles as marks.
+    /// The marks are filled circles.
     Circle,
-    /// Diamonds as marks.
+    /// The marks are diamonds.
     Diamond,
 }
 

@@ -127,7 +127,7 @@ pub enum Event {
         /// Why the robot abandoned the press.
         reason: AbortReason,
     },
-    /// The robot becomes idle: it has no useful press.
+    /// The robot becomes idle: the robot has no useful press.
     RobotIdles {
         /// Why the robot is idle.
         reason: IdleReason,
@@ -247,8 +247,8 @@ pub enum Event {
         /// Names of the communication concepts that the wizard sees compared.
         concepts: Vec<ConceptName>,
     },
-    /// Recorded only (witness): the terminal lost or regained keyboard focus; without it no key arrives, including the
-    /// robot stop.
+    /// Recorded only (witness): the terminal lost or regained keyboard focus; without focus no key arrives, including
+    /// the robot stop.
     FocusLost,
     /// Recorded only (witness): the terminal has keyboard focus again.
     FocusRegained,

@@ -27,7 +27,7 @@ pub struct LogHeader {
     /// Index of the recorded trial: with the same seed, another index gives other orders and another participant.
     pub trial: u64,
     /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or the session time
-    /// of [`PreviousPart`]. Only live sessions have it.
+    /// of [`PreviousPart`]. Only live sessions have this time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub started: Option<String>,
     /// The earlier part of the session that this recording continues.

@@ -35,7 +35,7 @@ pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
     }
 }
 
-/// The reason for which the open offer closes now; `None` if it stays open.
+/// The reason for which the open offer closes now; `None` if the offer stays open.
 fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCloseReason> {
     match session.phase {
         TrialPhase::Running => {}

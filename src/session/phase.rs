@@ -7,7 +7,7 @@ use super::event::TrialEndReason;
 pub enum TrialPhase {
     /// The trial has not started.
     Ready,
-    /// The trial runs.
+    /// The trial is running: its clock goes.
     Running,
     /// The trial is paused: its clock stands still.
     Paused,

@@ -44,7 +44,7 @@ impl Session {
         }
     }
 
-    /// Why the present phase of the study protocol cannot be left yet; `None` if it can be left.
+    /// Why the present phase of the study protocol cannot be left yet; `None` if the phase can be left.
     pub fn phase_lacks(&self) -> Option<&'static str> {
         let protocol = self.protocol.as_ref()?;
         if self.aborted.is_some() {

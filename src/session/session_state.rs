@@ -53,7 +53,7 @@ pub struct Session {
     pub presses: [u32; 2],
     /// The orders that were served in the trial.
     pub served: Vec<ServedOrder>,
-    /// State of the robot.
+    /// Present state of the robot.
     pub robot: RobotStatus,
     /// The signal on the participant's display, if there is one.
     pub shown: Option<ShownSignal>,
@@ -109,7 +109,7 @@ pub struct ShownSignal {
     pub signal: Signal,
     /// The location that the signal is about; `None` for proposed presses.
     pub location: Option<LocationId>,
-    /// Who sent the signal.
+    /// Who sent the displayed signal.
     pub by: Sender,
     /// Session time at which the signal appeared.
     pub since: SessionTime,

@@ -27,7 +27,7 @@ pub enum TimelineEvent {
         agent: Agent,
         /// The pressed button, as an index into that agent's buttons.
         button: ButtonId,
-        /// Why the press had no effect, and the location that the reason is about; `None` if it had an effect.
+        /// Why the press had no effect, and the location that the reason is about; `None` if the press had an effect.
         no_effect: Option<(NoEffectReason, LocationId)>,
     },
     /// A signal appeared on the participant's display.

@@ -1,4 +1,4 @@
-//! The trial's clock: how the clock stops and continues. It stands still in pauses and freeze probes.
+//! The trial's clock: how the clock stops and continues. The clock stands still in pauses and freeze probes.
 
 use super::phase::TrialPhase;
 use super::session_state::Session;

@@ -11,7 +11,7 @@ pub struct TutorialPress {
     pub number: u32,
     /// The button that the participant pressed.
     pub button: ButtonId,
-    /// Whether the pressed button is the one that the tutorial step asks for.
+    /// Whether the pressed button is the button that the tutorial step asks for.
     pub is_right: bool,
     /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; `None` if
     /// the press has an effect.

@@ -62,7 +62,8 @@ pub struct ItemSummary {
 pub struct ScoreSummary {
     /// Name of the questionnaire that was scored.
     pub questionnaire: String,
-    /// Condition of the trial after which the questionnaire was asked; `None` if it was asked before the trials.
+    /// Condition of the trial after which the questionnaire was asked; `None` if the questionnaire was asked before the
+    /// trials.
     pub condition: Option<StudyArm>,
     /// Scores of the occasions on which a participant answered every item of the questionnaire.
     pub scores: Vec<f64>,

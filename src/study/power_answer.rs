@@ -81,7 +81,8 @@ pub struct RequiredSampleSize {
     /// Statistical test that needs this number of participants.
     #[serde(flatten)]
     pub test: PowerTest,
-    /// Least of the tried numbers of participants from which on the power is at least 0.8; null if it is not reached.
+    /// Least of the tried numbers of participants from which on the power is at least 0.8; null if the power is not
+    /// reached.
     pub participants: Option<usize>,
     /// Least of the tried numbers of participants from which on the lower end of the power's interval is at least 0.8;
     /// null if that is not reached.

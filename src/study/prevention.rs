@@ -52,7 +52,7 @@ pub struct FalseBeliefGroundTruth {
     pub aspect: AspectId,
     /// Session time at which the false belief began.
     pub began: SessionTime,
-    /// Session time at which the false belief ended; `None` if it lasted until the end of the trial.
+    /// Session time at which the false belief ended; `None` if the false belief lasted until the end of the trial.
     pub ended: Option<SessionTime>,
     /// Whether the false belief led to an error, which makes it an episode.
     pub harmful: bool,

@@ -162,7 +162,7 @@ pub struct QuestionnaireAnswer {
     pub share: Option<f64>,
     /// Whether the item was asked before the first trial, rather than after this trial.
     pub before: bool,
-    /// Score of the whole questionnaire on this occasion; `None` if it has no score.
+    /// Score of the whole questionnaire on this occasion; `None` if the questionnaire has no score.
     pub score: Option<f64>,
 }
 
@@ -211,7 +211,7 @@ impl TrialStatistics {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
 
-    /// Why the trial does not fit the study arm that the plan gave to it, in words; `None` if it fits.
+    /// Why the trial does not fit the study arm that the plan gave to it, in words; `None` if the trial fits.
     pub fn misfit(&self) -> Option<String> {
         let planned = self.planned_arm.filter(|planned| *planned != self.study_arm)?;
         let (planned, done) = (planned.title(), self.study_arm.title());

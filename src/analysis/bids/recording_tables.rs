@@ -84,7 +84,7 @@ impl RecordingTables {
         }
     }
 
-    /// Why the trial ended; `None` if it did not end.
+    /// Why the trial ended; `None` if the trial did not end.
     pub fn ended(&self) -> Option<TrialEndReason> {
         self.ended
     }

@@ -85,7 +85,7 @@ pub struct PhysicsWorld {
     links: Vec<RigidBodyHandle>,
     stick: Option<ColliderHandle>,
     buttons: Vec<PhysicalButton>,
-    /// The button that the stick can touch; the others are deactivated.
+    /// The button that the stick can touch; the other buttons are deactivated.
     active: Option<usize>,
     hand: Option<PhysicalHand>,
     table_m: f64,

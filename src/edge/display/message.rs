@@ -113,7 +113,7 @@ pub(super) enum MessageToPage {
     Pairing { why: &'static str, wait_s: u64 },
 }
 
-/// Parses a message of the page; `None` if it is malformed.
+/// Parses a message of the page; `None` if the message is malformed.
 pub fn read(text: &str) -> Option<MessageFromPage> {
     let message: MessageFromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;

@@ -58,7 +58,7 @@ pub enum RecordingWriteError {
         path: PathBuf,
         /// Damage of the log that was found, in words.
         found: String,
-        /// Folder to which the recording was saved; `None` if it could not be saved.
+        /// Folder to which the recording was saved; `None` if the recording could not be saved.
         saved: Option<PathBuf>,
     },
     /// Another program is writing this recording.

@@ -53,7 +53,7 @@ pub struct PupilFixation {
 /// Onset or offset of a blink, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilBlink {
-    /// Whether the lids closed (onset); false if they opened (offset).
+    /// Whether the lids closed (onset); false if the lids opened (offset).
     pub is_onset: bool,
     /// Capture's confidence in the blink, 0 to 1.
     pub confidence: f64,
@@ -211,7 +211,7 @@ fn confidence(item: &Value) -> Option<f64> {
     number(item, "confidence").filter(|value| (0.0..=1.0).contains(value))
 }
 
-/// The Pupil time of a datum, in seconds from an arbitrary origin; `None` if it does not fit into nanoseconds.
+/// The Pupil time of a datum, in seconds from an arbitrary origin; `None` if the time does not fit into nanoseconds.
 fn time(item: &Value) -> Option<f64> {
     number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
 }

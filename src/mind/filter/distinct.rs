@@ -24,7 +24,7 @@ pub struct DistinctWorlds {
 struct RatedWorld {
     world: World,
     draws: u32,
-    /// Costs to go of the decision in the world; `None` until they are computed.
+    /// Costs to go of the decision in the world; `None` until the costs are computed.
     costs: Option<WorldCosts>,
 }
 

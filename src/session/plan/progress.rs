@@ -196,7 +196,7 @@ impl PlannedTrialProgress {
         self.recordings.last().map_or(0, |last| last.attempt)
     }
 
-    /// The recording that this planned trial still needs; `None` if it is done.
+    /// The recording that this planned trial still needs; `None` if the trial is done.
     fn next(&self, slot: usize) -> Option<NextRecording> {
         let attempt = self.attempts() + 1;
         match self.recordings.last() {

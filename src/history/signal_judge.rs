@@ -46,8 +46,8 @@ pub struct SignalJudge {
     beliefs: Vec<Standing>,
     wizard: SignalJudgementCounts,
     assistant: SignalJudgementCounts,
-    /// Who sent the last signal, the wizard or the assistant; `None` before the first signal of the trial, and after the
-    /// last signal was taken back.
+    /// Who sent the last signal, the wizard or the assistant; `None` before the first signal of the trial, and after
+    /// the last signal was taken back.
     last: Option<Sender>,
 }
 

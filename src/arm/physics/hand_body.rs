@@ -92,13 +92,17 @@ impl PhysicalHand {
         bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
     }
 
+    /// Overlap of the hand with the table in metres; 0 above it.
+    pub fn depth_in_table_m(&self, bodies: &RigidBodySet) -> f64 {
+        (self.table_m + HAND_M - self.place(bodies).at_m.z).max(0.0)
+    }
+
     /// Applies the forces of a physics step to the hand: the spring of the person's arm, and the contact with the robot
     /// (newtons).
     pub fn push(&self, bodies: &mut RigidBodySet, by_robot_n: Vector3<f64>) {
         let at_m = self.place(bodies).at_m;
         let away = self.wanted.at_m - at_m;
-        let in_table_m = (self.table_m + HAND_M - at_m.z).max(0.0);
-        let by_table_n = Vector3::z() * (in_table_m * STIFFNESS_N_M);
+        let by_table_n = Vector3::z() * (self.depth_in_table_m(bodies) * STIFFNESS_N_M);
         let velocity = self.velocity_m_s(bodies);
         let Some(body) = bodies.get_mut(self.body) else { return };
         let force = away * HELD_N_M - velocity * HELD_NS_M + by_robot_n + by_table_n;

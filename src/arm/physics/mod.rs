@@ -1,5 +1,7 @@
-//! The robot arm, the buttons and the human's hand as bodies in the physics engine rapier with a fixed step.
+//! The robot arm, the buttons and the human's hand as bodies in the physics engine rapier.
 //!
+//! A cycle of the controller has a fixed number of physics steps: four of 2 ms where the arm can touch a button or the
+//! hand, else one of 8 ms. The choice follows from the state alone, so a session stays reproducible.
 //! The arm is a multibody from the URDF; each joint is driven by a motor that follows a commanded angle with no more
 //! torque than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a
 //! spring, which stands for the person's arm. The contact between hand and robot arm is a spring, too, as stiff as a
@@ -21,12 +23,12 @@ use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
 use hand_body::{HandPose, PhysicalHand, double, single};
 
-/// The fixed step of the physics, in seconds.
-pub const STEP_S: f64 = 0.002;
-/// Number of physics steps in a cycle of the controller.
-pub const STEPS_A_CYCLE: usize = 4;
 /// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
-pub const CYCLE_S: f64 = STEP_S * STEPS_A_CYCLE as f64;
+pub const CYCLE_S: f64 = 0.008;
+/// Number of physics steps in a cycle in which the arm can touch something: contacts and buttons need steps of 2 ms.
+const STEPS_AT_CONTACT: usize = 4;
+/// Number of physics steps in a cycle in which the arm moves through free air, with no hand near and above all buttons.
+const STEPS_IN_FREE_AIR: usize = 1;
 /// Number of iterations of the physics solver in each step; few iterations suffice, since the steps are short.
 const ITERATIONS: usize = 2;
 const GRAVITY_M_S2: f32 = -9.81;
@@ -134,7 +136,6 @@ impl PhysicsWorld {
         let mut world = PhysicsWorld {
             arm: arm.clone(),
             parameters: IntegrationParameters {
-                dt: STEP_S as f32,
                 num_solver_iterations: ITERATIONS,
                 max_ccd_substeps: 0,
                 ..IntegrationParameters::default()
@@ -223,8 +224,12 @@ impl PhysicsWorld {
         self.set_hand(hand);
         let near = self.hand().is_some_and(|hand| self.distance(&hand) < APART_M);
         let mut felt = ContactForces::default();
-        for step in 1..=STEPS_A_CYCLE {
-            let share = step as f64 / STEPS_A_CYCLE as f64;
+        let is_on_table = self.hand.is_some_and(|hand| hand.depth_in_table_m(&self.bodies) > 0.0);
+        let is_free = !near && !is_on_table && self.active.is_none();
+        let steps = if is_free { STEPS_IN_FREE_AIR } else { STEPS_AT_CONTACT };
+        self.parameters.dt = (CYCLE_S / steps as f64) as f32;
+        for step in 1..=steps {
+            let share = step as f64 / steps as f64;
             self.drive(
                 &std::array::from_fn(|joint| before[joint] + (command[joint] - before[joint]) * share),
                 &before,
@@ -251,7 +256,7 @@ impl PhysicsWorld {
     fn force_on(&self, button: usize) -> f64 {
         let Some(stick) = self.stick else { return 0.0 };
         let pair = self.narrow_phase.contact_pair(stick, self.buttons[button].collider());
-        pair.map_or(0.0, |pair| f64::from(pair.total_impulse_magnitude()) / STEP_S)
+        pair.map_or(0.0, |pair| f64::from(pair.total_impulse_magnitude() / self.parameters.dt))
     }
 
     fn set_hand(&mut self, hand: Option<HandPose>) {

@@ -2,11 +2,12 @@
 //! in a physics simulation with a human hand beside it. The simulated UR5 needs the feature `physics`.
 //!
 //! `worker` makes the robot's presses with either arm. The timed arm draws the duration of a press. The simulated UR5
-//! has a controller at 125 Hz over the physics engine rapier, in steps of 2 ms near contacts and of 8 ms elsewhere. The path of the UR5 to a button
-//! is planned before the motion starts (up, across, down; cubic legs with a quintic time law) and checked against
-//! table, own links and obstacles. Slowing down only stretches the time along the path, so the arm never leaves a
-//! checked path. Contact with the hand, and between hand and table, are springs with the stiffness of a hand, computed
-//! beside the physics, because the peak force of a rigid contact would depend on the step.
+//! has a controller at 125 Hz over the physics engine rapier, in steps of 2 ms near contacts and of 8 ms elsewhere.
+//! The path of the UR5 to a button is planned before the motion starts (up, across, down; cubic legs with a quintic
+//! time law) and checked against table, own links and obstacles. Slowing down only stretches the time along the
+//! path, so the arm never leaves a checked path. Contact with the hand, and between hand and table, are springs
+//! with the stiffness of a hand, computed beside the physics, because the peak force of a rigid contact would
+//! depend on the step.
 //!
 //! Control cycles are internal events of the session and happen only while the arm moves, is about to move, or the hand
 //! moves. Above the button, the program decides again whether the press is still useful. A press is a click of the

@@ -18,7 +18,7 @@ mod work_ahead;
 use std::sync::Arc;
 
 use self::lattice::{PER_DECISION, QuasiRandomLattice};
-use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState, UnreadSignal};
+use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState};
 use self::rollout_robot::RobotPolicy;
 use self::sample::BeliefSamples;
 use self::tally::PairedDifferences;
@@ -56,9 +56,8 @@ pub struct Planner {
     samples: BeliefSamples,
     baseline: BaselineRollout,
     state: RolloutState,
-    /// Weighted worlds that represent the human's belief, without a signal and with one.
+    /// Weighted worlds that represent the human's belief.
     believed: WeightedWorlds<u32>,
-    signalled: WeightedWorlds<u32>,
     draws: Vec<RolloutDraws>,
 }
 
@@ -90,7 +89,6 @@ impl Planner {
             baseline: BaselineRollout::default(),
             state: RolloutState::default(),
             believed: WeightedWorlds::default(),
-            signalled: WeightedWorlds::default(),
             draws: Vec::new(),
             kitchen,
             spec,
@@ -145,15 +143,13 @@ impl Planner {
             other_looks: -(-self.looking.other_looks_hz * model.human_press_s).exp_m1(),
             capture: self.looking.capture,
         };
-        let mut rollout = Rollout { context: &context, cost, policy: &mut self.policy, draws: &self.draws, first_s };
+        let read_s = situation.forecast.delay_s;
+        let mut rollout =
+            Rollout { context: &context, cost, policy: &mut self.policy, draws: &self.draws, first_s, read_s };
         let mut is_baseline_known = false;
         for candidate in candidates.iter_mut().filter(|candidate| !candidate.is_decided) {
-            self.signalled.copy_from(&self.believed);
-            let mut changed = false;
-            for &aspect in &candidate.aspects {
-                changed |= self.signalled.learn(&self.kitchen, aspect, situation.state);
-            }
-            if !changed {
+            let is_known = |&aspect: &AspectId| self.believed.are_certain_of(&self.kitchen, aspect, situation.state);
+            if candidate.aspects.iter().all(is_known) {
                 candidate.tally.add(0.0, None);
                 continue;
             }
@@ -162,11 +158,7 @@ impl Planner {
                 rollout.baseline(&mut self.state, &mut self.baseline);
                 is_baseline_known = true;
             }
-            let unread = (situation.forecast.delay_s > 0.0)
-                .then_some(UnreadSignal { aspects: &candidate.aspects, read_s: situation.forecast.delay_s });
-            let worlds = if unread.is_some() { &self.believed } else { &self.signalled };
-            self.state.begin(&self.kitchen, situation, worlds, sees);
-            let outcome = rollout.with_signal(&mut self.state, unread, &self.baseline);
+            let outcome = rollout.with_signal(&mut self.state, &candidate.aspects, &self.baseline);
             // A human who misses the signal saves exactly nothing by the signal.
             let saved = candidate.probability * f64::from(self.baseline.value - outcome.value);
             candidate.tally.add(saved, outcome.diverged);

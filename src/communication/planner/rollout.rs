@@ -95,6 +95,11 @@ pub struct RolloutState {
 pub struct BaselineRollout {
     states: Vec<RolloutState>,
     choices: Vec<HumanChoice>,
+    /// Index of the decision before which the human reads a signal. Up to the decision before that one, rollouts with a
+    /// signal are the same as the baseline.
+    reading_before: usize,
+    /// State of the rollout after the last decision that a signal cannot change.
+    unread: RolloutState,
     /// Number of presses of both agents up to the horizon, plus the cost to go from there.
     pub value: i32,
 }
@@ -148,15 +153,6 @@ impl RolloutState {
     }
 }
 
-/// A signal that the human of the rollout will read.
-#[derive(Clone, Copy, Debug)]
-pub struct UnreadSignal<'a> {
-    /// The state aspects of which the human becomes certain by reading the signal.
-    pub aspects: &'a [AspectId],
-    /// Time at which the human reads the signal, in seconds since the start of the rollout.
-    pub read_s: f64,
-}
-
 /// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
     /// The data that all rollouts for one recommendation share.
@@ -169,13 +165,20 @@ pub struct Rollout<'a> {
     pub draws: &'a [RolloutDraws],
     /// Time of the human's first decision, in seconds since the start of the rollout.
     pub first_s: f64,
+    /// Time at which the human reads a signal, in seconds since the start of the rollout.
+    pub read_s: f64,
 }
 
 impl Rollout<'_> {
     /// Runs the rollout without a signal and stores its states and the human's choices.
     pub fn baseline(&mut self, state: &mut RolloutState, baseline: &mut BaselineRollout) {
         baseline.choices.clear();
+        let is_unread = |step: &usize| self.decision_s(*step) < self.read_s;
+        baseline.reading_before = (0..self.draws.len()).take_while(is_unread).count();
         for step in 0..self.draws.len() {
+            if step == baseline.reading_before {
+                baseline.unread.copy_from(state);
+            }
             self.until_decision(state, step, &mut None);
             if baseline.states.len() == step {
                 baseline.states.push(RolloutState::default());
@@ -187,19 +190,23 @@ impl Rollout<'_> {
         baseline.value = self.value(state);
     }
 
-    /// Runs the rollout with a signal, paired with the baseline; the signal is in the state's worlds already, or is
-    /// still `unread`. The rollout stops once the signal is read and both rollouts are in the same state.
+    /// Runs the rollout with a signal that makes these aspects certain, paired with the baseline, from the last decision
+    /// before the signal is read. The rollout stops once both rollouts are in the same state.
     pub fn with_signal(
         &mut self,
         state: &mut RolloutState,
-        unread: Option<UnreadSignal>,
+        aspects: &[AspectId],
         baseline: &BaselineRollout,
     ) -> RolloutOutcome {
-        let (mut unread, mut diverged) = (unread, None);
-        for step in 0..self.draws.len() {
+        let (mut unread, mut diverged) = (Some(aspects), None);
+        if baseline.reading_before == self.draws.len() {
+            return RolloutOutcome { value: baseline.value, diverged };
+        }
+        state.copy_from(&baseline.unread);
+        for step in baseline.reading_before..self.draws.len() {
             self.until_decision(state, step, &mut unread);
             let unsignalled = &baseline.states[step];
-            if unread.is_none() && state.continues_like(unsignalled) {
+            if state.continues_like(unsignalled) {
                 return RolloutOutcome { value: baseline.value + state.presses - unsignalled.presses, diverged };
             }
             let choice = self.decide(state, step);
@@ -215,18 +222,23 @@ impl Rollout<'_> {
         state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
-    /// Lets the human read a signal whose reading is due by `now_s`.
-    fn read_by(&self, now_s: f64, state: &mut RolloutState, unread: &mut Option<UnreadSignal>) {
-        if let Some(signal) = unread.take_if(|signal| signal.read_s <= now_s) {
-            for &aspect in signal.aspects {
+    /// Time of a decision of the human, in seconds since the start of the rollout.
+    fn decision_s(&self, step: usize) -> f64 {
+        self.first_s + step as f64 * self.context.model.human_press_s
+    }
+
+    /// Lets the human read an unread signal, given by the aspects that it makes certain, if it is read by `now_s`.
+    fn read_by(&self, now_s: f64, state: &mut RolloutState, unread: &mut Option<&[AspectId]>) {
+        if let Some(aspects) = unread.take_if(|_| self.read_s <= now_s) {
+            for &aspect in aspects {
                 state.worlds.learn(self.context.kitchen, aspect, state.kitchen);
             }
         }
     }
 
     /// Runs the robot until the human's next decision; the human may read a signal meanwhile.
-    fn until_decision(&mut self, state: &mut RolloutState, step: usize, unread: &mut Option<UnreadSignal>) {
-        let until_s = self.first_s + step as f64 * self.context.model.human_press_s;
+    fn until_decision(&mut self, state: &mut RolloutState, step: usize, unread: &mut Option<&[AspectId]>) {
+        let until_s = self.decision_s(step);
         let mut presses = 0;
         if state.is_still {
             self.read_by(until_s, state, unread);

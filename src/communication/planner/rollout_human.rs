@@ -15,29 +15,33 @@ use crate::mind::choice::{ChoiceModel, ChoiceWeights};
 const FEW_DRAWS: u32 = 8;
 
 impl WeightedWorlds<u32> {
-    /// Sets a state aspect to its true value in all worlds; returns whether a world changed.
-    pub fn learn(&mut self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
-        let mut changed = false;
+    /// Whether a state aspect has its true value in all worlds.
+    pub fn are_certain_of(&self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
         match kitchen.aspects[aspect.index()].kind {
             AspectKind::Location(location) => {
                 let code = truth.code(location);
-                for one in self.all.iter_mut().filter(|one| one.world.state.code(location) != code) {
-                    one.world.state.set_code(location, code);
-                    changed = true;
-                }
+                self.all.iter().all(|one| one.world.state.code(location) == code)
             }
             AspectKind::Recipe(dish) => {
                 let stack: ContentId = kitchen.dish(dish).stack();
-                for one in self.all.iter_mut().filter(|one| one.world.recipes.get(dish) != stack) {
-                    one.world.recipes.set(dish, stack);
-                    changed = true;
-                }
+                self.all.iter().all(|one| one.world.recipes.get(dish) == stack)
             }
         }
-        if changed {
-            self.merge();
+    }
+
+    /// Sets a state aspect to its true value in all worlds; returns whether a world changed.
+    pub fn learn(&mut self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
+        if self.are_certain_of(kitchen, aspect, truth) {
+            return false;
         }
-        changed
+        for WeightedWorld { world, .. } in &mut self.all {
+            match kitchen.aspects[aspect.index()].kind {
+                AspectKind::Location(location) => world.state.set_code(location, truth.code(location)),
+                AspectKind::Recipe(dish) => world.recipes.set(dish, kitchen.dish(dish).stack()),
+            }
+        }
+        self.merge();
+        true
     }
 
     /// Conditions the worlds on the human's own press and on whether the press was effective. If no world is consistent

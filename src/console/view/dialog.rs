@@ -29,24 +29,29 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
-        Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
+        Some(Dialog::EndTrial) => {
+            let yes = yes_keys(model, &KeyAction::EndTrial);
+            ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], &yes);
+        }
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
                 _ if model.lesson.is_some() => &["The training ends without a saved result."],
                 TrialPhase::Running | TrialPhase::Paused => {
-                    &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
+                    &["The trial is not over: quitting ends it.", "The session ends, the recording is kept."]
                 }
                 _ if !session.is_step_done() => {
                     &["This step of the study is not complete.", "It can be continued or repeated."]
                 }
                 _ => &["The session ends, the recording is kept."],
             };
-            let is_running = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
-            let again = model.keys.chord_for(&KeyAction::Quit).filter(|_| !is_running);
-            let yes = again.map_or("y".to_string(), |chord| format!("y or {chord}"));
-            ask(brush, screen, "Quit tomcom?", lines, &yes);
+            ask(brush, screen, "Quit tomcom?", lines, &yes_keys(model, &KeyAction::Quit));
         }
     }
+}
+
+/// The keys that answer a question with yes: y, and the key that opened the question.
+fn yes_keys(model: &ConsoleModel, action: &KeyAction) -> String {
+    model.keys.chord_for(action).map_or("y".to_string(), |chord| format!("y or {chord}"))
 }
 
 /// Draws a yes-or-no question with the keys that answer it.
@@ -162,6 +167,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.levels[3], "joint angles of the arm, from the base on"),
         (signs.pause, "trial paused; robot held"),
         ("*", "typed note"),
+        (signs.cursor, "selected row of a list"),
         ("!", "keyboard focus was lost"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()

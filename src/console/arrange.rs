@@ -257,11 +257,12 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
         area: storage.display,
         owner: Some(storage.agent),
         // Columns for a space before the storage's name and for its key; the robot's storage keeps a gap to its right
-        // neighbour.
+        // neighbour where there is room.
         min_columns: storage.label.chars().count() as u16
             + match storage.agent {
                 Agent::Human if with_keys => 4,
                 Agent::Human => 1,
+                Agent::Robot if with_keys => 1,
                 Agent::Robot => 2,
             },
     };

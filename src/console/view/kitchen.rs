@@ -339,9 +339,10 @@ impl<'a> Place<'a> {
             let (x, y) = if room.height > 1 { (room.x, room.y + 1) } else { (end + 1, room.y) };
             let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
             let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
+            let short = [FALSE_BELIEF, "false"].into_iter().find(|words| width(words) <= left);
             let lines = match room.height {
-                // In a single line, the believed value stands only in the line of the belief.
-                1 if width(thinks) > left => vec![FALSE_BELIEF.to_string()],
+                // In a single line, the believed value may have room only in the line of the belief.
+                1 if width(thinks) > left => short.into_iter().map(str::to_string).collect(),
                 _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
             };
             for (row, line) in lines.iter().enumerate() {

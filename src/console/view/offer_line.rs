@@ -126,7 +126,12 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let Some(offer) = shown(session, model) else {
         let style = brush.style(TextRole::Quiet);
-        let lines = wrap(&silence(session, model), area.width.saturating_sub(2));
+        let (words, columns) = (silence(session, model), area.width.saturating_sub(2));
+        // What the best signal would be has a line of its own where there is one.
+        let lines: Vec<String> = match area.height {
+            1 => vec![words.join("; ")],
+            _ => words.iter().flat_map(|words| wrap(words, columns)).collect(),
+        };
         for (line, y) in lines.iter().zip(area.rows().map(|row| row.y)) {
             brush.text(area.x + 1, y, area.width - 1, line, style);
         }
@@ -156,32 +161,31 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
 }
 
-/// Why no signal is offered to the wizard, in words.
-fn silence(session: &Session, model: &ConsoleModel) -> String {
+/// Why no signal is offered to the wizard, in words: how many beliefs are false, and the best signal.
+fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
+    let only = |words: &str| vec![words.to_string()];
     if session.spec.trial.condition == Condition::Assistant {
-        return "The assistant sends the signals, without the wizard".to_string();
+        return only("The assistant sends the signals, without the wizard");
     }
     if !session.spec.asks_assistant() {
-        return "The assistant does not advise in this session (shadow = \"off\")".to_string();
+        return only("The assistant does not advise in this session (shadow = \"off\")");
     }
     match session.phase {
         TrialPhase::Running | TrialPhase::Paused => {}
-        TrialPhase::Ready => return "The assistant advises while the trial runs".to_string(),
-        TrialPhase::Over(_) | TrialPhase::Closed => return "The trial is over".to_string(),
+        TrialPhase::Ready => return only("The assistant advises while the trial runs"),
+        TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
     }
     let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefCorrectness::False).count();
-    match (wrong, too_little(session)) {
-        (0, None) => QUIET.to_string(),
-        (0, Some(best)) => format!("{QUIET}; {best}"),
-        (_, best) => {
-            let words = best.unwrap_or_else(|| "no signal is offered".to_string());
-            format!("{}; {words}", count(wrong as u64, "false belief", "false beliefs"))
-        }
-    }
+    let first = match wrong {
+        0 => QUIET.to_string(),
+        _ => count(wrong as u64, "false belief", "false beliefs"),
+    };
+    let best = best_signal(session).or((wrong > 0).then(|| "no signal is offered".to_string()));
+    [first].into_iter().chain(best).collect()
 }
 
 /// The best signal in words, where it would save something, but less than it costs.
-fn too_little(session: &Session) -> Option<String> {
+fn best_signal(session: &Session) -> Option<String> {
     let assistant = &session.spec.assistant;
     let options = session.advice.iter().flat_map(|advice| &advice.options);
     let best = options.max_by(|one, other| one.net.total_cmp(&other.net))?;
@@ -190,11 +194,11 @@ fn too_little(session: &Session) -> Option<String> {
     }
     let (signal, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
     let why = match assistant.concept {
-        ConceptName::TomCom => format!("not worth its cost (saves {benefit:.1} presses, costs {price:.1})"),
-        ConceptName::Tom => format!("below the threshold (belief deviation {benefit:.2}, threshold {price:.2})"),
+        ConceptName::TomCom => format!("saves {benefit:.1}, costs {price:.1}"),
+        ConceptName::Tom => format!("deviation {benefit:.2} of {price:.2}"),
         ConceptName::Dev | ConceptName::None => return None,
     };
-    Some(format!("best signal: {signal}, {why}"))
+    Some(format!("best signal: {signal} ({why}): not worth it"))
 }
 
 /// The value that the participant falsely believes about a location, if any.

@@ -148,7 +148,6 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let whole_s = until.secs_since(since).max(1e-3);
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
-    let bar = 8.min(columns / 4);
     let by = if session.robot.driven_to.is_some() { " by wizard" } else { "" };
     if session.robot.arm.mode == SafetyMode::Safeguard {
         // The time that is left is unknown until the hand is gone.
@@ -156,6 +155,8 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         brush.parts(x, y, columns, &parts);
         return;
     }
+    // The name of the button has priority over the length of the bar.
+    let bar = 8.min(columns / 4).min(columns.saturating_sub(width(&label) + width(by) + 7));
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);

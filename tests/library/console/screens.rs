@@ -48,9 +48,11 @@ fn keys_of_places_look_like_keys_and_names_are_whole_at_the_least_size() {
         &["[a]assembly board", "[f]cutting board", "[b] rolling mat", "[e] rice"],
     ];
     for names in places {
-        let screen = stage.screen((80, 24));
-        for name in names {
-            assert!(screen.contains(name), "{name} in\n{screen}");
+        for size in [(80, 24), (120, 40)] {
+            let screen = stage.screen(size);
+            for name in names {
+                assert!(screen.contains(name), "{name} in\n{screen}");
+            }
         }
         stage.key(KeyCode::Tab);
     }

@@ -136,11 +136,21 @@ impl Line<'_> {
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
-            Line::Key(binding) => HELP_INDENT + width(&binding.help),
+            Line::Key(binding) => key_indent(binding) + width(&binding.help),
             Line::Sign(_, meaning) => HELP_INDENT + width(meaning),
             Line::Space => 0,
         }
     }
+}
+
+/// Name of a binding's first key.
+fn key_name(binding: &KeyBinding) -> String {
+    binding.chords.first().map(KeyChord::to_string).unwrap_or_default()
+}
+
+/// Indent of the description of a key, in characters; more than usual after a key with a long name.
+fn key_indent(binding: &KeyBinding) -> u16 {
+    HELP_INDENT.max(width(&key_name(binding)) + 1)
 }
 
 /// Legend of the signs that the console's panels use.
@@ -228,15 +238,15 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
             brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, TextRole::Text)]);
         }
         Line::Key(binding) => {
-            let key = binding.chords.first().map(KeyChord::to_string).unwrap_or_default();
+            let (key, indent) = (key_name(binding), key_indent(binding));
             let role = match binding.layer {
                 Some(KeyLayer::Wizard) => TextRole::Signal,
                 Some(KeyLayer::Participant) => TextRole::Human,
                 None => TextRole::Strong,
             };
             let style = brush.style(role);
-            brush.text(x + 6 - width(&key).min(6), y, 6, &key, style);
-            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(&binding.help, TextRole::Text)]);
+            brush.text_right(x + indent - 1, y, indent - 1, &key, style);
+            brush.parts(x + indent, y, columns.saturating_sub(indent), &[(&binding.help, TextRole::Text)]);
         }
     }
 }

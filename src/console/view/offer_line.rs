@@ -176,11 +176,12 @@ fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
         TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
     }
     let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefCorrectness::False).count();
-    let first = match wrong {
-        0 => QUIET.to_string(),
-        _ => count(wrong as u64, "false belief", "false beliefs"),
+    let best = best_signal(session);
+    let first = match (wrong, &best) {
+        (0, _) => QUIET.to_string(),
+        (_, Some(_)) => count(wrong as u64, "false belief", "false beliefs"),
+        (_, None) => format!("{}, no signal is offered", count(wrong as u64, "false belief", "false beliefs")),
     };
-    let best = best_signal(session).or((wrong > 0).then(|| "no signal is offered".to_string()));
     [first].into_iter().chain(best).collect()
 }
 

@@ -8,14 +8,22 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use crate::base::printable::printable;
 use crate::edge::log::LOG_NAME;
 
-/// Adds to the message about an unknown command which command takes a file of this name; other messages, and those that
-/// name a similar command, stay as they are.
+/// Adds to the message about an unknown command which command takes a file of this name; other messages, and those about
+/// a word that is like a command, stay as they are.
 pub(super) fn add(mut error: clap::Error) -> clap::Error {
-    if error.kind() != ErrorKind::InvalidSubcommand || error.get(ContextKind::SuggestedSubcommand).is_some() {
+    if error.kind() != ErrorKind::InvalidSubcommand {
         return error;
     }
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+    let is_path = Path::new(word).exists() || word.contains(['/', '.']);
     let hint = StyledStr::from(hint(&printable(word)));
+    if error.get(ContextKind::SuggestedSubcommand).is_some() {
+        if !is_path {
+            return error;
+        }
+        // No command has such a name, however similar one is.
+        error.remove(ContextKind::SuggestedSubcommand);
+    }
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint]));
     error
 }

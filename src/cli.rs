@@ -3,6 +3,7 @@
 mod args;
 mod choices;
 mod cohorts;
+mod command_hint;
 mod data;
 mod estimates;
 mod exports;
@@ -65,7 +66,7 @@ const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 pub fn main() -> ExitCode {
     // Lines of messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
-    let cli = Cli::parse();
+    let cli = Cli::try_parse().unwrap_or_else(|error| command_hint::add(error).exit());
     let command = cli.command.unwrap_or(CliCommand::Operate(operate::OperateArgs {
         session: None,
         recording: None,

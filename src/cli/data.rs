@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use super::list::each_chosen;
-use super::output::{OutputFormat, print, progress, put_aside};
+use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::code_exchange;
@@ -60,14 +60,14 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
 pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
     check_rater(rater)?;
     check_terminal()?;
-    Ok(review_console::rate(recording, rater)?)
+    Ok(put(&format!("{}\n", review_console::rate(recording, rater)?))?)
 }
 
 /// Lets two raters settle, at the console, the errors that they coded differently.
 pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure> {
     let [one, other] = two_raters(raters, "--settle")?;
     check_terminal()?;
-    Ok(review_console::settle(recording, [&one, &other])?)
+    Ok(put(&format!("{}\n", review_console::settle(recording, [&one, &other])?))?)
 }
 
 /// Parses the names of two different raters from the values of an option.

@@ -194,6 +194,11 @@ impl KitchenMap {
 }
 
 impl KitchenMapBox {
+    /// The column after the box and the gap that follows it, where the next box begins.
+    pub fn right(&self) -> u16 {
+        (self.screen.0[0][1] as u16).max(self.cells.right())
+    }
+
     /// Pairs of wall display coordinate and terminal coordinate along one axis, between which coordinates are
     /// interpolated.
     fn knots(&self, axis: usize) -> [(f64, f64); 4] {
@@ -239,8 +244,8 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
         // Columns beside a location's name for rule, key and gap (the participant's hand seldom has a key); orders
         // stand in a strip of their own.
         let beside = match location.kind {
-            LocationKind::Hand(Agent::Human) => own_hand,
-            // Without brackets around a location's key, there is room for the keys of the storage.
+            LocationKind::Hand(Agent::Human) => own_hand + u16::from(with_keys),
+            // Without the gap, there is room for the keys of the storage.
             _ if with_keys => 4,
             _ => 5,
         };
@@ -252,11 +257,12 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
         area: storage.display,
         owner: Some(storage.agent),
         // Columns for a space before the storage's name and for its key; the robot's storage keeps a gap to its right
-        // neighbour.
+        // neighbour where there is room.
         min_columns: storage.label.chars().count() as u16
             + match storage.agent {
                 Agent::Human if with_keys => 4,
                 Agent::Human => 1,
+                Agent::Robot if with_keys => 1,
                 Agent::Robot => 2,
             },
     };

@@ -125,7 +125,8 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             model.dialog = Some(Dialog::Palette(ListCursor::default()));
             None
         }
-        // A replay can be left without a question, for nothing is lost; a wizard training asks first.
+        // A replay can be left without a question, for nothing is lost, and a rater's codes are saved after every key;
+        // a wizard training asks first.
         KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
         KeyAction::Quit if session.phase == TrialPhase::Closed => Some(ConsoleCommand::Quit),
         KeyAction::Quit => {

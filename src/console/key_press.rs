@@ -223,9 +223,8 @@ fn answer(
         Dialog::EndTrial => action == Some(KeyAction::EndTrial),
         _ => false,
     };
-    // A second press of the key that opened the question does not confirm the end of a running trial.
-    let goes_on = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
-    if again && (goes_on || touch == KeyPressKind::Again) {
+    // The key that opened the question answers it with yes, but not while it may still be held down.
+    if again && touch == KeyPressKind::Again {
         return None;
     }
     model.dialog = None;

@@ -48,6 +48,8 @@ pub struct Playback {
     pub speed: usize,
     /// Session time of the last known event of the recording.
     pub length: SessionTime,
+    /// Time on the trial's clock at the end of the recording, as far as it is known.
+    pub trial_length: SessionTime,
     /// Number of events of the recording up to the replay's position.
     pub event: usize,
     /// Number of events in the recording, as far as they are known.
@@ -70,6 +72,7 @@ impl Playback {
             playing: false,
             speed: 2,
             length: SessionTime::ZERO,
+            trial_length: SessionTime::ZERO,
             event: 0,
             events: 0,
             follows: false,

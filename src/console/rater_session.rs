@@ -40,6 +40,8 @@ pub struct RaterSession {
     pub finished: Vec<String>,
     /// Row of the error list that the arrow keys have selected, while the replay does not stand at that error.
     pub chosen: Option<usize>,
+    /// Whether all codes are saved beside the log.
+    pub is_saved: bool,
     /// Codes of the errors at the time when the recording was opened.
     opened: RaterCodes,
     done: Vec<CodeChange>,
@@ -51,7 +53,7 @@ impl RaterSession {
     pub fn new(party: CodingRaters, errors: Vec<ListedError>, codes: RaterCodes) -> RaterSession {
         let opened = codes.clone();
         let (done, undone) = (Vec::new(), Vec::new());
-        RaterSession { party, errors, codes, finished: Vec::new(), chosen: None, opened, done, undone }
+        RaterSession { party, errors, codes, finished: Vec::new(), chosen: None, is_saved: true, opened, done, undone }
     }
 
     /// Index of the last error among the first `events` events of the recording, where the replay stands.

@@ -152,7 +152,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         KeyAction::Hand(ManualAction::NoteInWords),
         MARKERS,
         help,
-        None,
+        Some("type note"),
     )));
     lines.extend(buttons(kitchen));
     lines.extend(looks(&[KeyChord::ctrl('w')]));
@@ -191,7 +191,7 @@ pub fn replay() -> Vec<KeyBinding> {
         ("seek_back", plain(PageUp), ReplayAction::SeekBack, "ten seconds back", None),
         ("faster", [KeyChord::char('+')], ReplayAction::Faster, "play faster", Some("speed")),
         ("slower", [KeyChord::char('-')], ReplayAction::Slower, "play slower", None),
-        ("to_start", plain(Home), ReplayAction::ToStart, "to the beginning", None),
+        ("to_start", plain(Home), ReplayAction::ToStart, "to the beginning, before the trial", None),
         ("to_end", plain(End), ReplayAction::ToEnd, "to the end; follows a growing recording", Some("start/end")),
     ];
     let of_move =

@@ -12,3 +12,15 @@ pub enum ReplayLandmark {
     /// A false belief about a state aspect began in the belief estimate.
     FalseBelief,
 }
+
+impl ReplayLandmark {
+    /// The kind of landmark in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            ReplayLandmark::Error => "error",
+            ReplayLandmark::Signal => "signal",
+            ReplayLandmark::Marker => "marker",
+            ReplayLandmark::FalseBelief => "false belief",
+        }
+    }
+}

@@ -22,7 +22,7 @@ pub enum SafetyMode {
     Reduced,
     /// The arm stopped after a contact, and stays where it is until the wizard releases it.
     ProtectiveStop,
-    /// A hand is in the arm's way: the arm waits until the hand is gone.
+    /// A hand is in the way of the arm: the arm stands until the hand is gone (speed and separation monitoring).
     Safeguard,
     /// The wizard stopped the arm.
     EmergencyStop,
@@ -37,7 +37,7 @@ impl SafetyMode {
             SafetyMode::Normal => "NORMAL",
             SafetyMode::Reduced => "REDUCED",
             SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
-            SafetyMode::Safeguard => "SAFEGUARD",
+            SafetyMode::Safeguard => "SAFEGUARD STOP",
             SafetyMode::EmergencyStop => "EMERGENCY STOP",
             SafetyMode::Fault => "FAULT",
         }

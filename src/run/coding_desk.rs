@@ -87,6 +87,19 @@ pub(super) fn greeting(session: &RaterSession) -> String {
     }
 }
 
+/// Message when the raters have left the recording: what they coded, and where it is saved. Saves codes that could not
+/// be saved before.
+///
+/// # Errors
+/// The folder cannot be written to.
+pub(super) fn farewell(film: &SeekableReplay, session: &RaterSession) -> Result<String, RecordingWriteError> {
+    if !session.is_saved {
+        save(film, session)?;
+    }
+    let folder = film.replay.log().folder().display();
+    Ok(format!("{}: {}; all codes are saved in {folder}", session.name(), session.progress()))
+}
+
 /// Saves the raters' codes beside the log.
 ///
 /// # Errors

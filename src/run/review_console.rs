@@ -20,6 +20,7 @@ use crate::edge::key_file::key_map;
 use crate::edge::log::{LogEnding, RecordingLock};
 use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
+use crate::history::wording;
 use crate::session::Event;
 
 /// Longest time per frame that is spent on applying events at full speed.
@@ -35,50 +36,53 @@ const SEEK: SessionTime = SessionTime(10_000_000_000);
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
 pub fn review(recording: &Path, follow: bool, compare: Option<&ComparisonRequest>) -> Result<(), ReviewError> {
-    // The console begins at once and reads the rest of the recording meanwhile; a running session is shown at its end.
-    let film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
-    at_desk(film, recording, follow, compare, None)
+    // The console begins at once, and the rest is read beside it; a running session is shown at its end.
+    let mut film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
+    film.read_to_trial()?;
+    at_desk(film, recording, follow, compare, None)?;
+    Ok(())
 }
 
-/// Opens a recording at the console for a rater, who codes the errors without seeing estimates, signals or condition;
-/// the rater's codes are saved beside the log after every key.
+/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition;
+/// codes are saved beside the log after every key. Returns what the rater has coded and where it is saved, in words.
 ///
 /// # Errors
-/// The recording or its codes cannot be read, another program codes as this rater, or there is no terminal.
-pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
+/// The recording or its codes cannot be read, another program codes as this rater, the codes cannot be saved, or there
+/// is no terminal.
+pub fn rate(recording: &Path, rater: &str) -> Result<String, ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &[rater])?;
     let coding = coding_desk::of_rater(&film, rater)?;
-    at_desk(film, recording, false, None, Some(coding))
+    at_desk(film, recording, false, None, Some(coding))?.end_coding()
 }
 
-/// Opens a recording at the console for two raters, who settle together what they coded differently; the raters'
-/// consensus is saved beside the log after every key.
+/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus
+/// is saved beside the log after every key. Returns what the raters have settled and where it is saved, in words.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording
 /// already, the consensus cannot be written, or there is no terminal.
-pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<(), ReviewError> {
+pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<String, ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &raters)?;
     let coding = coding_desk::of_pair(&film, raters)?;
-    at_desk(film, recording, false, None, Some(coding))
+    at_desk(film, recording, false, None, Some(coding))?.end_coding()
 }
 
-/// Shows a recording at an operator's desk without devices, until the wizard leaves it.
+/// Shows a recording at an operator's desk without devices, until the wizard or rater leaves it.
 fn at_desk(
     film: SeekableReplay,
     recording: &Path,
     follow: bool,
     compare: Option<&ComparisonRequest>,
     coding: Option<RaterSession>,
-) -> Result<(), ReviewError> {
+) -> Result<Review, ReviewError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     runtime.block_on(async {
         let mut desk = OperatorDesk::without_devices(&film.session.spec.console)?;
         let mut review = Review::open(film, &desk, recording, follow, compare, coding)?;
         event_loop::run(&mut review, &mut desk).await?;
-        Ok(())
+        Ok(review)
     })
 }
 
@@ -135,6 +139,7 @@ impl Review {
             comparison,
         };
         review.tell(0);
+        review.stand_at(review.film.trial_start());
         let plays = review.model.coding.is_none();
         review.playback(|playback| playback.playing = plays);
         review.begin_coding();
@@ -173,18 +178,31 @@ impl Review {
         let error = coding.errors.iter().find(|error| error.press == press);
         let said = match (coding.next_step(), error) {
             (Some(next), _) => format!("saved; {next}"),
-            (None, Some(error)) => {
-                format!("saved: error {}, {}", error.error, RaterSession::words(coding.code(error)))
-            }
+            (None, Some(error)) => match coding.code(error) {
+                Some(code) => format!("saved: error {}, {}", error.error, wording::code(code)),
+                None => format!("saved: code of error {} removed", error.error),
+            },
             (None, None) => "saved".to_string(),
         };
-        match coding_desk::save(&self.film, coding) {
+        let saved = coding_desk::save(&self.film, coding);
+        if let Some(coding) = &mut self.model.coding {
+            coding.is_saved = saved.is_ok();
+        }
+        match saved {
             Ok(()) => self.model.say(NoticeLevel::Done, said),
             Err(error) => self.model.say(NoticeLevel::Alarm, format!("not saved: {error}")),
         }
     }
 
-    /// Goes to the first error that has no code yet, and shows a message about that error.
+    /// Saves codes that could not be saved before; returns what was coded and where it is saved, in words.
+    fn end_coding(self) -> Result<String, ReviewError> {
+        Ok(match &self.model.coding {
+            Some(coding) => coding_desk::farewell(&self.film, coding)?,
+            None => String::new(),
+        })
+    }
+
+    /// Goes to the first error without a code, and shows a message about it.
     fn begin_coding(&mut self) {
         let Some(coding) = &self.model.coding else { return };
         let said = coding_desk::greeting(coding);
@@ -216,7 +234,7 @@ impl Review {
             ReplayAction::PlayPause => {
                 let at_end = self.film.position == self.film.length().1 && !self.grows;
                 if at_end {
-                    self.stand_at(0);
+                    self.stand_at(self.film.trial_start());
                 }
                 self.playback(|playback| playback.playing = !playback.playing);
             }
@@ -258,13 +276,7 @@ impl Review {
             Some(position) => self.stand_at(position),
             None => {
                 let which = if forward { "further" } else { "earlier" };
-                let what = match what {
-                    ReplayLandmark::Error => "error",
-                    ReplayLandmark::Signal => "signal",
-                    ReplayLandmark::Marker => "marker",
-                    ReplayLandmark::FalseBelief => "false belief",
-                };
-                self.model.say(NoticeLevel::Refused, format!("no {which} {what}"));
+                self.model.say(NoticeLevel::Refused, format!("no {which} {}", what.name()));
             }
         }
     }
@@ -389,7 +401,8 @@ impl ConsoleShell for Review {
         self.model.belief.catch_up(&self.film.beliefs);
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
-        self.playback(|playback| *playback = Playback { length, event, events, cut, ..playback.clone() });
+        let trial_length = self.film.trial_length();
+        self.playback(|playback| *playback = Playback { length, trial_length, event, events, cut, ..playback.clone() });
     }
 
     fn view(&self) -> ShellView<'_> {

@@ -12,7 +12,7 @@ use crate::edge::file_error::FileResult;
 use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use crate::history::landmark::ReplayLandmark;
 use crate::session::settings::WizardVisibility;
-use crate::session::{Event, Session, TimestampedEvent, apply};
+use crate::session::{Event, Session, TimestampedEvent, TrialPhase, apply};
 
 /// Number of events between two snapshots of the session.
 const KEEP_EVERY: usize = 4096;
@@ -123,25 +123,7 @@ impl SeekableReplay {
     /// The errors of [`RecordingReplay::step`].
     pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
         let before = self.events.len();
-        while goes_on() {
-            let Some(event) = self.replay.step()? else {
-                self.unread_end = None;
-                break;
-            };
-            let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
-            let by_gaze = event.stamped.event.is_sample();
-            self.beliefs.note(BeliefSnapshot::new(
-                &session.kitchen,
-                session.state,
-                belief,
-                event.stamped.time,
-                by_gaze,
-            ));
-            self.events.push(event.stamped);
-            if self.events.len() == self.kept.len() * KEEP_EVERY {
-                self.kept.push(self.replay.session().clone());
-            }
-        }
+        while goes_on() && self.read_event()? {}
         let judged = &self.replay.follower.judged;
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
         self.errors.extend(new);
@@ -149,7 +131,34 @@ impl SeekableReplay {
         Ok(self.events.len() > before)
     }
 
-    /// Whether all events that the recording has for now were read.
+    /// Reads up to the start of the trial, or to the end of a recording without a trial. Before the trial there are no
+    /// presses, and so no errors.
+    ///
+    /// # Errors
+    /// Errors of [`RecordingReplay::step`].
+    pub fn read_to_trial(&mut self) -> FileResult<()> {
+        while self.replay.session().phase == TrialPhase::Ready && self.read_event()? {}
+        Ok(())
+    }
+
+    /// Reads the next event; returns whether there was one.
+    fn read_event(&mut self) -> FileResult<bool> {
+        let Some(event) = self.replay.step()? else {
+            self.unread_end = None;
+            return Ok(false);
+        };
+        let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
+        let by_gaze = event.stamped.event.is_sample();
+        let moment = BeliefSnapshot::new(&session.kitchen, session.state, belief, event.stamped.time, by_gaze);
+        self.beliefs.note(moment);
+        self.events.push(event.stamped);
+        if self.events.len() == self.kept.len() * KEEP_EVERY {
+            self.kept.push(self.replay.session().clone());
+        }
+        Ok(true)
+    }
+
+    /// Whether all events were read that the recording has for now.
     pub fn is_read(&self) -> bool {
         self.unread_end.is_none()
     }
@@ -172,7 +181,21 @@ impl SeekableReplay {
         self.unread_end.unwrap_or_else(|| (self.read_to(), self.events.len()))
     }
 
-    /// Session time of the last event that was read.
+    /// The time on the trial's clock at the end of the recording; what is not read yet counts as time of the trial.
+    pub fn trial_length(&self) -> SessionTime {
+        let (session, read) = (self.replay.session(), self.read_to());
+        let goes_on = matches!(session.phase, TrialPhase::Ready | TrialPhase::Running) && !self.is_read();
+        let unread = if goes_on { self.length().0 - read } else { SessionTime::ZERO };
+        session.trial_clock(read) + unread
+    }
+
+    /// Position after the events at the time of the trial's start; 0 in a recording without a trial.
+    pub fn trial_start(&self) -> usize {
+        let start = self.events.iter().find(|stamped| stamped.event == Event::TrialStarted);
+        start.map_or(0, |start| self.until(start.time))
+    }
+
+    /// The time of the last event that was read.
     pub fn read_to(&self) -> SessionTime {
         self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time)
     }

@@ -321,10 +321,10 @@ impl ConsoleShell for TrainingShell {
             lesson.score = format!("{} hit, {missed} missed, {wrong} wrong", measures.hits.unwrap_or(0));
         }
         self.model.now = self.now;
-        let (length, events) = self.film.length();
+        let ((length, events), trial_length) = (self.film.length(), self.film.trial_length());
         let event = self.film.position;
         if let Some(playback) = &mut self.model.playback {
-            *playback = Playback { length, event, events, ..playback.clone() };
+            *playback = Playback { length, trial_length, event, events, ..playback.clone() };
         }
     }
 

@@ -40,6 +40,12 @@ impl RobotStatus {
         self.stopped && !self.arm.mode.has_stopped_itself()
     }
 
+    /// The safety mode as screens name it: a stop by the wizard is an emergency stop also of the timed arm, which has no
+    /// safety modes of its own.
+    pub fn safety_mode(&self) -> SafetyMode {
+        if self.is_stopped_by_wizard() { SafetyMode::EmergencyStop } else { self.arm.mode }
+    }
+
     /// Records that the robot starts a press and will touch the button at `until`.
     pub(super) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime) {
         self.intention = Some((button, now, until));

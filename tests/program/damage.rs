@@ -61,7 +61,7 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     bad(&recording.join(LOG_NAME));
     terminal.see("RECORDING LOST");
     println!("{name}: alarm after {} ms", began.elapsed().as_millis());
-    terminal.see("ROBOT STOPPED");
+    terminal.see("EMERGENCY STOP");
     terminal.see("CLOSED");
     let after = terminal.log();
     let complete = before.rfind('\n').map_or("", |end| &before[..=end]);

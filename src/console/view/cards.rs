@@ -20,8 +20,9 @@ use crate::console::possible::can_redo;
 use crate::history::signal_judge::SignalJudgementCounts;
 use crate::history::wording;
 use crate::kitchen::{Agent, Dish};
-use crate::session::settings::{ParticipantKind, WizardVisibility};
-use crate::session::{Session, TrialPhase};
+use crate::robot::safety::SafetyMode;
+use crate::session::settings::{ArmKind, ParticipantKind, WizardVisibility};
+use crate::session::{Session, TimelineEvent, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
 const COLUMNS: u16 = 62;
@@ -116,6 +117,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
         fact("errors", errors, TextRole::Text),
     ];
     facts.extend(signals(session, model));
+    facts.extend(stops(session));
     facts.push(fact("time", format!("{clock}{paused}"), TextRole::Text));
     if let Some(practice) = session.protocol.as_ref().and_then(|protocol| protocol.practice.as_ref()) {
         let met = if practice.met { "met" } else { "not met, waived" };
@@ -131,6 +133,26 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     }
     keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
+}
+
+/// Lines of the card about stops of the simulated arm, in ISO's words; the timed arm cannot touch anybody.
+fn stops(session: &Session) -> Vec<Fact> {
+    if session.spec.robot.arm != ArmKind::Physics {
+        return Vec::new();
+    }
+    let number = |is_it: &dyn Fn(&TimelineEvent) -> bool| {
+        session.timeline.iter().filter(|entry| is_it(&entry.what)).count() as u64
+    };
+    let of_mode = |wanted| number(&|what| matches!(what, TimelineEvent::ArmStopped { mode, .. } if *mode == wanted));
+    let protective = count(of_mode(SafetyMode::ProtectiveStop), "protective stop", "protective stops");
+    let emergency = number(&|what| *what == TimelineEvent::RobotStopped);
+    let emergency = count(emergency, "emergency stop", "emergency stops");
+    let mut facts = vec![fact("robot", format!("{protective}, {emergency}"), TextRole::Text)];
+    let faults = of_mode(SafetyMode::Fault);
+    if faults > 0 {
+        facts.push(fact("", count(faults, "fault", "faults"), TextRole::Text));
+    }
+    facts
 }
 
 /// Lines of the card about signals: how many each sender sent, and how many of these were about a false belief, late,

@@ -155,7 +155,7 @@ fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &List
     let role = if mark == RowMark::None { TextRole::Text } else { TextRole::Strong };
     let sign = match mark {
         RowMark::Present => signs.to,
-        RowMark::Chosen => signs.by_hand,
+        RowMark::Chosen => signs.cursor,
         RowMark::None => " ",
     };
     brush.parts(line.x, line.y, 1, &[(sign, TextRole::Strong)]);

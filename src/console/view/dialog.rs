@@ -29,24 +29,29 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
-        Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
+        Some(Dialog::EndTrial) => {
+            let yes = yes_keys(model, &KeyAction::EndTrial);
+            ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], &yes);
+        }
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
                 _ if model.lesson.is_some() => &["The training ends without a saved result."],
                 TrialPhase::Running | TrialPhase::Paused => {
-                    &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
+                    &["The trial is not over: quitting ends it.", "The session ends, the recording is kept."]
                 }
                 _ if !session.is_step_done() => {
                     &["This step of the study is not complete.", "It can be continued or repeated."]
                 }
                 _ => &["The session ends, the recording is kept."],
             };
-            let is_running = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
-            let again = model.keys.chord_for(&KeyAction::Quit).filter(|_| !is_running);
-            let yes = again.map_or("y".to_string(), |chord| format!("y or {chord}"));
-            ask(brush, screen, "Quit tomcom?", lines, &yes);
+            ask(brush, screen, "Quit tomcom?", lines, &yes_keys(model, &KeyAction::Quit));
         }
     }
+}
+
+/// The keys that answer a question with yes: y, and the key that opened the question.
+fn yes_keys(model: &ConsoleModel, action: &KeyAction) -> String {
+    model.keys.chord_for(action).map_or("y".to_string(), |chord| format!("y or {chord}"))
 }
 
 /// Draws a yes-or-no question with the keys that answer it.
@@ -131,11 +136,21 @@ impl Line<'_> {
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
-            Line::Key(binding) => HELP_INDENT + width(&binding.help),
+            Line::Key(binding) => key_indent(binding) + width(&binding.help),
             Line::Sign(_, meaning) => HELP_INDENT + width(meaning),
             Line::Space => 0,
         }
     }
+}
+
+/// Name of a binding's first key.
+fn key_name(binding: &KeyBinding) -> String {
+    binding.chords.first().map(KeyChord::to_string).unwrap_or_default()
+}
+
+/// Indent of the description of a key, in characters; more than usual after a key with a long name.
+fn key_indent(binding: &KeyBinding) -> u16 {
+    HELP_INDENT.max(width(&key_name(binding)) + 1)
 }
 
 /// Legend of the signs that the console's panels use.
@@ -162,6 +177,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.levels[3], "joint angles of the arm, from the base on"),
         (signs.pause, "trial paused; robot held"),
         ("*", "typed note"),
+        (signs.cursor, "selected row of a list"),
         ("!", "keyboard focus was lost"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
@@ -222,15 +238,15 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
             brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, TextRole::Text)]);
         }
         Line::Key(binding) => {
-            let key = binding.chords.first().map(KeyChord::to_string).unwrap_or_default();
+            let (key, indent) = (key_name(binding), key_indent(binding));
             let role = match binding.layer {
                 Some(KeyLayer::Wizard) => TextRole::Signal,
                 Some(KeyLayer::Participant) => TextRole::Human,
                 None => TextRole::Strong,
             };
             let style = brush.style(role);
-            brush.text(x + 6 - width(&key).min(6), y, 6, &key, style);
-            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(&binding.help, TextRole::Text)]);
+            brush.text_right(x + indent - 1, y, indent - 1, &key, style);
+            brush.parts(x + indent, y, columns.saturating_sub(indent), &[(&binding.help, TextRole::Text)]);
         }
     }
 }

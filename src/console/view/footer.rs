@@ -44,14 +44,18 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
     }
-    // The hint for ending the trial is among the first to be left out if there is no room, since it is rarely needed;
-    // after the trial, the hints for the next step come first.
+    // The hints for ending the trial and for a typed note are the first to be left out if there is no room, since they
+    // are rarely needed; after the trial, the hints for the next step come first.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
-        false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(ViewAction::Next)),
+        false => matches!(
+            binding.action,
+            KeyAction::EndTrial | KeyAction::Look(ViewAction::Next) | KeyAction::Hand(ManualAction::NoteInWords)
+        ),
     };
-    let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
+    let (mut late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
+    late.sort_by_key(|binding| binding.action != KeyAction::Hand(ManualAction::NoteInWords));
     // The first hint is the robot stop, the second is the key back to all panels while one is at full size, then follow
     // a rater's keys.
     first.sort_by_key(|binding| match binding.action {
@@ -205,6 +209,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         },
         KeyAction::Move(ReplayAction::PlayPause) => Some(if plays { "pause" } else { "play" }),
         KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
+        KeyAction::Quit if model.coding.as_ref().is_some_and(|coding| coding.is_saved) => Some("quit (saved)"),
         // After the trial the robot rests, and the line of key hints offers only the next step.
         KeyAction::StopRobot
         | KeyAction::ResumeRobot

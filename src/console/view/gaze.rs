@@ -179,10 +179,12 @@ pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
         brush.text(x, y, 1, sign, style);
         return;
     }
-    // Text under the gaze stays readable: its letter is drawn inverse, and the gaze sign stands beside the name of the
-    // place.
+    // Text under the gaze stays readable: its letter is drawn inverse, and the gaze sign stands after the name of the
+    // place or, where there is no room, before it.
     brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
     if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
-        brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);
+        let after = spot.cells.right();
+        let beside = if brush.is_written(after, spot.cells.y) { spot.cells.x } else { after };
+        brush.text(beside, spot.cells.y, 1, sign, style);
     }
 }

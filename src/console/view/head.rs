@@ -176,25 +176,17 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
     if let Some(RerunStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
         healths.push((format!("RERUN {dropped} DROPPED"), TextRole::Alarm));
     }
+    let mode = session.robot.safety_mode();
     let robot = match (session.robot.stopped, session.robot.held) {
-        (true, _) => (stopped(session), TextRole::Alarm),
+        (true, _) => (mode.name(), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
-        (false, false) if session.robot.arm.mode == SafetyMode::Safeguard => ("ROBOT WAITS", TextRole::Strong),
+        (false, false) if mode == SafetyMode::Safeguard => (mode.name(), TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
     if (room > ScreenSize::Small && model.playback.is_none()) || robot.1 != TextRole::Text {
         healths.push((robot.0.to_string(), robot.1));
     }
     healths
-}
-
-/// Kind of the robot's stop in words: by the wizard, or by the arm itself.
-fn stopped(session: &Session) -> &'static str {
-    match session.robot.arm.mode {
-        SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
-        SafetyMode::Fault => "ARM FAULT",
-        _ => "ROBOT STOPPED",
-    }
 }
 
 /// Address for Rerun viewers, while no row of the stream has been dropped.

@@ -11,7 +11,7 @@ use super::place_buttons;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
-use crate::console::arrange::{KitchenMap, KitchenMapElement};
+use crate::console::arrange::{KitchenMap, KitchenMapBox, KitchenMapElement};
 use crate::console::beliefs::beliefs;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
@@ -57,7 +57,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
             KitchenMapElement::Location(location) => {
                 let place = Place::new(session, model, location);
                 let thinks = offer_line::thinks(session, &believed, location);
-                Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot.cells);
+                Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot);
             }
             KitchenMapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
@@ -163,12 +163,13 @@ impl<'a> Place<'a> {
         Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, thinks }
     }
 
-    fn draw(&self, brush: &mut Painter, cells: Rect) {
+    fn draw(&self, brush: &mut Painter, spot: &KitchenMapBox) {
+        let cells = spot.cells;
         if cells.width < 6 || cells.height == 0 {
             return;
         }
         self.rule(brush, cells);
-        let name_ends = self.title(brush, cells);
+        let name_ends = self.title(brush, cells, spot.right());
         let is_order = self.kitchen.location(self.id).kind == LocationKind::Order;
         let below = Rect { x: cells.x + 2, y: cells.y + 1, width: cells.width - 2, height: cells.height - 1 };
         match (is_order, below.height) {
@@ -210,29 +211,21 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws key and name of the location; returns the next column.
-    fn title(&self, brush: &mut Painter, cells: Rect) -> u16 {
+    /// Draws key and name of the location; a long name may fill the gap to the next box, which begins at `right`. Returns
+    /// the next column.
+    fn title(&self, brush: &mut Painter, cells: Rect, right: u16) -> u16 {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
-            // The full name is more useful than the brackets around the key.
-            let (with_brackets, without) = (width(&label) + 3, width(&label) + 2);
-            x = match cells.right().saturating_sub(x) {
-                room if room < with_brackets && room >= without => {
-                    let style = brush.style(role).add_modifier(Modifier::BOLD);
-                    brush.text(x, cells.y, room, &format!("{key} "), style)
-                }
-                _ => badge(brush, x, cells, key, role),
-            };
+            x = badge(brush, x, cells, key, role);
         }
         let style = match self.is_shown {
             true => brush.style(TextRole::Signal).add_modifier(Modifier::UNDERLINED),
             false if self.is_offered => brush.style(TextRole::Signal),
             false => brush.style(if self.is_empty { TextRole::Quiet } else { TextRole::Text }),
         };
-        let room = cells.right().saturating_sub(x);
-        let label = if width(&label) < room { format!(" {label}") } else { label };
-        let end = brush.text(x, cells.y, room, &squeeze(&label, room), style);
+        let label = if width(&label) < cells.right().saturating_sub(x) { format!(" {label}") } else { label };
+        let end = brush.text(x, cells.y, right.saturating_sub(x), &label, style);
         if let Some((key, _)) = self.key() {
             brush.key_target(cells.x, cells.y, end, key);
         }
@@ -275,12 +268,12 @@ impl<'a> Place<'a> {
 
     /// Draws the content of the location; returns the number of lines.
     fn contents(&self, brush: &mut Painter, room: Rect) -> u16 {
-        let style = self.content_style(brush);
+        let (style, ellipsis) = (self.content_style(brush), brush.theme.signs().ellipsis);
         let mut lines = wrap(&self.content, room.width);
         if lines.len() > usize::from(room.height) {
             lines = match room.height {
-                1 => vec![squeeze(&self.content, room.width)],
-                _ => vec![lines[0].clone(), squeeze(&lines[1..].join(" "), room.width)],
+                1 => vec![squeeze(&self.content, room.width, ellipsis)],
+                _ => vec![lines[0].clone(), squeeze(&lines[1..].join(" "), room.width, ellipsis)],
             };
         }
         for (row, line) in lines.iter().take(usize::from(room.height)).enumerate() {
@@ -346,9 +339,10 @@ impl<'a> Place<'a> {
             let (x, y) = if room.height > 1 { (room.x, room.y + 1) } else { (end + 1, room.y) };
             let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
             let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
+            let short = [FALSE_BELIEF, "false"].into_iter().find(|words| width(words) <= left);
             let lines = match room.height {
-                // In a single line, the believed value stands only in the line of the belief.
-                1 if width(thinks) > left => vec![FALSE_BELIEF.to_string()],
+                // In a single line, the believed value may have room only in the line of the belief.
+                1 if width(thinks) > left => short.into_iter().map(str::to_string).collect(),
                 _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
             };
             for (row, line) in lines.iter().enumerate() {
@@ -366,7 +360,8 @@ impl<'a> Place<'a> {
         }
         if let Some(recipe) = recipe {
             let style = brush.style(TextRole::Signal);
-            brush.text(room.x, room.y + recipe_row, room.width, &squeeze(&recipe, room.width), style);
+            let recipe = squeeze(&recipe, room.width, brush.theme.signs().ellipsis);
+            brush.text(room.x, room.y + recipe_row, room.width, &recipe, style);
         }
     }
 

@@ -84,11 +84,14 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let (alarm, text) = (brush.style(TextRole::Alarm), brush.style(TextRole::Text));
     let need = format!("{}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
     brush.text(0, 0, area.width, &need, text);
-    let stop = if session.robot.stopped { "ROBOT STOPPED" } else { "the space bar stops the robot" };
+    let stop = match session.robot.stopped {
+        true => session.robot.safety_mode().name(),
+        false => "the space bar stops the robot",
+    };
     brush.text(0, 1, area.width, stop, alarm);
     let question = match &model.dialog {
-        Some(Dialog::Quit) => "Quit tomcom? y yes, any other key no",
-        Some(Dialog::EndTrial) => "End the trial? y yes, any other key no",
+        Some(Dialog::Quit) => "Quit tomcom? y or the same key again: yes; any other key: no",
+        Some(Dialog::EndTrial) => "End the trial? y or the same key again: yes; any other key: no",
         Some(Dialog::Help) => "The terminal is too small for the help; any key closes it",
         Some(Dialog::Pick(_) | Dialog::Palette(_)) => "The terminal is too small for the list; esc closes it",
         Some(Dialog::Send(_)) => "Send the clicked signal? enter sends, esc cancels",

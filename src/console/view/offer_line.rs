@@ -96,16 +96,18 @@ impl ShownOffer<'_> {
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
-        let since = belief.and_then(|belief| belief.since);
-        // The certainty is taken from the belief panel if both name the same believed value.
-        let is_same = |belief: &EstimatedBelief| {
-            beliefs::value(&session.kitchen, belief.aspect, belief.thinks) == reason.believes
+        // Each belief has one certainty on the screen, that of the belief panel. Where the panel says that the truth is
+        // thought most, the value for which the signal was offered has no certainty there.
+        let (believes, p) = match &belief {
+            Some(belief) if belief.thinks == belief.truth => (reason.believes.as_str(), None),
+            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), Some(belief.p.into())),
+            None => (reason.believes.as_str(), Some(reason.p_believes)),
         };
-        let p = belief.filter(is_same).map_or(reason.p_believes, |belief| belief.p.into());
+        let since = belief.and_then(|belief| belief.since);
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
-        let thinks = if p < 0.5 { "may think" } else { "thinks" };
-        let mut said =
-            vec![format!("{thinks} {}, is {}", reason.believes, reason.truth), format!("{}{age}", percent(p))];
+        let thinks = if p.is_some_and(|p| p >= 0.5) { "thinks" } else { "may think" };
+        let certainty = p.map_or("unsure".to_string(), percent);
+        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{certainty}{age}")];
         said.extend(reason.prevents.as_ref().map(|button| format!("next error: {}", wording::location(button))));
         said
     }
@@ -124,7 +126,12 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let Some(offer) = shown(session, model) else {
         let style = brush.style(TextRole::Quiet);
-        let lines = wrap(&silence(session, model), area.width.saturating_sub(2));
+        let (words, columns) = (silence(session, model), area.width.saturating_sub(2));
+        // What the best signal would be has a line of its own where there is one.
+        let lines: Vec<String> = match area.height {
+            1 => vec![words.join("; ")],
+            _ => words.iter().flat_map(|words| wrap(words, columns)).collect(),
+        };
         for (line, y) in lines.iter().zip(area.rows().map(|row| row.y)) {
             brush.text(area.x + 1, y, area.width - 1, line, style);
         }
@@ -154,39 +161,45 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
 }
 
-/// Why no signal is offered to the wizard, in words.
-fn silence(session: &Session, model: &ConsoleModel) -> String {
+/// Why no signal is offered to the wizard, in words: how many beliefs are false, and the best signal.
+fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
+    let only = |words: &str| vec![words.to_string()];
     if session.spec.trial.condition == Condition::Assistant {
-        return "The assistant sends the signals, without the wizard".to_string();
+        return only("The assistant sends the signals, without the wizard");
     }
     if !session.spec.asks_assistant() {
-        return "The assistant does not advise in this session (shadow = \"off\")".to_string();
+        return only("The assistant does not advise in this session (shadow = \"off\")");
     }
     match session.phase {
         TrialPhase::Running | TrialPhase::Paused => {}
-        TrialPhase::Ready => return "The assistant advises while the trial runs".to_string(),
-        TrialPhase::Over(_) | TrialPhase::Closed => return "The trial is over".to_string(),
+        TrialPhase::Ready => return only("The assistant advises while the trial runs"),
+        TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
     }
     let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefCorrectness::False).count();
-    match wrong {
-        0 => QUIET.to_string(),
-        _ => format!("{}, {}", count(wrong as u64, "false belief", "false beliefs"), too_little(session)),
-    }
+    let best = best_signal(session);
+    let first = match (wrong, &best) {
+        (0, _) => QUIET.to_string(),
+        (_, Some(_)) => count(wrong as u64, "false belief", "false beliefs"),
+        (_, None) => format!("{}, no signal is offered", count(wrong as u64, "false belief", "false beliefs")),
+    };
+    [first].into_iter().chain(best).collect()
 }
 
-/// Saving and cost of the best signal in words, where the signal costs more than it saves.
-fn too_little(session: &Session) -> String {
+/// The best signal in words, where it would save something, but less than it costs.
+fn best_signal(session: &Session) -> Option<String> {
     let assistant = &session.spec.assistant;
     let options = session.advice.iter().flat_map(|advice| &advice.options);
-    let best = options.max_by(|one, other| one.net.total_cmp(&other.net));
-    match best.filter(|best| best.net <= 0.0 && assistant.concept == ConceptName::TomCom) {
-        Some(best) if best.benefit >= NOTHING => {
-            let (words, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
-            format!("no signal is worth its cost: {words} saves {benefit:.1} presses, costs {price:.1}")
-        }
-        Some(_) => "no signal would save a press".to_string(),
-        None => "no signal is offered".to_string(),
+    let best = options.max_by(|one, other| one.net.total_cmp(&other.net))?;
+    if best.net > 0.0 || best.benefit < NOTHING {
+        return None;
     }
+    let (signal, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
+    let why = match assistant.concept {
+        ConceptName::TomCom => format!("saves {benefit:.1}, costs {price:.1}"),
+        ConceptName::Tom => format!("deviation {benefit:.2} of {price:.2}"),
+        ConceptName::Dev | ConceptName::None => return None,
+    };
+    Some(format!("best signal: {signal} ({why}): not worth it"))
 }
 
 /// The value that the participant falsely believes about a location, if any.

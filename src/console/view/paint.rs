@@ -61,20 +61,13 @@ pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
     cut
 }
 
-/// Shortens a name to this number of columns: first removes spaces, then the ends of the longest words.
-pub fn squeeze(name: &str, columns: u16) -> String {
-    let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
-    if width(name) <= columns {
-        return name.to_string();
+/// Shortens a content to this number of columns: first removes spaces after plus signs, then cuts the end, with an
+/// ellipsis.
+pub fn squeeze(content: &str, columns: u16, ellipsis: &str) -> String {
+    match width(content) <= columns {
+        true => content.to_string(),
+        false => fit(&content.replace(" + ", " +"), columns, ellipsis),
     }
-    while width(&words.join(" ")) > columns {
-        let Some(longest) = words.iter_mut().max_by_key(|word| word.chars().count()) else { break };
-        if longest.chars().count() <= 2 {
-            break;
-        }
-        longest.pop();
-    }
-    fit(&words.join(" "), columns, "")
 }
 
 /// Breaks a text between words into lines of at most `columns` characters.

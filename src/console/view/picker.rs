@@ -104,7 +104,7 @@ impl ListPage<'_> {
 
 impl Row {
     fn draw(&self, brush: &mut Painter, cells: Rect, is_at: bool) {
-        let cursor = if is_at { brush.theme.signs().to } else { " " };
+        let cursor = if is_at { brush.theme.signs().cursor } else { " " };
         let role = match (is_at, self.counts) {
             (true, _) => TextRole::Strong,
             (false, true) => TextRole::Text,

@@ -42,7 +42,7 @@ pub(super) fn draw(brush: &mut Painter, room: Rect, buttons: &[(KeyChord, String
             true => (room.x, room.bottom() - count + index, room.width),
             false => (room.x + index * room.width / count, room.bottom() - 1, room.width / count),
         };
-        let name = fit(name, columns.saturating_sub(3), "");
+        let name = fit(name, columns.saturating_sub(3), brush.theme.signs().ellipsis);
         let end = brush.text(x, y, columns, &format!("[{key}]{name}"), style);
         brush.key_target(x, y, end, *key);
     }

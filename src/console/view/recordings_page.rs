@@ -14,6 +14,16 @@ use crate::console::recording_picker::RecordingPicker;
 
 /// Rows around the list of recordings: frame, search line, headings, key hints.
 const AROUND: u16 = 7;
+/// Columns beside the cells of a row: frame, margins and cursor.
+const BESIDE: u16 = 6;
+/// Columns between two cells.
+const GAP: u16 = 2;
+/// Headings of the columns that are left out first where not all fit; the others tell recordings apart.
+const LEFT_OUT: [&str; 3] = ["length", "errors", "state"];
+/// Least width of a column whose cells are cut.
+const LEAST_CELL: u16 = 6;
+/// Heading of the column whose cells are cut at their beginning: recordings of a day differ in the end of their names.
+const CUT_IN_FRONT: &str = "recording";
 
 /// Draws the list of recordings as large as the screen allows.
 pub fn draw_recordings(picker: &RecordingPicker, theme: Theme, frame: &mut Frame) {
@@ -27,8 +37,8 @@ pub fn recording_targets(picker: &RecordingPicker, theme: Theme, size: (u16, u16
 
 fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     let screen = *brush.buffer.area();
-    let widths: Vec<u16> = (0..picker.headings.len()).map(|column| column_width(picker, column)).collect();
-    let wanted = widths.iter().map(|width| width + 2).sum::<u16>() + 6;
+    let shown = ShownColumns::that_fit(picker, screen.width.saturating_sub(BESIDE));
+    let wanted = shown.needed() + BESIDE;
     let hint = width(&picker.title) + 4;
     let size = (wanted.max(hint).max(64).min(screen.width), (picker.rows.len() as u16 + AROUND).min(screen.height));
     let inside = open(brush, screen, size, &picker.title, "");
@@ -38,23 +48,18 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     brush.parts(x, inside.y, columns, &[(TYPE, TextRole::Quiet), (&typed, TextRole::Strong)]);
     let quiet = brush.style(TextRole::Quiet);
     brush.text_right(x + columns, inside.y, 16, &format!("{} of {}", left.len(), picker.rows.len()), quiet);
-    row(
-        brush,
-        Rect { x: x + 2, y: inside.y + 2, width: columns.saturating_sub(2), height: 1 },
-        &picker.headings,
-        &widths,
-        TextRole::Quiet,
-    );
+    let headings = Rect { x: x + 2, y: inside.y + 2, width: columns.saturating_sub(2), height: 1 };
+    shown.row(brush, headings, &picker.headings, TextRole::Quiet);
     let list = Rect { x, y: inside.y + 3, width: columns, height: inside.height.saturating_sub(5) };
     let rows = usize::from(list.height).max(1);
     let first = picker.cursor.at.saturating_sub(rows / 2).min(left.len().saturating_sub(rows));
-    let cursor = brush.theme.signs().to;
+    let cursor = brush.theme.signs().cursor;
     for (line, &index) in left.iter().skip(first).take(rows).enumerate() {
         let (y, is_at) = (list.y + line as u16, first + line == picker.cursor.at);
         let role = if is_at { TextRole::Strong } else { TextRole::Text };
         brush.parts(list.x, y, 2, &[(if is_at { cursor } else { " " }, TextRole::Signal)]);
         let cells = Rect { x: list.x + 2, y, width: list.width.saturating_sub(2), height: 1 };
-        row(brush, cells, &picker.rows[index], &widths, role);
+        shown.row(brush, cells, &picker.rows[index], role);
         brush.target(Rect { y, height: 1, ..list }, ClickAction::Row(first + line));
     }
     if left.is_empty() {
@@ -65,16 +70,65 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }
 
-fn column_width(picker: &RecordingPicker, column: usize) -> u16 {
-    let rows = picker.rows.iter().filter_map(|row| row.get(column));
-    rows.chain(picker.headings.get(column)).map(|cell| width(cell)).max().unwrap_or(0)
+/// The end of a text in `columns`, after an ellipsis if its beginning was cut off.
+fn fit_end(text: &str, columns: u16, ellipsis: &str) -> String {
+    let mut end = text;
+    while width(end) + if end.len() < text.len() { width(ellipsis) } else { 0 } > columns {
+        let Some((first, _)) = end.char_indices().nth(1) else { break };
+        end = &end[first..];
+    }
+    if end.len() < text.len() { format!("{ellipsis}{end}") } else { text.to_string() }
 }
 
-fn row(brush: &mut Painter, area: Rect, cells: &[String], widths: &[u16], role: TextRole) {
-    let style = brush.style(role);
-    let mut x = area.x;
-    for (cell, width) in cells.iter().zip(widths) {
-        brush.text(x, area.y, area.right().saturating_sub(x), cell, style);
-        x += width + 2;
+/// The columns of the list that have room.
+struct ShownColumns {
+    /// Index and width of each column.
+    widths: Vec<(usize, u16)>,
+    /// Index of the column whose cells are cut at their beginning.
+    cut_in_front: usize,
+}
+
+impl ShownColumns {
+    /// The columns for a row of `room` terminal columns. If not all fit, those that tell recordings apart are kept, and the
+    /// widest of these are cut.
+    fn that_fit(picker: &RecordingPicker, room: u16) -> ShownColumns {
+        let width_of = |column: usize| {
+            let cells = picker.rows.iter().filter_map(|row| row.get(column));
+            cells.chain(picker.headings.get(column)).map(|cell| width(cell)).max().unwrap_or(0)
+        };
+        let columns = picker.headings.len();
+        let cut_in_front = picker.headings.iter().position(|heading| heading == CUT_IN_FRONT).unwrap_or(columns);
+        let widths = (0..columns).map(|column| (column, width_of(column))).collect();
+        let mut shown = ShownColumns { widths, cut_in_front };
+        for heading in LEFT_OUT {
+            if shown.needed() > room {
+                shown.widths.retain(|(column, _)| picker.headings[*column] != heading);
+            }
+        }
+        while shown.needed() > room
+            && let Some((_, widest)) = shown.widths.iter_mut().max_by_key(|(_, width)| *width)
+            && *widest > LEAST_CELL
+        {
+            *widest -= 1;
+        }
+        shown
+    }
+
+    /// Number of terminal columns that a row needs.
+    fn needed(&self) -> u16 {
+        self.widths.iter().map(|(_, width)| width + GAP).sum::<u16>().saturating_sub(GAP)
+    }
+
+    fn row(&self, brush: &mut Painter, area: Rect, cells: &[String], role: TextRole) {
+        let (style, ellipsis) = (brush.style(role), brush.theme.signs().ellipsis);
+        let mut x = area.x;
+        for (column, width) in &self.widths {
+            let room = (*width).min(area.right().saturating_sub(x));
+            if let Some(cell) = cells.get(*column) {
+                let cut = if *column == self.cut_in_front { fit_end(cell, room, ellipsis) } else { cell.clone() };
+                brush.text(x, area.y, room, &cut, style);
+            }
+            x += width + GAP;
+        }
     }
 }

@@ -26,7 +26,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if regions.room == ScreenSize::Small {
         brush.parts(area.x, area.y, area.width, &[(" robot    ", TextRole::Quiet)]);
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
-        if mode != SafetyMode::Normal && !session.robot.stopped {
+        // Other modes than this one stand in the head line.
+        if mode == SafetyMode::Reduced && !session.robot.stopped {
             let name = format!(" {}", mode.name());
             columns = columns.saturating_sub(name.len() as u16);
             brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
@@ -36,7 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let is_arm = session.spec.robot.arm == ArmKind::Physics;
     let remark = match (session.robot.stopped, session.robot.held, &model.playback) {
-        (true, ..) => "STOPPED".to_string(),
+        (true, ..) => String::new(),
         (false, true, _) => release(model),
         (false, false, None) => "space stops the robot".to_string(),
         (false, false, Some(_)) => String::new(),
@@ -104,14 +105,10 @@ fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample)
 
 /// Draws the stop of the robot with its reason and the key that resumes it.
 fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
-    let arm = &session.robot.arm;
-    let (label, goes_on) = match arm.mode {
-        mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resume"),
-        _ => (" STOPPED ".to_string(), "resume"),
-    };
+    let label = format!(" {} ", session.robot.safety_mode().name());
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
-    let resume = key.map(|key| format!(" {key} {goes_on}")).unwrap_or_default();
-    let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
+    let resume = key.map(|key| format!(" {key} resume")).unwrap_or_default();
+    let force = session.robot.arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
     let badge = brush.theme.badge(TextRole::Alarm);
     let end = brush.text(x, y, columns, &label, badge);
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
@@ -121,7 +118,7 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
 fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
         SafetyMode::Normal => TextRole::Quiet,
-        SafetyMode::Reduced => TextRole::Strong,
+        SafetyMode::Reduced | SafetyMode::Safeguard => TextRole::Strong,
         _ => TextRole::Alarm,
     }
 }
@@ -132,10 +129,6 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         return;
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
-    let (x, columns) = match session.robot.arm.mode {
-        SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " until the hand is farther away "),
-        _ => (x, columns),
-    };
     if matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed) {
         brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
         return;
@@ -144,8 +137,8 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         let why = match session.robot.idle {
             _ if session.robot.held => "",
             Some(IdleReason::NoOrder) => "waits: there is no order",
-            Some(IdleReason::HumanTurn) => "waits: only the human can act now",
-            Some(IdleReason::Skipped) => "waits: its only possible press was skipped",
+            Some(IdleReason::HumanTurn) => "waits: only the human can act",
+            Some(IdleReason::Skipped) => "waits: its press was skipped",
             None => "no press planned",
         };
         brush.parts(x, y, columns, &[(why, TextRole::Quiet)]);
@@ -155,8 +148,15 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let whole_s = until.secs_since(since).max(1e-3);
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
-    let bar = 8.min(columns / 4);
     let by = if session.robot.driven_to.is_some() { " by wizard" } else { "" };
+    if session.robot.arm.mode == SafetyMode::Safeguard {
+        // The time that is left is unknown until the hand is gone.
+        let parts = [(label.as_str(), TextRole::Robot), (by, TextRole::Signal), (": hand in the way", TextRole::Text)];
+        brush.parts(x, y, columns, &parts);
+        return;
+    }
+    // The name of the button has priority over the length of the bar.
+    let bar = 8.min(columns / 4).min(columns.saturating_sub(width(&label) + width(by) + 7));
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
@@ -173,14 +173,10 @@ fn release(model: &ConsoleModel) -> String {
 
 /// Draws that the wizard holds the robot before its next press; returns the next column and the remaining width.
 fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
-    badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
-}
-
-/// Draws a badge (inverse label), with more words if there is room; returns the next column and the remaining width.
-fn badge(brush: &mut Painter, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
     let badge = brush.theme.badge(TextRole::Strong);
-    let end = brush.text(x, y, columns, label, badge);
+    let end = brush.text(x, y, columns, " HELD ", badge);
     let left = (x + columns).saturating_sub(end);
-    let end = brush.parts(end, y, left, &[(if left > 50 { words } else { " " }, TextRole::Quiet)]);
+    let words = if left > 50 { format!(" {} ", release(model)) } else { " ".to_string() };
+    let end = brush.parts(end, y, left, &[(&words, TextRole::Quiet)]);
     (end, (x + columns).saturating_sub(end))
 }

@@ -1,4 +1,5 @@
-//! Position in a recording: a bar over the whole length, with the time reached and the total time.
+//! Position in a recording: a bar over the whole length, with the time reached and the total time on the trial's clock,
+//! as in the head line.
 
 use ratatui::layout::Rect;
 
@@ -8,7 +9,7 @@ use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
-use crate::session::Session;
+use crate::session::{Session, TrialPhase};
 
 /// Draws the bar of the position in the recording.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
@@ -16,8 +17,13 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if area.area() == 0 {
         return;
     }
-    // Times are those of the recording, which also run before the trial and in pauses.
-    let end = format!(" {} of {} ", session.time, playback.length.max(session.time));
+    let clock = session.trial_clock(model.now);
+    let part = match session.phase {
+        TrialPhase::Ready => " before the trial, ",
+        TrialPhase::Over(_) | TrialPhase::Closed => " after the trial, ",
+        TrialPhase::Running | TrialPhase::Paused => " ",
+    };
+    let end = format!("{part}{clock} of {} ", playback.trial_length.max(clock));
     let quiet = brush.style(TextRole::Quiet);
     brush.text(area.x, area.y, area.width, " recording ", quiet);
     brush.text_right(area.right(), area.y, area.width, &end, quiet);

@@ -82,6 +82,8 @@ pub struct Glyphs {
     pub by_hand: &'static str,
     /// Sign for a direction: an arrow from one thing to another.
     pub to: &'static str,
+    /// Sign for the selected row of a list.
+    pub cursor: &'static str,
     /// Sign for a content that has just changed.
     pub changed: &'static str,
     /// Sign for a session that is recorded.
@@ -112,6 +114,7 @@ const UNICODE: Glyphs = Glyphs {
     touched: "×",
     by_hand: "◆",
     to: "▸",
+    cursor: "»",
     changed: "◂",
     recording: "●",
     pause: "‖",
@@ -136,6 +139,7 @@ const ASCII: Glyphs = Glyphs {
     touched: "x",
     by_hand: "%",
     to: ">",
+    cursor: ")",
     changed: "<",
     recording: "*",
     pause: "=",

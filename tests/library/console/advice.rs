@@ -101,6 +101,40 @@ fn an_offer_says_what_is_believed_what_is_true_and_what_it_saves() {
 }
 
 #[test]
+fn a_belief_has_one_certainty_on_the_screen() {
+    for (held, p, words) in [
+        ("shrimp nigiri", 0.44, "may think shrimp nigiri, is tuna nigiri · 44 % for 0:0"),
+        ("shrimp nigiri", 0.71, "thinks shrimp nigiri, is tuna nigiri · 71 % for 0:0"),
+        ("tuna nigiri", 0.46, "may think salmon nigiri, is tuna nigiri · unsure"),
+    ] {
+        let mut stage = advised(true);
+        stage.estimate(&[("recipe of tuna nigiri", held, p)], false);
+        for size in SIZES {
+            let screen = stage.screen(size);
+            assert!(screen.contains(words), "{words} at {size:?}:\n{screen}");
+            assert!(!screen.contains("83 %"), "what the assistant thought then is no second certainty:\n{screen}");
+        }
+    }
+}
+
+#[test]
+fn the_best_signal_is_named_where_it_is_not_worth_its_cost() {
+    let stage = advised(false);
+    let (wrong, best) = ("3 false beliefs", "best signal: recipe of order 1 (saves 1.2, costs 1.5): not worth it");
+    let both = format!("{wrong}; {best}");
+    for (size, lines) in SIZES.into_iter().zip([vec![wrong, best], vec![wrong, best], vec![both.as_str()]]) {
+        let screen = stage.screen(size);
+        let offer = screen.lines().skip(1).take(lines.len()).map(|line| line.trim_matches('"').trim());
+        assert_eq!(offer.collect::<Vec<_>>(), lines, "{size:?}");
+        let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
+        terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
+        let grey = Theme::colour(TerminalBackground::Dark, TextRole::Quiet).map(Color::Indexed);
+        let row = &terminal.backend().buffer().content[usize::from(size.0)..2 * usize::from(size.0)];
+        assert!(row.iter().filter(|cell| cell.symbol() != " ").all(|cell| Some(cell.fg) == grey), "quietly");
+    }
+}
+
+#[test]
 fn enter_accepts_what_is_recommended_and_says_so() {
     let mut seen = advised(true);
     // Signals keep apart.

@@ -141,7 +141,7 @@ fn a_row_is_gone_to_by_a_click_and_taken_by_the_next() {
     stage.click("any other key");
     assert_eq!(stage.model.dialog, None);
     stage.model.dialog = Some(Dialog::EndTrial);
-    assert!(matches!(input(stage.click("y yes")), Some(Event::TrialEnded { .. })));
+    assert!(matches!(input(stage.click("y or ^e yes")), Some(Event::TrialEnded { .. })));
 }
 
 #[test]

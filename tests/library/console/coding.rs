@@ -86,6 +86,20 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
 }
 
 #[test]
+fn leaving_asks_nothing_while_all_codes_are_saved_and_the_hint_says_so() {
+    let mut stage = rater(RaterCodes::default());
+    for size in SIZES {
+        assert!(stage.screen(size).contains("^c quit (saved)"), "{}", stage.screen(size));
+    }
+    if let Some(coding) = &mut stage.model.coding {
+        coding.is_saved = false;
+    }
+    let screen = stage.screen((80, 24));
+    assert!(screen.contains("^c quit") && !screen.contains("saved"), "{screen}");
+    assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "what is not saved is saved on leaving");
+}
+
+#[test]
 fn codes_are_undone_and_redone_step_by_step() {
     let mut stage = rater(codes(&[(0, ErrorCauseCode::Slip)]));
     let press = 200;

@@ -34,6 +34,32 @@ fn without_colour_every_meaning_has_a_sign_or_a_weight() {
     }
 }
 
+/// The sign of the selected row means nothing else.
+#[test]
+fn the_cursor_of_lists_is_no_sign_of_a_panel() {
+    for unicode in [true, false] {
+        let signs = Theme { colour: true, unicode, ground: TerminalBackground::Dark }.signs();
+        let others = [
+            signs.gaze,
+            signs.trail,
+            signs.press,
+            signs.no_effect,
+            signs.error,
+            signs.served,
+            signs.taken_back,
+            signs.stopped,
+            signs.touched,
+            signs.by_hand,
+            signs.to,
+            signs.changed,
+            signs.recording,
+            signs.pause,
+            signs.ellipsis,
+        ];
+        assert!(!others.contains(&signs.cursor) && !signs.levels.contains(&signs.cursor), "{}", signs.cursor);
+    }
+}
+
 /// The relative luminance of a colour (WCAG 2.1).
 fn luminance(rgb: [u8; 3]) -> f64 {
     let linear = rgb.map(|value| match f64::from(value) / 255.0 {

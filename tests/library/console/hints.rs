@@ -39,6 +39,20 @@ fn a_live_session_shows_the_keys_that_do_something_now() {
 }
 
 #[test]
+fn a_typed_note_is_hinted_in_a_pause_where_it_is_possible() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    assert!(!stage.screen((80, 24)).contains("0 type note"));
+    stage.at(23.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
+    stage.at(23.2, Event::TrialPaused);
+    for size in super::SIZES {
+        let screen = stage.screen(size);
+        for hint in ["1-5 note", "0 type note", "? help", "^c quit"] {
+            assert!(screen.contains(hint), "{hint} at {size:?}:\n{screen}");
+        }
+    }
+}
+
+#[test]
 fn over_a_dialog_only_what_passes_it_is_shown() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.size = (200, 60);

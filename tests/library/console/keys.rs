@@ -83,11 +83,21 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
         assert_eq!(stage.control('c'), None, "a held key does not answer its own question");
         assert_eq!(stage.model.dialog, Some(Dialog::Quit));
     }
-    stage.wait(1.0);
-    assert_eq!(stage.control('c'), None, "a nervous second press ends no trial");
-    assert_eq!(stage.model.dialog, Some(Dialog::Quit));
-    assert_eq!(stage.key(KeyCode::Enter), None, "only y does");
+    assert!(stage.screen((80, 24)).contains("y or ^c yes"), "{}", stage.screen((80, 24)));
+    assert_eq!(stage.key(KeyCode::Enter), None, "any other key is no");
     assert_eq!(stage.model.dialog, None);
+    for (key, title, done) in [
+        ('c', "Quit tomcom?", Some(ConsoleCommand::Quit)),
+        ('e', "End the trial?", Some(ConsoleCommand::Input(Event::TrialEnded { reason: TrialEndReason::Wizard }))),
+    ] {
+        assert_eq!(stage.control(key), None);
+        let screen = stage.screen((80, 24));
+        assert!(screen.contains(title) && screen.contains(&format!("y or ^{key} yes")), "{screen}");
+        stage.wait(1.0);
+        assert_eq!(stage.control(key), done, "a second press that is no held key is yes, as the question says");
+        assert_eq!(stage.model.dialog, None);
+        stage.wait(1.0);
+    }
     stage.at(stage.model.now.as_secs_f64(), Event::TrialEnded { reason: TrialEndReason::Time });
     stage.control('c');
     stage.wait(1.0);

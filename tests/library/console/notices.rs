@@ -218,6 +218,58 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
     assert!(!stage.screen((120, 40)).contains("Arm stopped"));
 }
 
+/// Head line, robot panel and manual have one name for each safety mode.
+#[test]
+fn a_safety_mode_has_one_name_on_the_screen_and_in_the_manual() {
+    let manual = include_str!("../../../docs/robot.md");
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.robot.arm = ArmKind::Physics;
+    stage.at(30.0, Event::RobotSafety { mode: SafetyMode::Safeguard, force_n: None, joint: None });
+    for size in SIZES {
+        let screen = stage.screen(size);
+        for words in ["SAFEGUARD STOP", "hand in the way"] {
+            assert!(screen.contains(words), "{words} at {size:?}:\n{screen}");
+        }
+        assert!(!screen.contains("WAITS"), "{screen}");
+    }
+    stage.at(31.0, Event::RobotSafety { mode: SafetyMode::Normal, force_n: None, joint: None });
+    stage.at(31.0, Event::RobotStopped);
+    for arm in [ArmKind::Physics, ArmKind::Timed] {
+        stage.session.spec.robot.arm = arm;
+        for size in SIZES {
+            let screen = stage.screen(size);
+            assert!(screen.contains(" EMERGENCY STOP  ^r resume"), "{size:?}:\n{screen}");
+            assert!(!screen.contains("STOPPED"), "{screen}");
+        }
+    }
+    for mode in ["NORMAL", "REDUCED", "SAFEGUARD STOP", "PROTECTIVE STOP", "EMERGENCY STOP", "FAULT"] {
+        assert!(manual.contains(&format!("| `{mode}` |")), "{mode}");
+    }
+}
+
+#[test]
+fn the_summary_counts_the_stops_of_an_arm_that_can_touch() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.robot.arm = ArmKind::Physics;
+    for (at, mode) in
+        [(30.0, SafetyMode::ProtectiveStop), (33.0, SafetyMode::ProtectiveStop), (36.0, SafetyMode::Fault)]
+    {
+        stage.at(at, Event::RobotSafety { mode, force_n: None, joint: None });
+        stage.at(at + 1.0, Event::RobotResumed);
+        stage.at(at + 1.0, Event::RobotSafety { mode: SafetyMode::Normal, force_n: None, joint: None });
+    }
+    stage.at(40.0, Event::RobotStopped);
+    stage.at(50.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    for size in SIZES {
+        let screen = stage.screen(size);
+        for words in ["2 protective stops, 1 emergency stop ", " 1 fault "] {
+            assert!(screen.contains(words), "{words} at {size:?}:\n{screen}");
+        }
+    }
+    stage.session.spec.robot.arm = ArmKind::Timed;
+    assert!(!stage.screen((80, 24)).contains("protective"), "the timed arm cannot touch anybody");
+}
+
 #[test]
 fn how_a_tracker_pairs_is_shown_until_its_gaze_arrives() {
     let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);

@@ -45,11 +45,13 @@ fn an_action_is_found_by_typing_and_done_as_by_its_key() {
         assert_eq!(input(stage.key(KeyCode::Enter)), Some(expected), "{typed}: {}", stage.notice());
         assert_eq!(stage.model.dialog, None);
     }
-    let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.control('k');
-    type_in(&mut stage, "endthetrial");
-    assert_eq!(stage.key(KeyCode::Enter), None);
-    assert_eq!(stage.model.dialog, Some(Dialog::EndTrial), "it asks as its key does");
+    for typed in ["endthetrial", "finish"] {
+        let mut stage = Stage::sushi(ParticipantKind::Simulated);
+        stage.control('k');
+        type_in(&mut stage, typed);
+        assert_eq!(stage.key(KeyCode::Enter), None);
+        assert_eq!(stage.model.dialog, Some(Dialog::EndTrial), "{typed}: it asks as its key does");
+    }
 }
 
 #[test]

@@ -48,12 +48,37 @@ fn typing_filters_without_spaces_and_enter_takes_the_row() {
     assert_eq!(picker.key(&quit), Some(RecordingReply::Leave));
 }
 
+/// The list as it is drawn at 80x24.
+fn screen(picker: &RecordingPicker) -> String {
+    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("a test terminal");
+    terminal.draw(|frame| draw_recordings(picker, theme, frame)).expect("drawn");
+    terminal.backend().to_string()
+}
+
+#[test]
+fn columns_that_tell_recordings_apart_stay_where_not_all_fit() {
+    for code in ["P07", "GROUP-B-P0007"] {
+        let mut picker = picker();
+        picker.rows = (1..=3)
+            .map(|trial| {
+                let name = format!("2026-03-14-{code}-{trial}");
+                [code, "wizard with advice", "2026-03-14 10:22", "15:00", "unreadable", &name]
+                    .map(str::to_string)
+                    .to_vec()
+            })
+            .collect();
+        let screen = screen(&picker);
+        assert!(!screen.contains("length") && screen.contains("wizard with advice"), "{screen}");
+        for trial in 1..=3 {
+            assert!(screen.contains(&format!("{code}-{trial} ")), "trial {trial} in\n{screen}");
+        }
+    }
+}
+
 #[test]
 fn the_list_is_a_table_with_its_filter_above() {
     let mut picker = picker();
     press(&mut picker, KeyCode::Char('w'));
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("a test terminal");
-    terminal.draw(|frame| draw_recordings(&picker, theme, frame)).expect("drawn");
-    check_snapshot("console", "recordings_80x24", terminal.backend().to_string());
+    check_snapshot("console", "recordings_80x24", screen(&picker));
 }

@@ -8,6 +8,7 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
+use tomcom::console::view::paint::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::gaze::GazeSample;
@@ -40,6 +41,50 @@ fn the_participants_keys_stand_at_their_places() {
 }
 
 #[test]
+fn keys_of_places_look_like_keys_and_names_are_whole_at_the_least_size() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    let places: [&[&str]; 2] = [
+        &["[r]robot hand", "[a]assembly board", "[c]cutting board", "[m] rolling mat"],
+        &["[a]assembly board", "[f]cutting board", "[b] rolling mat", "[e] rice"],
+    ];
+    for names in places {
+        for size in [(80, 24), (120, 40)] {
+            let screen = stage.screen(size);
+            for name in names {
+                assert!(screen.contains(name), "{name} in\n{screen}");
+            }
+        }
+        stage.key(KeyCode::Tab);
+    }
+}
+
+#[test]
+fn text_that_is_cut_ends_with_an_ellipsis() {
+    let shown = [(18, "cooked rice + nori"), (17, "cooked rice +nori"), (15, "cooked rice +n…"), (3, "co…")];
+    for (columns, words) in shown {
+        assert_eq!(squeeze("cooked rice + nori", columns, "…"), words);
+    }
+}
+
+#[test]
+fn a_replay_has_one_clock() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
+    let trial_length = SessionTime::from_secs_f64(90.0);
+    let playback = Playback { trial_length, event: 40, events: 90, ..Playback::new("P01-1".to_string()) };
+    stage.model.playback = Some(playback);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(screen.contains("0:19 of 1:30"), "{screen}");
+        assert!(screen.lines().next().is_some_and(|head| head.contains(" 0:19 ")), "{screen}");
+    }
+    let ready = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.session = ready.session;
+    assert!(stage.screen((80, 24)).contains("before the trial, 0:00 of 1:30"), "{}", stage.screen((80, 24)));
+}
+
+#[test]
 fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = WizardVisibility::State;
@@ -54,6 +99,7 @@ fn help_and_questions_and_the_ascii_fallback() {
     assert_eq!(stage.model.dialog, Some(Dialog::Help));
     check_snapshot("console", "help_80x24", stage.screen((80, 24)));
     check_snapshot("console", "help_120x40", stage.screen((120, 40)));
+    assert!(stage.screen((200, 60)).contains("shift-tab previous panel"), "keys with long names are whole");
     stage.wait(1.0);
     stage.key(KeyCode::Down);
     assert_eq!(stage.model.dialog, None, "all of it is seen: every key closes");
@@ -135,7 +181,7 @@ fn a_question_is_seen_in_the_smallest_window() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.control('c');
     let screen = stage.screen((50, 12));
-    assert!(screen.contains("Quit tomcom? y yes, any other key no"), "{screen}");
+    assert!(screen.contains("Quit tomcom? y or the same key again: yes"), "{screen}");
 }
 
 #[test]

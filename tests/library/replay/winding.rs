@@ -2,14 +2,15 @@
 
 use std::cell::Cell;
 use std::fs;
+use std::path::Path;
 
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::history::landmark::ReplayLandmark;
 use tomcom::run::seekable_replay::SeekableReplay;
-use tomcom::session::TimelineEvent;
 use tomcom::session::settings::ArmKind;
+use tomcom::session::{TimelineEvent, TrialPhase};
 
 use super::{SESSIONS, simulated};
 
@@ -76,9 +77,24 @@ fn a_recording_that_is_read_bit_by_bit_is_the_same_as_one_that_is_read_at_once()
     }
 }
 
+/// What is before the trial is read, but a console begins at the trial's start.
+#[test]
+fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
+    let recording = Path::new("tests/golden/format-1-hand.jsonl");
+    let mut whole = SeekableReplay::open(recording).expect("it opens");
+    let mut slow = SeekableReplay::begin(recording).expect("it opens");
+    slow.read_to_trial().expect("events");
+    assert!(!slow.is_read(), "the rest is read later");
+    slow.wind(slow.trial_start());
+    assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, SessionTime::from_secs_f64(0.5)));
+    assert!(slow.trial_length() > SessionTime::ZERO);
+    whole.wind(whole.length().1);
+    assert_eq!(whole.trial_length(), whole.session.trial_clock(whole.time()));
+}
+
 #[test]
 fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
-    let recording = std::path::Path::new("tests/golden/format-1-hand.jsonl");
+    let recording = Path::new("tests/golden/format-1-hand.jsonl");
     let mut open = SeekableReplay::open(recording).expect("it opens");
     let mut blind = SeekableReplay::open(recording).expect("it opens").blinded();
     let is_signal = |film: &SeekableReplay| {

@@ -26,7 +26,18 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["simulate", "sessions/default.toml", "--arm", "both"]);
-    complaint(&["dance"]);
+    for (word, hint) in [
+        ("dance", "'tomcom operate SESSION'"),
+        ("sessions/default.toml", "'tomcom operate sessions/default.toml'"),
+        ("nowhere.toml", "'tomcom operate nowhere.toml'"),
+        ("tests/golden/format-1-hand.jsonl", "'tomcom replay tests/golden/format-1-hand.jsonl'"),
+        ("tests", "'tomcom list tests'"),
+        ("repaly", "'replay'"),
+        ("operte", "'operate'"),
+    ] {
+        let told = complaint(&[word]);
+        assert!(told.contains(hint), "{word}: {told}");
+    }
     let told = complaint(&["operate", "--listen", "0.0.0.0:50022"]);
     assert!(told.contains("an address without a port, as 0.0.0.0;") && told.contains("[display]"), "{told}");
     assert!(complaint(&["operate", "--listen", "here"]).contains("an IP address of this computer"));

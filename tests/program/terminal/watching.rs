@@ -27,7 +27,14 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.is_whole("0");
     other.run(&format!("{TOMCOM} replay {}", recording.display()));
     other.see("play 1x");
-    for (key, seen) in [("+", "play 2x"), (".", "paused 2x"), ("End", "CLOSED"), ("Home", "event 0/")] {
+    assert!(!other.screen().contains("READY"), "a replay opens at the start of the trial: {}", other.screen());
+    for (key, seen) in [
+        ("+", "play 2x"),
+        (".", "paused 2x"),
+        ("End", "CLOSED"),
+        ("Home", "event 0/"),
+        ("Home", "before the trial, 0:00 of"),
+    ] {
         other.key(key);
         other.see(seen);
     }
@@ -70,18 +77,19 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
         ("1", "saved: error 1, slip"),
         ("Enter", "coded, 1 since opening"),
         (&letter, "saved: error 2, wrong about cooking pot"),
-        ("u", "saved: error 2, -"),
+        ("u", "saved: code of error 2 removed"),
         ("C-y", "saved: error 2, wrong about cooking pot"),
         ("Down", "coded, 2 since opening"),
         ("3", "not coded: error 3 is only selected"),
         ("Enter", "coded, 2 since opening"),
         ("3", "saved: error 3, other cause"),
-        ("DC", "saved: error 3, -"),
+        ("DC", "saved: code of error 3 removed"),
         ("BSpace", "2 since opening"),
     ];
     press_each(&terminal, &first);
     terminal.key("C-c");
     terminal.is_whole("0");
+    terminal.see("2 since opening; all codes are saved in");
     let kept = rows(&terminal, "codes-R1.csv");
     assert!(matches!(&kept[..], [a, b] if a.ends_with(",slip,") && b.ends_with(",belief,cooking_pot")), "{kept:?}");
 
@@ -110,7 +118,9 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     terminal.see("error 2 is the first without a code");
     terminal.see("R1: wrong about cooking pot");
     terminal.see("R2: race");
-    press_each(terminal, &[("2", "saved: error 2, race"), ("u", "saved: error 2, -"), ("C-y", "saved: error 2, race")]);
+    let settled =
+        [("2", "saved: error 2, race"), ("u", "saved: code of error 2 removed"), ("C-y", "saved: error 2, race")];
+    press_each(terminal, &settled);
     terminal.key("C-c");
     terminal.is_whole("0");
     let settled = rows(terminal, "consensus.csv");

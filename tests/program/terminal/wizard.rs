@@ -36,7 +36,7 @@ fn check_wizard(session: &str) {
     terminal.wait("a held key", || terminal.count("signal_shown") > shown);
     terminal.key_logs("3", "\"marker\",\"note\":\"slip\"");
     terminal.key_logs("Space", "robot_stopped");
-    terminal.see("STOPPED");
+    terminal.see("EMERGENCY STOP");
     assert_eq!(terminal.count("signal_shown"), shown + 1, "a held key sends once");
     terminal.key_logs("C-r", "robot_resumed");
     std::thread::sleep(Duration::from_millis(800));

@@ -197,7 +197,8 @@ fn stage(session: &Session) -> DisplayStage {
         (false, _) | (true, Some(PhaseSpec::Trial | PhaseSpec::Familiarisation)) => trial,
         (true, None) => DisplayStage::Welcome,
         (true, Some(PhaseSpec::Instruction { .. })) => DisplayStage::Instruction,
-        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::Ready,
+        // Whatever follows a tutorial, or nothing: the page promises no trial.
+        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::Over,
         (true, Some(PhaseSpec::Tutorial { .. })) => DisplayStage::Tutorial,
         (true, Some(PhaseSpec::Questionnaire { .. })) => {
             let is_confirmed = session.protocol.as_ref().is_some_and(|protocol| protocol.confirmed);

@@ -110,6 +110,8 @@ pub(super) enum MessageToPage {
     /// Result of pairing: "code" asks for the pairing code; "wrong" says that the code was wrong; "locked" says that it
     /// was not checked, since too many wrong ones came before. After `wait_s` seconds the next code is checked.
     Pairing { why: &'static str, wait_s: u64 },
+    /// The program ends as intended, so the connection will not come back by itself.
+    Ended,
 }
 
 /// Parses a message of the page; `None` if it is malformed.

@@ -9,7 +9,10 @@ const Upright = (wall, fontFamily, ratio) => {
   const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 8.4], TEXTS = 15;
   // Width and height of what the robot has, room below what is touched, height of the title of the robot's side.
   const SMALL = 4.8, INNER = 0.7, TITLE = 2.2;
-  const scene = { ...wall, display_m: [ratio, 1], tags: [] }, high = WIDE / ratio;
+  // Where keys are not shown, the buttons of several orders are told apart by their numbers.
+  const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
+  const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
+  const scene = { ...wall, buttons: wall.buttons.map(numbered), display_m: [ratio, 1], tags: [] }, high = WIDE / ratio;
   const measure = Room(scene, fontFamily).widthOf;
   const of = (kind) => scene.locations.flatMap((spot, index) => (spot.kind === kind ? [index] : []));
   const places = of("place").sort((a, b) => scene.locations[a].area[1] - scene.locations[b].area[1] || scene.locations[a].area[0] - scene.locations[b].area[0]);
@@ -119,12 +122,12 @@ const Upright = (wall, fontFamily, ratio) => {
     return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / measure(label, 1.6)) };
   }
 
-  /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. The robot's side is hidden unless the text is about it. */
+  /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. Only a text that has no room there hides the robot's side, and never if it is about it. */
   function forLesson(_, recipe, frames) {
     const isTheirs = ({ area, place }) => area === "robot" || (place && ("storage" in place ? scene.storages[place.storage].agent === "robot" : scene.locations[place.location].kind === "robot_hand"));
-    if (recipe) return zones.places;
-    if (frames.some(isTheirs)) return frames.some(({ place }) => place && !isTheirs({ place })) ? free : zones.places;
-    return [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
+    if (recipe) return [zones.places];
+    if (frames.some(isTheirs)) return frames.some(({ place }) => place && !isTheirs({ place })) ? [free] : [free, zones.places];
+    return [free, [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]]];
   }
 
   /** A point of the wall's display here: each place is where it is here, and between places lies what lies between them there. */

@@ -172,9 +172,9 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     }
 }
 
-/// The clock, if the session shows it and there is a trial. A probe shows the time that it has itself instead.
+/// The clock, if the session shows it and there is a trial, which a tutorial is not. A probe shows the time that it has itself instead.
 fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
-    if !session.spec.display.clock {
+    if !session.spec.display.clock || session.tutorial().is_some() {
         return None;
     }
     match stage {

@@ -84,11 +84,15 @@ TUTORIAL_PAGE = {"kind": "text", "title": "The cooking pot", "text": "Rice and c
                  "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "explains_buttons": False, "missed": False, "cards": [], "seconds": None, "question": None}
 
 
+def tutorial_steps(scene, kitchen):
+    """The steps of the kitchen's own tutorial in the scene's language."""
+    return tomllib.loads(Path(f"sessions/tutorials/{kitchen}{'.de' if scene['language'] == 'de' else ''}.toml").read_text())["step"]
+
+
 def tutorial_texts(scene, kitchen):
     """The steps of the kitchen's own tutorial that stand beside the kitchen: page and signal, with the longest line that it can have below its text."""
-    path = Path(f"sessions/tutorials/{kitchen}{'.de' if scene['language'] == 'de' else ''}.toml")
     at = {spot["name"]: {"place": {"location": index}} for index, spot in enumerate(scene["locations"])}
-    steps = [step for step in tomllib.loads(path.read_text())["step"] if step["kind"] in ("text", "press", "order", "signal")]
+    steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] in ("text", "press", "order", "signal")]
     first = next(step["id"] for step in steps if step["kind"] == "press")
     frames = lambda step: [at[name] if name in at else {"area": name} for name in step.get("point_at", [])]
     hint = lambda step: {"button": step["presses"][0], "after_s": 0.0} if "presses" in step else None
@@ -109,7 +113,7 @@ def tutorial_pages(scene, dishes):
     return {
         "text": {"frames": [{"area": "human"}]},
         "press": {"kind": "press", "presses": [0, 2], "missed": True, "done": False, "hint": {"button": button, "after_s": 0.0}},
-        "cards": {"kind": "recipes", "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
+        "cards": {"kind": "recipes", "seconds": 60.0, "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
         "question": {"kind": "question", "done": False, "question": question},
     }
 

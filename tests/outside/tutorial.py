@@ -51,7 +51,7 @@ def turn(page, way, forward=True):
 
 
 def verdict(page):
-    return page.ask("document.querySelector('.lesson .verdict')?.textContent ?? ''")
+    return page.ask("document.querySelector('.lesson .verdict.line').textContent")
 
 
 def checks_what_is_missing(page, way, step, words):
@@ -59,7 +59,7 @@ def checks_what_is_missing(page, way, step, words):
     missing = {"press": "press", "order": "press", "question": "question", "recipes": "recipes"}.get(step["kind"])
     if missing and not (way == "gamepad" and missing == "press"):
         turn(page, way)
-        page.wait_for("document.querySelector('.lesson .verdict')")
+        page.wait_for("document.querySelector('.lesson .verdict.line').textContent")
         assert verdict(page) == words[f"page tutorial first {missing}"], (step["id"], verdict(page))
         assert not overflows(page), (step["id"], overflows(page))
 
@@ -135,7 +135,7 @@ def plays(tomcom, chromium, folder, language, way, size):
                 page.wait_for("Stage.shown().tutorial.question.wrong !== null")
                 page.screenshot(folder / f"{number:02}-{name}-wrong.png")
                 assert not overflows(page), (name, overflows(page))
-                assert page.page.locator(".verdict.wrong").inner_text().endswith(step["explanation"])
+                assert page.page.locator(".verdict.wrong:not(.line)").inner_text().endswith(step["explanation"])
                 answer(page, way, step["right"])
             go_on(page, way, name)
         page.stage("over")

@@ -143,10 +143,23 @@ const Room = (scene, fontFamily) => {
     return [left, order ? y : y + (h - high) / 2, wide, high];
   }
 
+  /** Whether what a page of the tutorial frames is the robot's. */
+  const isRobots = ({ area, place }) => area === "robot" || (place && ("storage" in place ? scene.storages[place.storage].agent === "robot" : scene.locations[place.location].kind === "robot_hand"));
+
+  /**
+   * Where a page of the tutorial can stand: where most room is, beside the recipe that it explains; or else over the robot's side, unless
+   * the page is about it.
+   */
+  function forLesson(others, recipe, frames) {
+    const all = recipe ? [...others, recipe] : others, [robots] = sides(), tags = scene.tags.map(({ area }) => area);
+    const beside = forRecipe(all, undefined, LESSON);
+    if (frames.some(isRobots)) return [beside];
+    return [beside, forRecipe(all.filter((rect) => tags.includes(rect) || !overlaps(rect, robots)), undefined, LESSON)];
+  }
+
   return {
     isUpright: false, placed: scene, em: [0.01, 0.01 * ratio], moved: (point) => point,
     widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, taken, forPill, forStatus, forRecipe,
-    // A page of the tutorial stands where most room is, and beside the recipe that it explains.
-    forLesson: (others, recipe) => [forRecipe(recipe ? [...others, recipe] : others, undefined, LESSON)],
+    isRobots, forLesson, enough: 1,
   };
 };

@@ -311,7 +311,7 @@ const Stage = (() => {
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
       const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, badges: badges(), element, text, put, partOf, fitWords });
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });

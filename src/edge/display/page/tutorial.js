@@ -1,8 +1,8 @@
 "use strict";
 /** The tutorial: one card per step, frames around what the step explains, and a mark at the button to be pressed. */
 const Tutorial = (() => {
-  // Least size of words in the first area of a card, before the next one is tried.
-  const ENOUGH = 0.8, TICK_MS = 250;
+  // What a page with presses can say of them.
+  const PRESSED = ["tutorial missed", "tutorial first press", "tutorial right", "tutorial again"], TICK_MS = 250;
   let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
   // The choice that arrows or a gamepad are at, counted from 1; 0: none yet.
   let at = 0;
@@ -81,14 +81,13 @@ const Tutorial = (() => {
     return made;
   }
 
-  /** What was done, or what is still to be done: a line below the page's content. `isAsked`: the participant tried to go on before that. */
-  function verdictOf(page, words, isAsked, text) {
+  /** What was done, or what is still to be done, and the class of the line that says it. `isAsked`: the participant tried to go on before that. */
+  function verdictOf(page, isAsked) {
     const all = page.presses && page.presses[0] === page.presses[1];
-    if (page.missed) return text("p", "verdict wrong", words["tutorial missed"]);
-    if (isAsked) return text("p", "verdict wrong", words[`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`]);
-    if (all) return text("p", "verdict right", words["tutorial right"]);
-    if (page.presses && page.done) return text("p", "verdict", words["tutorial again"]);
-    return "";
+    if (page.missed) return ["tutorial missed", "wrong"];
+    if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`, "wrong"];
+    if (all) return ["tutorial right", "right"];
+    return page.presses && page.done ? ["tutorial again", ""] : ["", ""];
   }
 
   /** How a button is pressed: by what its badge shows, or by touch. */
@@ -118,10 +117,13 @@ const Tutorial = (() => {
     return row;
   }
 
-  /** Puts the card into the first of these areas in which its words need not be much smaller. */
-  function fit(card, isLarge, { areas, put, fitWords }) {
-    if (isLarge) return fitWords(card);
-    return areas.some((area) => fitWords(put(card, area)) >= ENOUGH);
+  /** Puts the card into the first of these areas in which its words need not be much smaller, with room for what it can say until the step is done. */
+  function fit(card, isLarge, page, { scene, areas, enough, put, fitWords }) {
+    const line = card.querySelector(".verdict.line"), said = line.textContent;
+    if (page.presses) line.textContent = PRESSED.map((name) => scene.words[name]).reduce((a, b) => (b.length > a.length ? b : a));
+    if (isLarge) fitWords(card);
+    else areas.some((area) => fitWords(put(card, area)) >= enough);
+    line.textContent = said;
   }
 
   /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
@@ -136,10 +138,11 @@ const Tutorial = (() => {
     if (page.seconds !== null) card.append(bar);
     if (page.question) card.append(questionOf(page.question, words, element, text));
     if (page.presses) card.append(pressesOf(page, element));
-    card.append(verdictOf(page, words, isAsked, text), turnsOf(page, words, element, text));
+    const [verdict, kind] = verdictOf(page, isAsked);
+    card.append(text("p", `verdict line ${kind}`, words[verdict] || ""), turnsOf(page, words, element, text));
     sheet.classList.toggle("shaded", isLarge);
     sheet.replaceChildren(card);
-    fit(card, isLarge, kit);
+    fit(card, isLarge, page, kit);
     count(page, bar);
     point(page, partOf, isAsked);
     shownStep = page.step;

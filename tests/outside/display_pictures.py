@@ -53,9 +53,10 @@ def chosen(scene, kitchen):
     question, asked = worded(question, "question")
     question["question"] = {**question["question"], "choices": asked["choices"], "wrong": 2, "explanation": asked["explanation"]}
     guided = next(step for step in steps if step["kind"] == "order")
+    order_page, _ = worded(every[f"tutorial: {guided['id']}"]["tutorial"], "order")
     ordered = ["empty" if at != order else {"dish": guided["dish"]} for at in range(len(names))]
     return made | {
-        "tutorial-order": {**every[f"tutorial: {guided['id']}"], "contents": ordered},
+        "tutorial-order": {**every[f"tutorial: {guided['id']}"], "contents": ordered, "served": 0, "tutorial": order_page},
         "tutorial-recipes": {**every["tutorial: cards"], "tutorial": recipes},
         "tutorial-question": {**every["tutorial: question"], "tutorial": question},
         "probe-question": every["probe: place"],

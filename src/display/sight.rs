@@ -173,10 +173,9 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     }
 }
 
-/// The trial's clock, if the session shows the clock and there is a trial. During a probe, the display shows the time
-/// that the probe still has instead.
+/// The clock, if the session shows it and there is a trial, which a tutorial is not. A probe shows the time that it has itself instead.
 fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
-    if !session.spec.display.clock {
+    if !session.spec.display.clock || session.tutorial().is_some() {
         return None;
     }
     match stage {
@@ -199,7 +198,8 @@ fn stage(session: &Session) -> DisplayStage {
         (false, _) | (true, Some(PhaseSpec::Trial | PhaseSpec::Familiarisation)) => trial,
         (true, None) => DisplayStage::Welcome,
         (true, Some(PhaseSpec::Instruction { .. })) => DisplayStage::Instruction,
-        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::Ready,
+        // Whatever follows a tutorial, or nothing: the page promises no trial.
+        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::Over,
         (true, Some(PhaseSpec::Tutorial { .. })) => DisplayStage::Tutorial,
         (true, Some(PhaseSpec::Questionnaire { .. })) => {
             let is_confirmed = session.protocol.as_ref().is_some_and(|protocol| protocol.confirmed);

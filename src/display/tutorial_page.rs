@@ -31,7 +31,9 @@ pub struct DisplayedTutorial {
     pub hint: Option<TutorialHint>,
     /// Number of presses made and number of presses required, if the step has presses.
     pub presses: Option<[usize; 2]>,
-    /// Whether the participant's last press was another than the required press.
+    /// Whether the page says how buttons are pressed: in the first step that requires presses.
+    pub explains_buttons: bool,
+    /// Whether the last press was another than the required one.
     pub missed: bool,
     /// Recipe cards, while they are shown.
     pub cards: Vec<RecipeCard>,
@@ -118,6 +120,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         frames: frames.map(|target| frame(kitchen, target)).collect(),
         hint,
         presses: step.has_presses().then_some([state.presses, step.presses.len()]),
+        explains_buttons: tutorial.has_first_presses(state.step),
         missed: state.last.is_some_and(|last| !last.is_right),
         cards: dishes.map(|index| card(kitchen, DishId(index as u8))).collect(),
         seconds: step.seconds.filter(|_| step.is_timed() && are_shown),

@@ -6,6 +6,7 @@ use super::options::SessionStart;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::base::words::count;
+use crate::session::Session;
 
 /// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +19,42 @@ pub enum LeavingReason {
     Redo,
 }
 
-/// Result of a live session: its recording, its summary, and how the wizard left it.
+/// How far the participant came in a tutorial that the recording ended with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TutorialCompletion {
+    /// Number of steps that the participant did.
+    pub done: u64,
+    /// Number of steps in the tutorial.
+    pub steps: u64,
+    /// Number of presses in the tutorial, right and wrong ones.
+    pub presses: u64,
+    /// Number of wrong answers to the tutorial's questions.
+    pub wrong_answers: u64,
+}
+
+impl TutorialCompletion {
+    /// How far the participant came in the session's tutorial; `None` in a session that is in another phase.
+    pub fn from_session(session: &Session) -> Option<TutorialCompletion> {
+        let (tutorial, state) = session.tutorial()?;
+        Some(TutorialCompletion {
+            done: state.done.iter().filter(|is_done| **is_done).count() as u64,
+            steps: tutorial.steps.len() as u64,
+            presses: u64::from(state.pressed),
+            wrong_answers: state.wrong_answers.iter().copied().map(u64::from).sum(),
+        })
+    }
+
+    fn describe(self) -> String {
+        let TutorialCompletion { done, steps, presses, wrong_answers } = self;
+        let presses = count(presses, "press", "presses");
+        format!(
+            "tutorial: {done} of {steps} steps done, {presses}, {}",
+            count(wrong_answers, "wrong answer", "wrong answers")
+        )
+    }
+}
+
+/// Result of a live session: recording, summary, and how it was left.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
     /// Folder of the recording.
@@ -27,6 +63,8 @@ pub struct LiveOutcome {
     pub leaving: LeavingReason,
     /// Summary of the session's trial.
     pub figures: TrialSummary,
+    /// How far the participant came, if the session was left in a tutorial.
+    pub tutorial: Option<TutorialCompletion>,
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
     /// What the repetition of the trial starts from, if the wizard asked for one.
@@ -40,13 +78,15 @@ impl LiveOutcome {
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
         let signals = count(self.figures.signals, "signal", "signals");
         let served = count(self.figures.served.len() as u64, "order", "orders");
+        let trial = || format!("{presses} of both, {signals}, {served} served");
+        let reached = self.tutorial.map_or_else(trial, TutorialCompletion::describe);
         let standing = if self.standing.counts() {
             String::new()
         } else {
             format!("left out of the analysis: {}\n", self.standing.describe())
         };
         format!(
-            "{presses} of both, {signals}, {served} served\n{standing}recorded in {folder}\n\
+            "{reached}\n{standing}recorded in {folder}\n\
              look at it again: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
         )
     }

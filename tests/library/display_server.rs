@@ -272,3 +272,12 @@ fn a_page_that_is_asked_for_a_code_may_wait_and_is_answered() {
         assert_eq!(page.hear("pong").map(|pong| pong["t"] == f64::from(t)), Some(true));
     }
 }
+
+#[test]
+fn every_page_is_told_that_the_program_ends() {
+    let (display, address) = serve(LOCAL);
+    let (mut acting, mut watching) = (page(address), page(address));
+    assert_eq!([acting.joins("one"), watching.joins("two")], [Some(true), Some(false)]);
+    drop(display);
+    assert!(acting.hear("ended").is_some() && watching.hear("ended").is_some());
+}

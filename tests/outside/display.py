@@ -78,14 +78,11 @@ def start(console, page, robot_held=True):
     page.wait_for("Stage.shown().contents.some((what) => what.dish)")
 
 
-def recorded(folder):
+def verified(tomcom, folder):
+    """The events of the folder's only recording, which verifies."""
     (recording,) = (folder / "recordings").iterdir()
-    lines = (recording / "events.jsonl").read_text().splitlines()
-    return recording, [json.loads(line) for line in lines[1:]]
-
-
-def verify(tomcom, recording):
     subprocess.run([tomcom, "replay", recording, "--verify"], check=True, stdout=subprocess.DEVNULL)
+    return [json.loads(line) for line in (recording / "events.jsonl").read_text().splitlines()[1:]]
 
 
 def seed_of(tomcom, folder, kitchen):
@@ -117,14 +114,13 @@ def plays_an_order(tomcom, browser, folder, kitchen, seed, way):
         page.close()
         console.wait_for("NO DISPLAY")
         console.quit()
-    recording, events = recorded(folder)
+    events = verified(tomcom, folder)
     told = [event for event in events if event["kind"] == "press" and event["agent"] == "human"]
     assert [event["button"] for event in told] == presses, told
     late_ms = [(event["t_ns"] - event["at_ns"]) / 1e6 for event in told]
     assert all(late >= 0 for late in late_ms), late_ms
     kinds = [event.get("what") for event in events if event["kind"] == "display"]
     assert kinds[0] == "connected" and "drawn" in kinds and kinds[-1] == "lost", kinds
-    verify(tomcom, recording)
     print(f"{kitchen} by {way}: an order served with {len(presses)} presses, stamped at most {max(late_ms):.1f} ms after "
           "they happened; the recording verifies", flush=True)
 
@@ -167,11 +163,10 @@ def shows_signals(tomcom, browser, folder, seed):
             assert page.ask(f"document.documentElement.{script.replace('inner', 'window.inner')}"), script
         page.close()
         console.quit()
-    recording, events = recorded(folder)
+    events = verified(tomcom, folder)
     drawn = [event["cue"] for event in events if event["kind"] == "display" and event["what"] == "drawn"]
     cues = [event["seq"] for event in events if event["kind"] in ("trial_started", "signal_shown")]
     assert drawn == cues, (drawn, cues)
-    verify(tomcom, recording)
     print("signals: recipe and highlight appear, are taken back, are told to be drawn; a second page only watches", flush=True)
 
 
@@ -206,8 +201,7 @@ def shows_the_robot(tomcom, browser, folder, seed, shown):
         # The page asks a moment after the press, when the hand may have set out again.
         assert max(away) < 0.12, away
     assert links == (2 if shown == "arm" else 0), links
-    recording, _ = recorded(folder)
-    verify(tomcom, recording)
+    verified(tomcom, folder)
     print(f"the robot shown as {shown}: {len(told)} messages, each a pose; at its presses the hand is {max(a or 0 for a in away):.3f} of the "
           "display away at most", flush=True)
 
@@ -280,8 +274,7 @@ def is_quick(tomcom, browser, folder, seed, presses):
             abuse.wait()
         page.close()
         console.quit()
-    recording, _ = recorded(folder)
-    verify(tomcom, recording)
+    verified(tomcom, folder)
 
 
 def measure(page, presses, how):
@@ -352,7 +345,7 @@ def has_phases(tomcom, browser, folder):
         page.wait_for("!Stage.shown().question")
         page.close()
         console.quit()
-    _, events = recorded(folder)
+    events = verified(tomcom, folder)
     answers = [event["answer"] for event in events if event.get("what") == "item_answered"]
     assert answers == [6 if number % 2 else 4 for number in range(count)], answers
     print(f"phases of a plan in German; {count} items answered on the display by keys and touch", flush=True)

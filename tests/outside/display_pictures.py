@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from display_states import items_of, opened, show, states
+from display_states import items_of, opened, show, states, tutorial_steps
 from page import browser
 
 SIZE = (960, 540)
@@ -45,11 +45,18 @@ def chosen(scene, kitchen):
     stack, lies_there = every["probe: stack"]["probe"], lies.get("assembly_board", {}).get("stack", [])
     lying = [choice["number"] for choice in stack["choices"] if choice["shows"] in [{"item": item} for item in lies_there]]
     recipes, question = every["tutorial: cards"]["tutorial"], every["tutorial: question"]["tutorial"]
-    choices = ["Raw rice", "Cooked rice", "Cooked and shaped rice"]
-    explained = {"choices": choices, "wrong": 2, "explanation": "For nigiri the rice is cooked, and then shaped in your hand."}
-    recipes = {**recipes, "number": 13, "title": "The recipes", "text": "Remember them: during the task they are not shown."}
-    question = {**question, "number": 15, "title": "A question", "text": "Which rice does a nigiri need?", "question": {**question["question"], **explained}}
+    steps = tutorial_steps(scene, kitchen)
+    def worded(page, kind):
+        number, step = next((number, step) for number, step in enumerate(steps, 1) if step["kind"] == kind)
+        return {**page, "number": number, "of": len(steps), "title": step["title"], "text": step["text"]}, step
+    recipes, _ = worded(recipes, "recipes")
+    question, asked = worded(question, "question")
+    question["question"] = {**question["question"], "choices": asked["choices"], "wrong": 2, "explanation": asked["explanation"]}
+    guided = next(step for step in steps if step["kind"] == "order")
+    order_page, _ = worded(every[f"tutorial: {guided['id']}"]["tutorial"], "order")
+    ordered = ["empty" if at != order else {"dish": guided["dish"]} for at in range(len(names))]
     return made | {
+        "tutorial-order": {**every[f"tutorial: {guided['id']}"], "contents": ordered, "served": 0, "tutorial": order_page},
         "tutorial-recipes": {**every["tutorial: cards"], "tutorial": recipes},
         "tutorial-question": {**every["tutorial: question"], "tutorial": question},
         "probe-question": every["probe: place"],

@@ -6,7 +6,7 @@
 import sys
 from pathlib import Path
 
-from display import operate, recorded, session_file, start, url, verify
+from display import operate, session_file, start, url, verified
 from page import Page, browser, plain
 
 CARD = "document.querySelector('.recipe')"
@@ -48,11 +48,10 @@ def proposes(tomcom, chromium, folder, seed, language):
         page.wait_for(f"!({IS_OPEN})")
         page.close()
         console.quit()
-    recording, events = recorded(folder)
+    events = verified(tomcom, folder)
     shown = [event["signal"] for event in events if event["kind"] == "signal_shown"]
     ended = [event["reason"] for event in events if event["kind"] == "signal_ended"]
     assert shown == [{"propose": told}] and ended == ["outdated"], (shown, ended)
-    verify(tomcom, recording)
     print(f"proposal ({language}): {', '.join(told)}, with pictures, crossed off press by press; the recording verifies", flush=True)
 
 

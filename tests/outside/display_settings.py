@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-from display import operate, presses_for, recorded, seed_of, session_file, start, url, verify
+from display import operate, presses_for, seed_of, session_file, start, url, verified
 from page import Page, browser, plain
 
 # Counts what the page makes to be heard.
@@ -54,8 +54,7 @@ def sounds(tomcom, chromium, folder, seed, is_on):
         assert heard(page) == wanted, heard(page)
         page.close()
         console.quit()
-    recording, _ = recorded(folder)
-    verify(tomcom, recording)
+    verified(tomcom, folder)
     print(f"sound {'on: a tone for a press without effect, another one for a signal, none for anything else' if is_on else 'off: nothing is heard'}", flush=True)
 
 
@@ -135,8 +134,7 @@ def upright(tomcom, chromium, folder, kitchen, seed):
         page.wait_for("Stage.shown().served === 1")
         page.close()
         console.quit()
-    recording, _ = recorded(folder)
-    verify(tomcom, recording)
+    verified(tomcom, folder)
     print(f"upright: an order of the {kitchen} kitchen by touch at {UPRIGHT[0]}x{UPRIGHT[1]}; no gaze until the screen is turned", flush=True)
 
 

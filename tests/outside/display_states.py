@@ -81,7 +81,29 @@ def forms():
 
 
 TUTORIAL_PAGE = {"kind": "text", "title": "The cooking pot", "text": "Rice and crab are cooked there. It holds one thing: what lies in it is in the way of what comes next.", "number": 3,
-                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "missed": False, "cards": [], "seconds": None, "question": None}
+                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "explains_buttons": False, "missed": False, "cards": [], "seconds": None, "question": None}
+
+
+def tutorial_steps(scene, kitchen):
+    """The steps of the kitchen's own tutorial in the scene's language."""
+    return tomllib.loads(Path(f"sessions/tutorials/{kitchen}{'.de' if scene['language'] == 'de' else ''}.toml").read_text())["step"]
+
+
+def tutorial_texts(scene, kitchen):
+    """The steps of the kitchen's own tutorial that stand beside the kitchen: page and signal, with the longest line that it can have below its text."""
+    at = {spot["name"]: {"place": {"location": index}} for index, spot in enumerate(scene["locations"])}
+    steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] in ("text", "press", "order", "signal")]
+    first = next(step["id"] for step in steps if step["kind"] == "press")
+    frames = lambda step: [at[name] if name in at else {"area": name} for name in step.get("point_at", [])]
+    hint = lambda step: {"button": step["presses"][0], "after_s": 0.0} if "presses" in step else None
+    presses = lambda step: [0, len(step["presses"])] if "presses" in step else None
+    order, dishes = next(at[name]["place"]["location"] for name in at if name.startswith("order")), items_of(kitchen)
+    def signal(step):
+        if step["kind"] != "signal":
+            return None
+        return {"highlight": at[step["highlight"]]["place"]["location"]} if "highlight" in step else {"recipe": {"order": order, "dish": step["dish"], "items": dishes[step["dish"]]}}
+    return {step["id"]: ({"title": step["title"], "text": step["text"], "frames": frames(step), "hint": hint(step), "presses": presses(step), "missed": "presses" in step,
+                         "done": "presses" not in step, "explains_buttons": step["id"] == first}, signal(step)) for step in steps}
 
 
 def tutorial_pages(scene, dishes):
@@ -91,7 +113,7 @@ def tutorial_pages(scene, dishes):
     return {
         "text": {"frames": [{"area": "human"}]},
         "press": {"kind": "press", "presses": [0, 2], "missed": True, "done": False, "hint": {"button": button, "after_s": 0.0}},
-        "cards": {"kind": "recipes", "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
+        "cards": {"kind": "recipes", "seconds": 60.0, "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
         "question": {"kind": "question", "done": False, "question": question},
     }
 
@@ -194,6 +216,8 @@ def states(scene, kitchen):
     made["answers"] = sight("questionnaire", question={**question, "item": None, "form": None, "given": given, "text": "Thank you. Are your answers as you meant them?"})
     for name, page in tutorial_pages(scene, dishes).items():
         made[f"tutorial: {name}"] = sight("tutorial", tutorial={**TUTORIAL_PAGE, "step": name, **page})
+    for name, (page, signal) in tutorial_texts(scene, kitchen).items():
+        made[f"tutorial: {name}"] = sight("tutorial", signal=signal, tutorial={**TUTORIAL_PAGE, "step": name, **page})
     for name, page in probe_pages(scene, kitchen, dishes).items():
         made[f"probe: {name}"] = sight("probe", probe=page, contents=[])
     return made

@@ -221,8 +221,8 @@ impl Talk {
     /// Sends scene, role and state to the page whenever they change, and handles the page's messages.
     async fn run(&mut self) -> Option<()> {
         let PageFeed { mut scene, mut sight, mut robot } = self.hub.told.clone();
-        let mut acting = self.hub.acting.subscribe();
-        // For a newly connected page, the present content of the display counts as new.
+        let (mut acting, inputs) = (self.hub.acting.subscribe(), self.hub.inputs.clone());
+        // For a newly connected page, the present content counts as new.
         scene.mark_changed();
         sight.mark_changed();
         robot.mark_changed();
@@ -231,6 +231,10 @@ impl Talk {
             tokio::select! {
                 biased;
                 () = self.place.closed() => return None,
+                () = inputs.closed() => {
+                    self.say(&MessageToPage::Ended).await?;
+                    return None;
+                }
                 said = self.socket.recv() => self.hear(said?.ok()?).await?,
                 changed = scene.changed() => {
                     changed.ok()?;

@@ -111,6 +111,8 @@ pub(super) enum MessageToPage {
     /// the code was not checked, since too many wrong ones came before. The next code is checked after `wait_s`
     /// seconds.
     Pairing { why: &'static str, wait_s: u64 },
+    /// The program ends as intended, so the connection will not come back by itself.
+    Ended,
 }
 
 /// Parses a message of the page; `None` if the message is malformed.

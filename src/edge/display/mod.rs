@@ -16,6 +16,7 @@ mod status;
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 use tokio::net::TcpListener;
@@ -35,12 +36,14 @@ use crate::edge::pairing_code::pairing_code;
 /// Largest number of page inputs that wait for the session.
 const WAITING: usize = 1024;
 
-/// Server of the participant's display: its address and its inputs. Dropping the value stops the server.
+/// Server of the participant's display: its address and its inputs. Dropping it tells the pages that the program ends, and
+/// stops the server.
 pub struct DisplayServer {
     address: SocketAddr,
     code: Option<String>,
     inputs: Receiver<PageInput>,
     screen: DisplayHandle,
+    thread: Option<JoinHandle<io::Result<()>>>,
 }
 
 /// Handle with which the program sends content to all pages of the display and reads their counters.
@@ -81,10 +84,9 @@ impl DisplayServer {
         };
         let hub = ServerState::new(code.clone(), words.of_page(), send, (told, status), screen.began);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        std::thread::Builder::new()
-            .name("display".to_string())
-            .spawn(move || runtime.block_on(serve(listener, hub)))?;
-        Ok(DisplayServer { address, code, inputs, screen })
+        let thread = std::thread::Builder::new().name("display".to_string());
+        let thread = Some(thread.spawn(move || runtime.block_on(serve(listener, hub)))?);
+        Ok(DisplayServer { address, code, inputs, screen, thread })
     }
 
     /// Waits for the next input of the page that takes part in the session.
@@ -106,6 +108,16 @@ impl DisplayServer {
     /// Handle with which content is sent to the pages.
     pub fn screen(&self) -> DisplayHandle {
         self.screen.clone()
+    }
+}
+
+impl Drop for DisplayServer {
+    fn drop(&mut self) {
+        self.inputs.close();
+        // The server takes half a second at most to tell its pages; without waiting, the process would end before that.
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::io;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use axum::extract::State;
@@ -36,16 +37,20 @@ const ANSWER: Duration = Duration::from_secs(30);
 const MAX_REQUEST: usize = 16 * 1024;
 /// Pause after an error while accepting network connections.
 const AGAIN: Duration = Duration::from_millis(100);
+/// Time limit for telling all pages that the program ends, and how often it is checked whether all are told.
+const GOODBYE: Duration = Duration::from_millis(500);
+const TOLD: Duration = Duration::from_millis(5);
 
 /// Response to a request for the participant's page under another host name.
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
-/// Files of the participant's page: path, content type, and content of each file.
-const FILES: [(&str, &str, &str); 14] = [
+/// Files of the participant's page: path, content type, content.
+const FILES: [(&str, &str, &str); 15] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
     ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
     ("/sound.js", "text/javascript; charset=utf-8", include_str!("page/sound.js")),
+    ("/reason.js", "text/javascript; charset=utf-8", include_str!("page/reason.js")),
     ("/status.js", "text/javascript; charset=utf-8", include_str!("page/status.js")),
     ("/robot.js", "text/javascript; charset=utf-8", include_str!("page/robot.js")),
     ("/room.js", "text/javascript; charset=utf-8", include_str!("page/room.js")),
@@ -76,12 +81,19 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
         router = router.route(path, get(move || async move { (headers, text) }));
     }
     let answers = TowerToHyperService::new(router.with_state(hub.clone()));
-    let inputs = hub.inputs.clone();
-    // At the end of the session its network connections are closed, without waiting for further messages.
+    let (inputs, status) = (hub.inputs.clone(), hub.status.clone());
     tokio::select! {
-        () = take_connections(listener, hub, answers) => Ok(()),
-        () = inputs.closed() => Ok(()),
+        () = take_connections(listener, hub, answers) => {}
+        () = inputs.closed() => {}
     }
+    // Each connection tells its page that the program ends; further messages of pages are not waited for.
+    let all_told = async {
+        while status.pages.load(Ordering::Relaxed) > 0 {
+            sleep(TOLD).await;
+        }
+    };
+    let _ = timeout(GOODBYE, all_told).await;
+    Ok(())
 }
 
 /// Accepts network connections until the server stops.

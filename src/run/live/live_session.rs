@@ -25,7 +25,7 @@ use crate::run::desk::{GazeTracker, OperatorDesk};
 use crate::run::engine::SessionEngine;
 use crate::run::error::{LiveError, TerminalError};
 use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
-use crate::run::leaving::{LeavingReason, LiveOutcome};
+use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialCompletion};
 use crate::run::options::SessionStart;
 use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
 use crate::run::watch_desk::LiveComparison;
@@ -272,8 +272,9 @@ impl Live {
             None => {
                 let again = (leaving == LeavingReason::Redo).then(|| self.beginning_again());
                 let standing = ExclusionStatus::at_console(self.engine.session());
+                let tutorial = TutorialCompletion::from_session(self.engine.session());
                 let figures = TrialSummary::from_follower(&self.engine.into_follower());
-                Ok(LiveOutcome { folder, leaving, figures, standing, again })
+                Ok(LiveOutcome { folder, leaving, figures, tutorial, standing, again })
             }
         }
     }

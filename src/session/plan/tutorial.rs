@@ -60,7 +60,7 @@ pub struct TutorialStep {
     /// For the kinds `press` and `order`: the human's buttons, in the order in which the participant has to press them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
-    /// For the kind `order`, and for a signal that shows a recipe: name of the ordered dish.
+    /// For the kind `order`, for a signal that shows a recipe, and for a text that explains orders: the ordered dish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dish: Option<String>,
     /// For the kind `signal`: the highlighted location; without a location, the signal shows the recipe of `dish`.
@@ -111,6 +111,11 @@ impl TutorialStep {
 }
 
 impl Tutorial {
+    /// Whether this step is the first one in which the participant presses buttons.
+    pub fn has_first_presses(&self, step: usize) -> bool {
+        self.steps.iter().position(TutorialStep::has_presses) == Some(step)
+    }
+
     /// Index of the tutorial step with this identifier.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.steps.iter().position(|step| step.id == id)
@@ -211,7 +216,7 @@ fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError 
 }
 
 fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
-    use TutorialStepKind::{Order, Press, Question, Recipes, Signal};
+    use TutorialStepKind::{Order, Press, Question, Recipes, Signal, Text};
     let wrong = |key: &str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
     let kind = step.kind;
     let given = [
@@ -219,7 +224,7 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
         (
             "dish",
             step.dish.is_some(),
-            matches!(kind, Order | Signal),
+            matches!(kind, Order | Signal | Text),
             kind == Order || (kind == Signal && step.highlight.is_none()),
         ),
         ("highlight", step.highlight.is_some(), kind == Signal && step.dish.is_none(), false),

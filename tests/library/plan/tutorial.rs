@@ -5,11 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
-use tomcom::display::{DisplayStage, sight};
+use tomcom::display::{DisplayStage, ShownContent, sight};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
+use tomcom::run::leaving::TutorialCompletion;
 use tomcom::run::verify::verify;
 use tomcom::session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
@@ -118,6 +119,10 @@ fn a_participant_goes_through_the_whole_tutorial() {
     assert!(session.timeline.is_empty() && session.served.is_empty());
     let wrong = session.tutorial().expect("a tutorial").1.wrong_answers.iter().sum::<u32>();
     assert_eq!(wrong, 3, "each question was answered wrongly once");
+    assert_eq!(sight(session).stage, DisplayStage::Over);
+    let reached = TutorialCompletion::from_session(session).expect("a tutorial");
+    let presses = session.tutorial().expect("a tutorial").0.steps.iter().map(|step| step.presses.len() as u64).sum();
+    assert_eq!((reached.done, reached.presses, reached.wrong_answers), (reached.steps, presses, 3));
     assert_eq!(lesson.input(Event::SessionEnded), None);
     let log = lesson.log.folder().join(LOG_NAME);
     lesson.log.flush().expect("the log can be written");
@@ -139,7 +144,7 @@ fn only_the_button_that_is_asked_for_moves_the_kitchen_on() {
     assert_eq!(lesson.press("take rice"), None);
     assert_ne!(sight(lesson.session()).contents, empty);
     // The page before and back again: the step begins anew.
-    let back = TutorialEvent::Shown { step: "places".to_string(), by: BY_PARTICIPANT };
+    let back = TutorialEvent::Shown { step: "aside".to_string(), by: BY_PARTICIPANT };
     assert_eq!(lesson.tell(back), None);
     assert_eq!(sight(lesson.session()).contents, empty);
 }
@@ -172,6 +177,8 @@ fn the_page_is_told_recipes_only_while_they_are_shown() {
         assert_eq!(cards, if kind == TutorialStepKind::Recipes { dishes } else { 0 }, "{id}");
         let shows_recipe = told["signal"].get("recipe").is_some();
         assert_eq!(shows_recipe, kind == TutorialStepKind::Signal && has_dish, "{id}");
+        assert_eq!(told["tutorial"]["explains_buttons"], id == "take", "the first step with presses");
+        assert_eq!(page.contents.contains(&ShownContent::Dish("salmon maki".to_string())), has_dish && !shows_recipe);
         assert!(told["tutorial"]["question"]["right"].is_null(), "{id}: the right answer is told before it was given");
         assert!(told["tutorial"]["question"]["explanation"].is_null(), "{id}");
         if kind == TutorialStepKind::Recipes {

@@ -62,6 +62,8 @@
       cue = null;
     } else if (message.kind === "robot") {
       Robot.move(message.robot);
+    } else if (message.kind === "ended") {
+      Stage.mark({ ended: true });
     } else if (message.kind === "sight") {
       see(message);
     }
@@ -110,7 +112,7 @@
     const made = new WebSocket(`ws://${location.host}/talk`);
     socket = made;
     asked = performance.now();
-    made.onopen = () => { Stage.mark({ lost: false }); hello(); };
+    made.onopen = () => { Stage.mark({ lost: false, ended: false }); hello(); };
     made.onmessage = hear;
     made.onclose = () => {
       if (socket !== made) return;

@@ -54,7 +54,7 @@ const Hands = (() => {
     const lesson = Stage.shown() && Stage.shown().tutorial;
     if (lesson && Tutorial.key(event.key, lesson, isHeld)) return event.preventDefault();
     const button = scene.buttons.find(({ key }) => key && key.toLowerCase() === event.key.toLowerCase());
-    if (!button) return;
+    if (!button) return lesson && !isHeld && Tutorial.refuse(event.key, lesson);
     event.preventDefault();
     if (!isHeld) press(button.name, timeOf(event.timeStamp));
   }

@@ -7,8 +7,8 @@ const Room = (scene, fontFamily) => {
   // Size of names, and smallest size of text that has to be read at 3 m: its capitals are 17 arc minutes high there on
   // a stage of 1.5 m. Then the height of a name above its place, and the smallest size of an action's button.
   const NAME_SIZE = 0.0145, LEAST_SIZE = 0.0140, NAME = 0.034, PILL = [0.096, 0.05], GAP = 0.007;
-  // Width of the frame around an order with a signal, and the sizes that are tried for a button's words until they fit.
-  const FRAME = 0.007, SIZES = [1, 0.92, 0.84, 0.76, 0.68];
+  // Largest page of the tutorial. Width of the frame around an order with a signal, and the sizes that are tried for a button's words until they fit.
+  const LESSON = [0.28, 0.62], FRAME = 0.007, SIZES = [1, 0.92, 0.84, 0.76, 0.68];
   const ratio = scene.display_m[0] / scene.display_m[1];
   const ruler = document.createElement("canvas").getContext("2d");
 
@@ -116,15 +116,15 @@ const Room = (scene, fontFamily) => {
 
   /**
    * Area of a recipe that covers nothing of the kitchen: the largest free rectangle, or one that is large enough and
-   * near its order.
+   * near its order. At most so wide and high.
    */
-  function forRecipe(others, order) {
+  function forRecipe(others, order, most = [0.24, 0.5]) {
     // A line is a picture with words beside it. A larger line height than `enough` does not improve reading.
     const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08;
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
     const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
     const aim = order ? order[0] + order[2] / 2 : 0.5;
-    let best = [0, 0, 0, 0], most = -Infinity;
+    let best = [0, 0, 0, 0], highest = -Infinity;
     for (const left of lefts) for (const right of rights) {
       const columns = walls.filter(([x, , w]) => x < right && x + w > left).map(([, y, , h]) => [y, y + h]);
       let low = margin;
@@ -134,19 +134,32 @@ const Room = (scene, fontFamily) => {
         const down = order ? Math.max(0, low - order[1] - order[3]) : 0;
         // Among equal rectangles, the one nearer to the order or to the middle is taken.
         const worth = order ? Math.min(size, enough) - 0.03 * (across + down) : size - 0.01 * across;
-        if (worth > most) [best, most] = [[left, low, right - left, top - low], worth];
+        if (worth > highest) [best, highest] = [[left, low, right - left, top - low], worth];
         low = Math.max(low, bottom);
       }
     }
-    const [x, y, w, h] = best, high = Math.min(h, 0.5), wide = Math.min(w, 0.24);
+    const [x, y, w, h] = best, high = Math.min(h, most[1]), wide = Math.min(w, most[0]);
     const left = Math.min(x + w - wide, Math.max(x, aim - wide / 2));
     return [left, order ? y : y + (h - high) / 2, wide, high];
+  }
+
+  /** Whether what a page of the tutorial frames is the robot's. */
+  const isRobots = ({ area, place }) => area === "robot" || (place && ("storage" in place ? scene.storages[place.storage].agent === "robot" : scene.locations[place.location].kind === "robot_hand"));
+
+  /**
+   * Where a page of the tutorial can stand: where most room is, beside the recipe that it explains; or else over the robot's side, unless
+   * the page is about it.
+   */
+  function forLesson(others, recipe, frames) {
+    const all = recipe ? [...others, recipe] : others, [robots] = sides(), tags = scene.tags.map(({ area }) => area);
+    const beside = forRecipe(all, undefined, LESSON);
+    if (frames.some(isRobots)) return [beside];
+    return [beside, forRecipe(all.filter((rect) => tags.includes(rect) || !overlaps(rect, robots)), undefined, LESSON)];
   }
 
   return {
     isUpright: false, placed: scene, em: [0.01, 0.01 * ratio], moved: (point) => point,
     widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, taken, forPill, forStatus, forRecipe,
-    // A page of the tutorial stands where most room is, and beside the recipe that it explains.
-    forLesson: (others, recipe) => forRecipe(recipe ? [...others, recipe] : others),
+    isRobots, forLesson, enough: 1,
   };
 };

@@ -7,7 +7,7 @@ const Stage = (() => {
   // Higher than wide by so much, the screen shows the layout of upright screens, which is between so wide and so wide for its height.
   const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 0.5625;
   let told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
-  let marks = { lost: false, acts: true, free: false };
+  let marks = { lost: false, ended: false, acts: true, free: false };
 
   function element(kind, className, inside = "") {
     const made = document.createElement(kind);
@@ -158,10 +158,8 @@ const Stage = (() => {
     // A recipe opens near its order; the instruction opens in the largest free area.
     const free = room.forRecipe(all), cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area) : free));
     const recipe = put(element("div", "recipe"), free);
-    const why = element("div", "why");
-    why.setAttribute("role", "status");
     const hand = Robot.build(scene, room, element);
-    kitchen.append(...hand, recipe, why);
+    kitchen.append(...hand, recipe, Reason.build(element));
     const sheet = element("div", "sheet"), toast = element("div", "toast"), status = put(Status.build(element), tally), target = element("div", "target", "<i></i>");
     root.append(kitchen, status, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
@@ -169,7 +167,7 @@ const Stage = (() => {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, why, sheet, toast, flash, target, free, cards, all };
+    parts = { kitchen, locations, storages, recipe, sheet, toast, flash, target, free, cards, all };
     mark({});
   }
 
@@ -209,7 +207,7 @@ const Stage = (() => {
     return "storage" in spot ? parts.storages[spot.storage] : parts.locations[spot.location];
   }
 
-  function drawPresses(presses) {
+  function drawPresses({ presses, tutorial }) {
     ["human", "robot"].forEach((agent, index) => {
       const now = presses[index], before = shown && shown.presses[index];
       if (!now || !shown || (before && before.number === now.number)) return;
@@ -221,23 +219,15 @@ const Stage = (() => {
         replay(made, "shakes");
         Sound.play("effectless");
       }
-      drawReason(now, made);
+      drawReason(now, made, { tutorial });
     });
   }
 
-  /** Shows why a press had no effect, in a line below its place, until the next press or for a moment. */
-  function drawReason({ why }, made) {
-    const said = why ? (scene.words[`why ${why.reason}`] || "").replace("#", scene.locations[why.about].label) : "";
-    parts.why.replaceChildren(text("span", "", said));
-    if (!said) return parts.why.classList.remove("says");
-    const [box, stage] = [made.getBoundingClientRect(), parts.kitchen.getBoundingClientRect()];
-    // Its words are smaller where the stage is narrower than the line.
-    const [em, line] = [room.em[0], 2.8 * room.em[1]], most = 0.988, natural = room.widthOf(said, 1.6 * em) + 3 * em, wide = Math.min(most, natural);
-    const middle = (box.left + box.width / 2 - stage.left) / stage.width, low = (box.bottom - stage.top) / stage.height, high = (box.top - stage.top) / stage.height;
-    const top = low < 0.9 ? low + 0.1 * line : high - 1.1 * line;
-    parts.why.style.setProperty("--words", (wide - 3 * em) / (natural - 3 * em));
-    put(parts.why, [Math.min(0.994 - wide, Math.max(0.006, middle - wide / 2)), top, wide, line]);
-    replay(parts.why, "says");
+  /** Says why a press had no effect; in the tutorial, whose page says more, also that another button is asked for. */
+  function drawReason({ why, at }, made, { tutorial }) {
+    const { words } = scene, known = why ? (words[`why ${why.reason}`] || "").replace("#", scene.locations[why.about].label) : "";
+    const said = known || (tutorial && tutorial.missed ? words["tutorial not now"] : "");
+    Reason.draw(said, { place: made, isInside: room.isUpright || "storage" in at }, parts.kitchen, { room, text, put, replay });
   }
 
   function drawSignal(signal, contents) {
@@ -287,13 +277,14 @@ const Stage = (() => {
     return { picture, label: does === "use" ? named(spot.label) : label };
   }
 
-  /** Makes the words smaller until no name is broken and none is higher than its line. */
+  /** Makes the words smaller until no name is broken and none is higher than its line; returns their size. */
   function fitWords(made) {
     const fits = (said) => said.scrollWidth <= said.clientWidth && said.scrollHeight <= said.parentNode.clientHeight;
     for (let size = 1; size > 0.5; size -= 0.05) {
       made.style.setProperty("--words", size);
-      if ([...made.querySelectorAll("figcaption, .dish, h1, h2, p")].every(fits) && made.scrollHeight <= made.clientHeight) return;
+      if ([...made.querySelectorAll("figcaption, .dish, h1, h2, p")].every(fits) && made.scrollHeight <= made.clientHeight) return size;
     }
+    return 0;
   }
 
   function drawIntention(spot) {
@@ -301,19 +292,26 @@ const Stage = (() => {
     if (spot) partOf(spot).made.classList.add("intended");
   }
 
+  /** What the buttons show of themselves: their keys, the colours of their caps, or nothing. */
+  function badges() {
+    if (room.isUpright) return "";
+    if (scene.keys && scene.buttons.some((knob) => knob.key)) return "keys";
+    return scene.buttons.some((knob) => knob.colour) ? "colours" : "";
+  }
+
   const BIG = ["welcome", "questionnaire", "thanks", "probe"];
   function drawSheet(sight, left) {
     const { stage, practice } = sight;
     root.dataset.stage = stage;
     // The reason of an ineffective press is removed when the phase of the trial changes.
-    if (shown && shown.stage !== stage) parts.why.classList.remove("says");
+    if (shown && shown.stage !== stage) Reason.hide();
     const name = stage === "ready" && practice ? "practice" : stage;
     const title = scene.words[name], more = scene.words[`${name} text`];
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      const recipe = sight.signal && sight.signal.recipe, free = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf, fitWords });
+      const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
@@ -348,7 +346,7 @@ const Stage = (() => {
     if (isNewSignal(sight)) Sound.play("signal");
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
     sight.contents.forEach((what, index) => drawLocation(index, what));
-    drawPresses(sight.presses);
+    drawPresses(sight);
     drawIntention(sight.intention);
     if (sight.contents.length) Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
@@ -369,7 +367,7 @@ const Stage = (() => {
     root.classList.toggle("lost", marks.lost);
     if (!parts) return;
     const role = marks.acts ? "" : marks.free ? scene.words.free : scene.words.watches;
-    const said = marks.lost ? scene.words.lost : role;
+    const said = marks.ended ? scene.words.ended : marks.lost ? scene.words.lost : role;
     parts.toast.textContent = said;
     parts.toast.classList.toggle("open", Boolean(said));
   }

@@ -1,7 +1,9 @@
 "use strict";
 /** The tutorial: one card per step, frames around what the step explains, and a mark at the button to be pressed. */
 const Tutorial = (() => {
-  let timer = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [];
+  // What a page with presses can say of them.
+  const PRESSED = ["tutorial missed", "tutorial first press", "tutorial right", "tutorial again"], TICK_MS = 250;
+  let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
   // The choice that arrows or a gamepad are at, counted from 1; 0: none yet.
   let at = 0;
 
@@ -19,7 +21,7 @@ const Tutorial = (() => {
   const buttonOf = (name) => document.querySelector(`[data-button="${CSS.escape(name)}"]`);
 
   /** Frames what the step explains, and marks the next button, at once or after a while. */
-  function point(page, partOf) {
+  function point(page, partOf, isAsked) {
     clearMarks();
     clearTimeout(hinter);
     for (const frame of page.frames) {
@@ -29,17 +31,21 @@ const Tutorial = (() => {
     }
     if (!page.hint) return;
     const { button, after_s } = page.hint;
-    if (after_s === 0) mark(buttonOf(button), "hinted");
+    if (after_s === 0 || isAsked) mark(buttonOf(button), "hinted");
     else hinter = setTimeout(() => mark(buttonOf(button), "hinted"), 1000 * after_s);
   }
 
-  /** Shows the remaining time of the recipe cards as a bar; at its end the program is told. */
+  /** Shows the remaining time of the recipe cards as a bar and in seconds; at its end the program is told. */
   function count(page, bar) {
     clearTimeout(timer);
+    clearInterval(ticker);
     if (page.seconds === null) return;
     if (shownStep !== page.step) endsAt = performance.now() + 1000 * page.seconds;
-    const left = Math.max(0, endsAt - performance.now());
-    bar.animate([{ width: `${left / page.seconds / 10}%` }, { width: "0%" }], { duration: left, fill: "forwards" });
+    const left = Math.max(0, endsAt - performance.now()), [line, seconds] = bar.children;
+    line.animate([{ width: `${left / page.seconds / 10}%` }, { width: "0%" }], { duration: left, fill: "forwards" });
+    const tick = () => { seconds.textContent = `${Math.max(0, Math.ceil((endsAt - performance.now()) / 1000))} s`; };
+    tick();
+    ticker = setInterval(tick, TICK_MS);
     timer = setTimeout(() => told({ kind: "cards_shown", step: page.step }), left);
   }
 
@@ -75,44 +81,77 @@ const Tutorial = (() => {
     return made;
   }
 
-  /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
-  function draw(sheet, page, { scene, free, element, text, put, partOf, fitWords }) {
-    if (shownStep !== page.step) at = 0;
-    const words = scene.words, isLarge = page.kind === "recipes" || page.kind === "question";
-    const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left");
-    card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", page.text));
-    if (page.cards.length) card.append(cardsOf(page, scene, element, text));
-    if (page.seconds !== null) card.append(bar);
-    if (page.question) card.append(questionOf(page.question, words, element, text));
-    if (page.presses) {
-      const dots = element("div", "dots");
-      for (let press = 0; press < page.presses[1]; press += 1) dots.append(element("i", press < page.presses[0] ? "done" : ""));
-      card.append(dots);
-      if (page.missed) card.append(text("p", "verdict wrong", words["tutorial missed"]));
-      else if (page.done) card.append(text("p", "verdict right", words["tutorial right"]));
-    }
+  /** What was done, or what is still to be done, and the class of the line that says it. `isAsked`: the participant tried to go on before that. */
+  function verdictOf(page, isAsked) {
+    const all = page.presses && page.presses[0] === page.presses[1];
+    if (page.missed) return ["tutorial missed", "wrong"];
+    if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`, "wrong"];
+    if (all) return ["tutorial right", "right"];
+    return page.presses && page.done ? ["tutorial again", ""] : ["", ""];
+  }
+
+  /** How a button is pressed: by what its badge shows, or by touch. */
+  function howOf(words, badges) {
+    if (!badges) return words["tutorial touch"];
+    const shown = words[`tutorial ${badges}`];
+    return navigator.maxTouchPoints ? `${shown} ${words["tutorial touch too"]}` : shown;
+  }
+
+  function pressesOf({ presses }, element) {
+    const dots = element("div", "dots");
+    for (let press = 0; press < presses[1]; press += 1) dots.append(element("i", press < presses[0] ? "done" : ""));
+    return dots;
+  }
+
+  /** The buttons that turn the page; the one that goes on looks closed until the step is done. */
+  function turnsOf(page, words, element, text) {
     const row = element("div", "row");
     const button = (turn, label, isOpen) => {
       const made = text("button", turn, label);
-      if (isOpen) made.dataset.turn = turn;
-      else made.disabled = true;
+      made.dataset.turn = turn;
+      if (!isOpen) made.setAttribute("aria-disabled", "true");
       row.append(made);
     };
     if (page.number > 1) button("back", words.back, true);
-    button("next", words.next, page.done);
-    card.append(row);
+    button("next", page.number === page.of ? words["tutorial end"] : words.next, page.done);
+    return row;
+  }
+
+  /** Puts the card into the first of these areas in which its words need not be much smaller, with room for what it can say until the step is done. */
+  function fit(card, isLarge, page, { scene, areas, enough, put, fitWords }) {
+    const line = card.querySelector(".verdict.line"), said = line.textContent;
+    if (page.presses) line.textContent = PRESSED.map((name) => scene.words[name]).reduce((a, b) => (b.length > a.length ? b : a));
+    if (isLarge) fitWords(card);
+    else areas.some((area) => fitWords(put(card, area)) >= enough);
+    line.textContent = said;
+  }
+
+  /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
+  function draw(sheet, page, kit, isAsked = false) {
+    const { scene, badges, element, text, partOf } = kit, words = scene.words, isLarge = page.kind === "recipes" || page.kind === "question";
+    if (shownStep !== page.step) at = 0;
+    drawn = { sheet, kit };
+    const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left", "<i></i><span></span>");
+    card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", page.text));
+    if (page.explains_buttons) card.append(text("p", "says how", howOf(words, badges)));
+    if (page.cards.length) card.append(cardsOf(page, scene, element, text));
+    if (page.seconds !== null) card.append(bar);
+    if (page.question) card.append(questionOf(page.question, words, element, text));
+    if (page.presses) card.append(pressesOf(page, element));
+    const [verdict, kind] = verdictOf(page, isAsked);
+    card.append(text("p", `verdict line ${kind}`, words[verdict] || ""), turnsOf(page, words, element, text));
     sheet.classList.toggle("shaded", isLarge);
-    if (!isLarge) put(card, free);
     sheet.replaceChildren(card);
-    fitWords(card);
+    fit(card, isLarge, page, kit);
     count(page, bar);
-    point(page, partOf);
+    point(page, partOf, isAsked);
     shownStep = page.step;
   }
 
   function end() {
     clearMarks();
     clearTimeout(timer);
+    clearInterval(ticker);
     clearTimeout(hinter);
     shownStep = "";
   }
@@ -144,12 +183,20 @@ const Tutorial = (() => {
     return Boolean(message);
   }
 
+  /** Says what is missing, if a key that goes on is pressed before the step is done; whether it was such a key. */
+  function refuse(pressed, page) {
+    const goesOn = ["ArrowRight", "Enter"].includes(pressed) && !page.done;
+    if (goesOn) draw(drawn.sheet, page, drawn.kit, true);
+    return goesOn;
+  }
+
   /** The same for a button of a gamepad. As long as presses are asked for, all its buttons are those of the kitchen. */
-  const pad = (pressed, page) => (!page.presses || page.done) && key(pressed, page, false);
+  const pad = (pressed, page) => (!page.presses || page.done) && (key(pressed, page, false) || refuse(pressed, page));
 
   function touch({ choose, turn }, page) {
+    if (turn === "next" && refuse("ArrowRight", page)) return;
     told(choose ? { kind: "choose", step: page.step, choice: Number(choose) } : { kind: "turn", step: page.step, forward: turn === "next" });
   }
 
-  return { draw, end, key, pad, touch, begin: (tell) => { told = tell; } };
+  return { draw, end, key, refuse, pad, touch, begin: (tell) => { told = tell; } };
 })();

@@ -9,8 +9,11 @@ const Upright = (wall, fontFamily, ratio) => {
   const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 8.4], TEXTS = 15;
   // Width and height of what the robot has, room below what is touched, height of the title of the robot's side.
   const SMALL = 4.8, INNER = 0.7, TITLE = 2.2;
-  const scene = { ...wall, display_m: [ratio, 1], tags: [] }, high = WIDE / ratio;
-  const measure = Room(scene, fontFamily).widthOf;
+  // Where keys are not shown, the buttons of several orders are told apart by their numbers.
+  const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
+  const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
+  const scene = { ...wall, buttons: wall.buttons.map(numbered), display_m: [ratio, 1], tags: [] }, high = WIDE / ratio;
+  const across = Room(scene, fontFamily), measure = across.widthOf;
   const of = (kind) => scene.locations.flatMap((spot, index) => (spot.kind === kind ? [index] : []));
   const places = of("place").sort((a, b) => scene.locations[a].area[1] - scene.locations[b].area[1] || scene.locations[a].area[0] - scene.locations[b].area[0]);
   const shelves = (agent) => scene.storages.flatMap((shelf, index) => (shelf.agent === agent ? [index] : []));
@@ -113,18 +116,17 @@ const Upright = (wall, fontFamily, ratio) => {
     return Math.min(WORDS, (areas.limits.get(area) ?? WIDE) / Math.max(0.01, measure(label, 1)));
   }
 
-  /** Where a button of an action stands, and how large its words are. */
+  /** Where a button of an action stands, and how large its words are, of which each has a line of its own if need be. */
   function forPill({ name, label }) {
     const area = areas.knobs.get(name);
-    return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / measure(label, 1.6)) };
+    return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / Math.max(...label.split(" ").map((word) => measure(word, 1.6)))) };
   }
 
-  /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. The robot's side is hidden unless the text is about it. */
+  /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. Only a text that has no room there hides the robot's side, and never if it is about it. */
   function forLesson(_, recipe, frames) {
-    const isTheirs = ({ area, place }) => area === "robot" || (place && ("storage" in place ? scene.storages[place.storage].agent === "robot" : scene.locations[place.location].kind === "robot_hand"));
-    if (recipe) return zones.places;
-    if (frames.some(isTheirs)) return frames.some(({ place }) => place && !isTheirs({ place })) ? free : zones.places;
-    return [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
+    if (recipe) return [zones.places];
+    if (frames.some(across.isRobots)) return frames.some(({ place }) => place && !across.isRobots({ place })) ? [free] : [free, zones.places];
+    return [free, [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]]];
   }
 
   /** A point of the wall's display here: each place is where it is here, and between places lies what lies between them there. */
@@ -142,7 +144,7 @@ const Upright = (wall, fontFamily, ratio) => {
   return {
     isUpright: true, placed, em: [1 / WIDE, 1 / high], moved, nameSize, forPill, forLesson,
     widthOf: (said, size) => measure(said, size),
-    sides: () => [zones.theirs, zones.mine], table: () => zones.places, taken: () => [],
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, taken: () => [], enough: 0.8,
     forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
   };
 };

@@ -16,7 +16,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if area.area() == 0 {
         return;
     }
-    // Times are those of the recording, which also run before the trial and in pauses.
+    // The times are times of the recording, which also go on before the trial and in pauses.
     let end = format!(" {} of {} ", session.time, playback.length.max(session.time));
     let quiet = brush.style(TextRole::Quiet);
     brush.text(area.x, area.y, area.width, " recording ", quiet);

@@ -121,7 +121,7 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     assert_eq!(terminal.log(), log, "the log stays as it is");
     let told = tmux::tomcom(&["codes", name]);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();
-    assert!(told.contains("consensus of R1 and R2: 1 agreed, 1 settled"), "{told}");
+    assert!(told.contains("consensus of R1 and R2 on errors: 1 agreed, 1 settled"), "{told}");
     terminal.run(&format!("{TOMCOM} replay {name} --settle R1 R3"));
     terminal.is_whole("2");
     terminal.see("no codes of the rater R3");

@@ -43,11 +43,11 @@ impl LiveOutcome {
         let standing = if self.standing.counts() {
             String::new()
         } else {
-            format!("left out of the analysis: {}\n", self.standing.describe())
+            format!("the recording is left out of the analysis: {}\n", self.standing.describe())
         };
         format!(
-            "{presses} of both, {signals}, {served} served\n{standing}recorded in {folder}\n\
-             look at it again: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
+            "{presses} of human and robot, {signals}, {served} served\n{standing}recorded in {folder}\nlook at the \
+             recording: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
         )
     }
 }

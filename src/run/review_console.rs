@@ -172,7 +172,7 @@ impl Review {
         let Some(coding) = &self.model.coding else { return };
         let error = coding.errors.iter().find(|error| error.press == press);
         let said = match (coding.next_step(), error) {
-            (Some(next), _) => format!("saved; {next}"),
+            (Some(next), _) => format!("code saved; {next}"),
             (None, Some(error)) => {
                 format!("saved: error {}, {}", error.error, RaterSession::words(coding.code(error)))
             }
@@ -180,7 +180,7 @@ impl Review {
         };
         match coding_desk::save(&self.film, coding) {
             Ok(()) => self.model.say(NoticeLevel::Done, said),
-            Err(error) => self.model.say(NoticeLevel::Alarm, format!("not saved: {error}")),
+            Err(error) => self.model.say(NoticeLevel::Alarm, format!("code not saved: {error}")),
         }
     }
 
@@ -257,14 +257,14 @@ impl Review {
         match self.film.landmark(what, forward) {
             Some(position) => self.stand_at(position),
             None => {
-                let which = if forward { "further" } else { "earlier" };
+                let which = if forward { "later" } else { "earlier" };
                 let what = match what {
                     ReplayLandmark::Error => "error",
                     ReplayLandmark::Signal => "signal",
-                    ReplayLandmark::Marker => "marker",
+                    ReplayLandmark::Marker => "note",
                     ReplayLandmark::FalseBelief => "false belief",
                 };
-                self.model.say(NoticeLevel::Refused, format!("no {which} {what}"));
+                self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {what}"));
             }
         }
     }

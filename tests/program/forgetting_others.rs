@@ -108,7 +108,7 @@ fn tables_of_other_programs_stay_as_they_are_and_are_told_where_they_name_the_pa
     let before = lab.files();
     let (code, told) = lab.forget(&["P01", "--yes"]);
     assert_eq!(code, Some(1), "something is left: {told}");
-    let (_, left) = told.split_once("left:\n").expect("what is left");
+    let (_, left) = told.split_once("not deleted:\n").expect("what is left");
     let left: Vec<&str> = left.lines().collect();
     assert_eq!(left.len(), 4, "{told}");
     assert!(

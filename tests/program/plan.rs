@@ -94,9 +94,12 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     let study = "sessions/study.toml";
     refused(&["plan", "sessions/default.toml"], "a session without a plan");
     refused(&["operate", study], "and no participant");
-    refused(&["operate", study, "--code", "P15"], "--code P15, who is not in the plan");
-    refused(&["operate", study, "--code", "P01", "--condition", "none"], "--condition, with a session that has a plan");
-    refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session that has a plan");
+    refused(&["operate", study, "--code", "P15"], "--code P15, a participant who is not in the plan");
+    refused(
+        &["operate", study, "--code", "P01", "--condition", "none"],
+        "--condition, with a session file that has a plan",
+    );
+    refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session file that has a plan");
     let root = env!("CARGO_MANIFEST_DIR");
     let wrong = folder("wrong").join("study.toml");
     // The settings of a recording are no session file: its place in the plan is not for people to write.
@@ -197,7 +200,7 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     terminal.see("and agrees to");
     terminal.key("2");
     terminal.is_whole("0");
-    terminal.see("A1 does not agree: nothing was recorded");
+    terminal.see("A1 does not agree to be recorded: nothing was recorded");
     assert!(!out.exists(), "nothing is recorded without consent");
     operate(&terminal, &session, &out);
     terminal.see("and agrees to");

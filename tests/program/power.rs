@@ -104,8 +104,8 @@ fn the_type_i_error_needs_unassisted_trials_alone() {
     ]);
     let strong: Value = serde_json::from_str(&strong).expect("one JSON object");
     assert_eq!(strong["ratio"].as_f64(), Some(0.2));
-    refused(&["power", &plan, "--from", &pool], "a pool of unassisted trials alone");
-    refused(&["arms", &plan, "--from", &pool], "a pool of unassisted trials alone");
+    refused(&["power", &plan, "--from", &pool], "a pool that has only unassisted trials");
+    refused(&["arms", &plan, "--from", &pool], "a pool that has only unassisted trials");
 }
 
 #[test]

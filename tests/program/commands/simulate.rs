@@ -223,5 +223,5 @@ fn fit_people_writes_population_and_persons_that_a_plan_uses() {
         assert!(header["session"].get("people").is_none());
         figures(&["replay", recording, "--verify", "--format", "json"], 0);
     }
-    assert!(complaint(&["fit", recordings[0], recordings[1], "--people"]).contains("recordings of P01 alone"));
+    assert!(complaint(&["fit", recordings[0], recordings[1], "--people"]).contains("recordings of one person, P01"));
 }

@@ -72,7 +72,7 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     terminal.key("C-c");
     terminal.is_whole("1");
     let told = fs::read_to_string(errors).expect("errors");
-    assert!(told.contains(says) && told.contains("what was recorded until then is in"), "{name}: {told}");
+    assert!(told.contains(says) && told.contains("everything recorded until then is in"), "{name}: {told}");
 }
 
 fn opened(log: &Path) -> File {

@@ -48,7 +48,7 @@ fn a_damaged_table_is_told_and_those_beside_it_stay_until_it_is_gone() {
         }
         if name == "short-row" {
             assert!(
-                told.contains("study/participants.csv: 1 row is about the participant; it is changed together"),
+                told.contains("study/participants.csv: 1 row is about the participant; this table is changed together"),
                 "{told}"
             );
             let (code, told) = lab.forget(&["P01", "--yes"]);

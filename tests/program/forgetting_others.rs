@@ -114,9 +114,12 @@ fn tables_of_other_programs_stay_as_they_are_and_are_told_where_they_name_the_pa
     assert!(
         left[0].contains("ages/participants.csv: 1 row is about the participant, in a table that tomcom did not write")
     );
-    assert!(left[1].contains("excel/participants.csv: it names the participant"), "{told}");
+    assert!(left[1].contains("excel/participants.csv: the table names the participant"), "{told}");
     assert!(left[2].contains("report.html: a report that does not say who made it"), "{told}");
-    assert!(left[3].contains("seed1-P01-1.mp4: it has the name of one of the participant's recordings"), "{told}");
+    assert!(
+        left[3].contains("seed1-P01-1.mp4: the file has the name of one of the participant's recordings"),
+        "{told}"
+    );
     let after = lab.files();
     for (path, bytes) in
         before.iter().filter(|(path, _)| !path.starts_with("seed1-P01-1/") && !path.starts_with("seed1-P01-2/"))

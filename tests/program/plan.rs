@@ -93,7 +93,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     };
     let study = "sessions/study.toml";
     refused(&["plan", "sessions/default.toml"], "a session without a plan");
-    refused(&["operate", study], "and no participant");
+    refused(&["operate", study], "and no code of a participant");
     refused(&["operate", study, "--code", "P15"], "--code P15, a participant who is not in the plan");
     refused(
         &["operate", study, "--code", "P01", "--condition", "none"],
@@ -171,13 +171,13 @@ fn check_goes_on_after_a_kill(other: &Terminal, session: &Path, out: &Path) {
             other.key(".");
             std::thread::sleep(std::time::Duration::from_millis(800));
         }
-        other.screen().contains(". next: questionnaire")
+        other.screen().contains(". next phase: questionnaire")
     });
     other.key(".");
     answer(other, "4");
     other.key(".");
     other.see("A1 trial 2/2");
-    trial(other, ". next: questionnaire");
+    trial(other, ". next phase: questionnaire");
     other.key(".");
     answer(other, "7");
     on_until(other, "Debriefing of the wizard");

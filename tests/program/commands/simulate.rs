@@ -180,7 +180,7 @@ fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
         assert!(found.get(key).is_some(), "{key} in {found}");
     }
     assert!(complaint(&["fit", &session]).contains("events.jsonl"));
-    assert!(complaint(&["fit", recording, "--probes"]).contains("no answer to a probe"));
+    assert!(complaint(&["fit", recording, "--probes"]).contains("no answer to a freeze probe"));
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
         ("u", "saved: error 2, -"),
         ("C-y", "saved: error 2, wrong about cooking pot"),
         ("Down", "coded, 2 since opening"),
-        ("3", "not coded: error 3 is only selected"),
+        ("3", "no code given: error 3 is only selected"),
         ("Enter", "coded, 2 since opening"),
         ("3", "saved: error 3, other cause"),
         ("DC", "saved: error 3, -"),

@@ -158,7 +158,7 @@ fn a_recording_is_written_by_one_program_and_continued_once() {
     fs::rename(&recording, root.join("elsewhere")).expect("moved");
     let output = tomcom(&["replay", &last.display().to_string(), "--verify"]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.code() == Some(2) && told.contains("which is not there"), "{told}");
+    assert!(output.status.code() == Some(2) && told.contains("a recording that is not there"), "{told}");
 }
 
 /// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.

@@ -94,7 +94,7 @@ pub(super) fn write(
         ProbeAnswerer::Console => {}
     }
     let Some((index, question)) = open.question() else {
-        return refuse(model, "the freeze probe asks no question now");
+        return refuse(model, "the probe asks no question now");
     };
     let (mut entry, choices) = (model.probe_entry.for_question(open.number, index), question.choices.len());
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);

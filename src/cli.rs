@@ -148,7 +148,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         return estimates::offers(args);
     }
     let [recording] = &args.recordings[..] else {
-        let help = "one recording, or --check-beliefs, --accuracy or --offers";
+        let help = "one recording to replay, or several with --check-beliefs, --accuracy or --offers";
         return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
     };
     if args.verify {
@@ -207,8 +207,10 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let aborted = if ruling.excluded { None } else { standing::aborted(&recording)? };
     let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),
-        (false, None) => "counts again".to_string(),
-        (false, Some(reason)) => format!("is not excluded; it is still left out of the analysis, as aborted: {reason}"),
+        (false, None) => "is counted in the analysis again".to_string(),
+        (false, Some(reason)) => format!(
+            "is not excluded any more, but is still left out of the analysis, since its trial was aborted: {reason}"
+        ),
     };
     print(args.format, &ruling, || format!("{} {words}\n", recording.display()))
 }
@@ -242,8 +244,11 @@ fn man(args: &ManArgs) -> Result<(), Failure> {
         Some(name) => match root.find_subcommand(name) {
             Some(command) => command.clone(),
             None => {
-                let help = "one of those that tomcom --help lists";
-                return Err(Failure::Wrong(miette::miette!(help = help, "found {name}, which is no command")));
+                let help = "a command that tomcom --help lists";
+                return Err(Failure::Wrong(miette::miette!(
+                    help = help,
+                    "found {name}, which is not a command of tomcom"
+                )));
             }
         },
     };

@@ -138,8 +138,8 @@ impl BeliefErrorSummary {
         };
         let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.1}"));
         format!(
-            "belief related: {related} of {errors} errors ({:.0} %), in {} of {} errors each (whatever \
-             the aspect {}), over after {} s",
+            "belief related errors: {related} of {errors} ({:.0} %), in {} of {} errors each ({} if a sequence may mix \
+             aspects), over after {} s",
             100.0 * related as f64 / errors.max(1) as f64,
             count(sequences, "sequence", "sequences"),
             number(self.mean_sequence_length),

@@ -51,7 +51,7 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let mut battery = read_battery(&args.battery)?;
     let names: Vec<String> = battery.cohorts.iter().map(|cohort| cohort.name.get_ref().clone()).collect();
     if let Some(unknown) = args.cohort.iter().find(|name| !names.contains(name)) {
-        let remedy = format!("one of its cohorts: {}", names.join(", "));
+        let remedy = format!("one of the cohorts in the file: {}", names.join(", "));
         return Err(wrong_argument(&args.battery, format!("--cohort \"{unknown}\""), &remedy));
     }
     battery.cohorts.retain(|cohort| args.cohort.is_empty() || args.cohort.contains(cohort.name.get_ref()));
@@ -61,7 +61,7 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let seed = args.seed.unwrap_or(spec.seed);
     let choose_seed = args.choose_seed.unwrap_or(seed.wrapping_add(1));
     if seed == choose_seed {
-        let found = format!("--choose-seed {choose_seed}, on which the trials are judged");
+        let found = format!("--choose-seed {choose_seed}, which is also the seed of the trials that are judged");
         return Err(wrong_argument(&args.battery, found, "another seed than --seed"));
     }
     let width = name_width(battery.cohorts.iter().map(|cohort| cohort.name.get_ref().as_str()));

@@ -80,7 +80,7 @@ pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2],
     match raters {
         [one, other] if one == other => Err(wrong(format!("found the rater \"{one}\" twice"))),
         [one, other] => Ok([one.clone(), other.clone()]),
-        _ => Err(wrong(format!("found {} raters", raters.len()))),
+        _ => Err(wrong(format!("found {} raters after {option}", raters.len()))),
     }
 }
 
@@ -96,8 +96,8 @@ fn check_rater(rater: &str) -> Result<(), Failure> {
 /// Refuses to code errors without a terminal.
 fn check_terminal() -> Result<(), Failure> {
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
-        let help = "a terminal; tomcom codes takes codes from a table";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found no terminal to code errors at")));
+        let help = "run it in a terminal, or import a table of codes with tomcom codes";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found no terminal in which errors can be coded")));
     }
     Ok(())
 }
@@ -166,7 +166,7 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     let code = &args.code;
     if !is_code(code) {
         let help = "a code of 1 to 32 letters, digits, - and _, such as P07";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found the code \"{code}\"")));
+        return Err(Failure::Wrong(miette::miette!(help = help, "found the participant's code \"{code}\"")));
     }
     let found = forget::find(&args.folder, &std::env::temp_dir(), code)?;
     if let Some(fault) = participant_code::fault(code).filter(|_| found.is_empty()) {
@@ -175,7 +175,7 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
         let folder = args.folder.display();
         return Err(Failure::Wrong(miette::miette!(
             help = help,
-            "found the code \"{code}\", and nothing in {folder} that has it: {fault}"
+            "found the code \"{code}\", and no files in {folder} of a participant with this code: {fault}"
         )));
     }
     if !found.is_empty() && !args.yes && !is_meant(args, &found)? {
@@ -186,8 +186,14 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     let done = if deletes { forget::delete(found)? } else { found };
     print(args.format, &ForgetSummary::new(&done, deletes), || match deletes {
         true => format!("deleted:\n{}{}", listed(&done), left(&done)),
-        false if done.left.is_empty() => format!("nothing of {code} is in {}\n", args.folder.display()),
-        false => format!("nothing of {code} that can be deleted is in {}\n{}", args.folder.display(), left(&done)),
+        false if done.left.is_empty() => {
+            format!("there are no files of participant {code} in {}\n", args.folder.display())
+        }
+        false => format!(
+            "there are no files of participant {code} that can be deleted in {}\n{}",
+            args.folder.display(),
+            left(&done)
+        ),
     })?;
     if deletes && done.left.is_empty() { Ok(()) } else { Err(Failure::No) }
 }
@@ -200,10 +206,16 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
         if args.format == OutputFormat::Json {
             print(args.format, &ForgetSummary::new(found, false), String::new)?;
         }
-        let help = "--yes, or a terminal to answer at";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found nobody to ask whether this is to be deleted")));
+        let help = "--yes, or a terminal in which the question is answered";
+        return Err(Failure::Wrong(miette::miette!(
+            help = help,
+            "found no terminal to ask in whether these files are to be deleted"
+        )));
     }
-    put_aside(&format!("It cannot be brought back. To delete it, type the code {} again: ", args.code));
+    put_aside(&format!(
+        "Deleted files cannot be brought back. To delete them, type the participant's code {} again: ",
+        args.code
+    ));
     let mut answer = String::new();
     input.lock().read_line(&mut answer)?;
     Ok(answer.trim() == args.code)
@@ -222,7 +234,7 @@ fn listed(found: &ParticipantData) -> String {
     let recordings = found.recordings.iter().map(recording);
     let files = found.files.iter().map(|path| line(path, ""));
     let tables = found.tables.iter().map(|(path, rows)| line(path, &format!(" ({})", count(*rows, "row", "rows"))));
-    let trainings = found.trainings.iter().map(|path| line(path, " (what was trained on these recordings)"));
+    let trainings = found.trainings.iter().map(|path| line(path, " (a wizard's training on these recordings)"));
     recordings.chain(files).chain(tables).chain(trainings).collect()
 }
 
@@ -230,5 +242,5 @@ fn listed(found: &ParticipantData) -> String {
 /// stays.
 fn left(found: &ParticipantData) -> String {
     let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
-    if lines.is_empty() { lines } else { format!("left:\n{lines}") }
+    if lines.is_empty() { lines } else { format!("not deleted:\n{lines}") }
 }

@@ -26,8 +26,8 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
         steps: args.steps as usize,
         reference_steps: args.reference_steps.min(args.steps) as usize,
     };
-    // Each step is planned twice: with the budget of a session, and with the larger budget.
-    let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
+    // Each step is planned twice: with the budget of a session, and with the larger one.
+    let bar = progress(2 * args.steps + args.reference_steps, "answers of the planner at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || planner_accuracy::describe(&found))
@@ -65,7 +65,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         return fit_people(args, &trials, &plan, write);
     }
     let searches = if args.probes { 2 } else { 1 };
-    let bar = progress(searches * plan.most_tries as u64, "tries at most");
+    let bar = progress(searches * plan.most_tries as u64, "tries of parameters at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
     write(&HumanModelFile::new(found.model.clone(), None), &fitting::comment(&found))?;
@@ -80,7 +80,7 @@ fn fit_people(
     write: impl Fn(&HumanModelFile, &str) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     fit_people::require_people(&args.recordings, trials)?;
-    let bar = progress(fit_people::most_replays(trials, plan), "replays at most");
+    let bar = progress(fit_people::most_replays(trials, plan), "replays of recordings at most");
     let found = fit_people::fit(trials, plan, || bar.inc(1));
     bar.finish_and_clear();
     write(&found.file, &people_summary::people_comment(fitting::FITTED, &found))?;

@@ -65,7 +65,7 @@ pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
     };
     let number = count(found.len() as u64, "recording", "recordings");
     Err(Failure::Wrong(miette::miette!(
-        help = format!("one of {}{more}", named.join(", ")),
+        help = format!("one of the recordings {}{more}", named.join(", ")),
         "{}: found a folder with {number}, where one recording is meant",
         path.display()
     )))

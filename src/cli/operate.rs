@@ -131,10 +131,12 @@ pub(super) fn new_session(
 pub(super) fn address_without_port(text: &str) -> Result<IpAddr, String> {
     text.parse().map_err(|_| match text.parse::<SocketAddr>() {
         Ok(with_port) => format!(
-            "right would be an address without a port, as {}; the port is `port` under [display] in the session file (only --rerun-listen takes \
-             both)",
+            "right would be an address without a port, such as {}; the port is `port` under [display] in the session \
+             file (only --rerun-listen takes both)",
             with_port.ip()
         ),
-        Err(_) => "right would be an IP address of this computer, as 192.168.1.5, or 0.0.0.0 for all".to_string(),
+        Err(_) => "right would be an IP address of this computer, such as 192.168.1.5, or 0.0.0.0 for all of its \
+                   addresses"
+            .to_string(),
     })
 }

@@ -140,7 +140,10 @@ impl PoolArgs {
         }
         if self.shard != SimulationShard::WHOLE {
             let (SimulationShard { number, of }, persons) = (self.shard, pool.persons.len() as u64);
-            put_aside(&format!("part {number} of {of}: {}\n", count(persons, "participant", "participants")));
+            put_aside(&format!(
+                "part {number} of {of} of the pool was simulated: {}\n",
+                count(persons, "participant", "participants")
+            ));
             return Ok(None);
         }
         Ok(Some(pool))
@@ -182,7 +185,7 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     sizes.sort_unstable();
     sizes.dedup();
     let request = PowerRequest { sizes, studies: args.studies, effect };
-    let bar = progress(power_measurement::blocks(&request, &pool), "blocks of studies");
+    let bar = progress(power_measurement::blocks(&request, &pool), "blocks of drawn studies");
     let found = power_measurement::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
     bar.finish_and_clear();
     if let Some(file) = &args.csv {
@@ -198,7 +201,7 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
 pub(super) fn arms(args: &ArmsArgs) -> Result<(), Failure> {
     let Some(pool) = args.pool.pool(true, false)? else { return Ok(()) };
     if !pool.header.arms {
-        let found = "a pool of unassisted trials alone".to_string();
+        let found = "a pool that has only unassisted trials".to_string();
         return Err(wrong_argument(args.pool.source(), found, "a pool made without --null"));
     }
     let table = arm_table::StudyArmTable::from_pool(&pool);

@@ -41,16 +41,20 @@ pub(super) fn open(
     let asked = RerunReviewRequest { recordings, save, web, at };
     match review(&asked)? {
         RerunReviewOutcome::Saved(file) => {
-            let how = if file.made { "made from the log" } else { "is there already" };
+            let how = if file.made { "was made from the log" } else { "is there already" };
             put(&format!("{} {how}{}\n", file.path.display(), because(&file)))?;
         }
         RerunReviewOutcome::Opened(file) => {
             put(&format!("the viewer opens {}{}\n", file.path.display(), because(&file)))?;
         }
         RerunReviewOutcome::Served { url, because, _serving } => {
-            put(&format!("{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}\n"))?;
+            put(&format!(
+                "{because}: the Rerun viewer is served here, for a browser on this machine, until ctrl+c\n{url}\n"
+            ))?;
             if let Some(at) = at {
-                put(&format!("what comes from {at} on is marked in its time line: a click there goes to it\n"))?;
+                put(&format!(
+                    "the time from {at} on is marked in the viewer's time line: a click on the mark goes there\n"
+                ))?;
             }
             until_asked_to_end()?;
         }
@@ -60,10 +64,10 @@ pub(super) fn open(
 
 /// Why an existing stream file was rebuilt, in words.
 fn because(file: &RerunStreamFile) -> String {
-    file.because.map_or(String::new(), |because| format!(", anew: {because}"))
+    file.because.map_or(String::new(), |because| format!(", and was made anew, since {because}"))
 }
 
 fn still_running(one: &OngoingRecording) -> String {
-    let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; live: rerun {viewers}"));
-    format!("{}: this session is still running, and is shown up to now{live}\n", one.recording.display())
+    let live = one.viewers.as_ref().map_or(String::new(), |viewers| format!("; to watch it live: rerun {viewers}"));
+    format!("{}: this session is still running, and its recording is shown up to now{live}\n", one.recording.display())
 }

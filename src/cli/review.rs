@@ -36,7 +36,7 @@ pub(super) struct ReviewArgs {
 
 /// Parses a time on the trial's clock, written as the console shows it, or in seconds.
 fn moment(text: &str) -> Result<SessionTime, String> {
-    let wrong = || "minutes and seconds, as 1:34, or seconds, as 94.6".to_string();
+    let wrong = || "a time in minutes and seconds, such as 1:34, or in seconds, such as 94.6".to_string();
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
     let (minutes, seconds) = match text.split_once(':') {
         None => (0.0, number(text)),
@@ -61,7 +61,7 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
         save = Some(Some(file));
     }
     if let (Some(None), 2..) = (&save, recordings.len()) {
-        let help = "--save=out.rrd: several recordings have no folder of their own";
+        let help = "--save=out.rrd: the stream of several recordings needs the name of a file";
         return Err(Failure::Wrong(miette::miette!(
             help = help,
             "found --save without a file, with {} recordings",

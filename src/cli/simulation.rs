@@ -37,7 +37,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
             let most = study.plan.codes().len() as u64 * study.plan.conditions.len() as u64;
             if let Some(trials) = trials.filter(|&trials| trials > most) {
                 let found = format!("--trials {trials}, with a plan of {most} trials");
-                return Err(wrong_argument(&args.session, found, "at most the trials of the plan"));
+                return Err(wrong_argument(&args.session, found, "no more trials than the plan has"));
             }
             trials.unwrap_or(most)
         }
@@ -52,7 +52,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         Some(condition) => condition.into(),
     };
     if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
-        let found = "--condition wizard, with a wizard who is a person".to_string();
+        let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
     files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
@@ -87,7 +87,9 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
         [(acts, "condition = \"assistant\"", "--condition assistant"), (advises, "shadow = \"on\"", "--shadow")];
     for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {
         let session = args.session.display();
-        put_aside(&format!("{session}: {found} holds at the console; trials are simulated with it by {option}\n"));
+        put_aside(&format!(
+            "{session}: {found} has an effect only at the console; trials are simulated with it if {option} is given\n"
+        ));
     }
 }
 
@@ -99,7 +101,8 @@ fn tell_absent_wizard(args: &SimulateArgs, spec: &SessionSpec) {
         plan.conditions.iter().filter(is_wizards).map(|arm| format!("\"{}\"", arm.name())).collect();
     if !silent.is_empty() {
         put_aside(&format!(
-            "{}: trials of {} are simulated without signals, since the wizard is a person; [wizard] with kind = \"scripted\" simulates one\n",
+            "{}: trials of {} are simulated without signals, since the wizard is a person; [wizard] with kind = \
+             \"scripted\" simulates one\n",
             args.session.display(),
             silent.join(" and ")
         ));
@@ -116,10 +119,10 @@ fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure>
         }
         () if !args.sweep.is_empty() && condition == Some(Condition::None) => (
             "--sweep, with --condition none",
-            "--condition assistant or wizard; trials without signals are beside them",
+            "--condition assistant or wizard; the sweep adds trials without signals by itself",
         ),
         () if args.concept.is_some() && !is_planned && args.sweep.is_empty() && is_silent && !args.shadow => {
-            ("--concept, where nobody asks the assistant", "--condition assistant or --shadow with it")
+            ("--concept, where no assistant is asked", "--concept together with --condition assistant or --shadow")
         }
         () => return Ok(()),
     };

@@ -93,7 +93,10 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
         let number = shards::analyse_shard(&request, recordings, shard, begun, || bar.inc(1))?;
         bar.finish_and_clear();
         let SimulationShard { number: part, of } = shard;
-        put_aside(&format!("part {part} of {of}: {}\n", count(number, "recording", "recordings")));
+        put_aside(&format!(
+            "part {part} of {of} of the study was analysed: {}\n",
+            count(number, "recording", "recordings")
+        ));
         return Ok(());
     }
     let (figures, report) = study::study(&request, &recordings, || bar.inc(1))?;

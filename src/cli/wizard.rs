@@ -113,7 +113,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
     if args.follow {
         let [recording] = &args.paths[..] else {
-            let help = "the folder of one recording";
+            let help = "one recording to follow: its folder";
             return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
         };
         return Ok(review_console::review(&chosen(recording)?, true, Some(&request(args.window)))?);
@@ -161,11 +161,14 @@ fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
         ("--wizard", args.wizard.is_some()),
     ];
     let (strange, help) = match is_session {
-        true => (&of_recordings[..], "recordings, or a session without it"),
-        false => (&of_session[..], "a session file, or recordings without it: their headers say it"),
+        true => (&of_recordings[..], "this option with recordings, or a session file without this option"),
+        false => (
+            &of_session[..],
+            "this option with a session file, or recordings without this option: their headers say it",
+        ),
     };
     if let Some((flag, _)) = strange.iter().find(|(_, is_given)| *is_given) {
-        let what = if is_session { "a session" } else { "recordings" };
+        let what = if is_session { "a session file" } else { "recordings" };
         return Err(Failure::Wrong(miette::miette!(help = help, "found {flag}, with {what}")));
     }
     Ok(())
@@ -176,7 +179,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
     if let Some((key, value)) =
         [("hits", args.hits), ("wrong", args.wrong)].into_iter().find(|(_, value)| !is_share(*value))
     {
-        return Err(Failure::Wrong(miette::miette!(help = "a share from 0 to 1", "found --{key} {value}")));
+        return Err(Failure::Wrong(miette::miette!(help = "a share of signals from 0 to 1", "found --{key} {value}")));
     }
     let recordings = match &args.recordings[..] {
         [] => simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?,

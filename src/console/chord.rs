@@ -28,8 +28,9 @@ const NAMED: [(&str, &str, KeyCode); 16] = [
 const SENT_AS: [(char, &str); 4] = [('h', "backspace"), ('i', "tab"), ('j', "enter"), ('m', "enter")];
 
 /// Error text that describes valid key names.
-const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, \
-                          tab, backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, home, end";
+const REMEDY: &str = "a key: a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of \
+                      space, tab, backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, \
+                      home, end";
 
 /// A key of the keyboard, pressed with or without ctrl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,10 +85,10 @@ impl KeyChord {
         if let Some(rest) = name.strip_prefix("ctrl+") {
             let letter = single(rest).map(small).filter(char::is_ascii_lowercase);
             let Some(letter) = letter else {
-                return wrong(format!("\"{name}\": ctrl goes with a letter from a to z"));
+                return wrong(format!("\"{name}\": ctrl can be combined only with a letter from a to z"));
             };
             return match SENT_AS.iter().find(|(other, _)| *other == letter) {
-                Some((_, other)) => wrong(format!("\"{name}\", which most terminals send as {other}")),
+                Some((_, other)) => wrong(format!("\"{name}\", a key that most terminals send as {other}")),
                 None => Ok(KeyChord::ctrl(letter)),
             };
         }
@@ -101,10 +102,10 @@ impl KeyChord {
         match single(name) {
             Some(' ') => wrong("\" \"".to_string()),
             Some(letter) if small(letter) != letter => {
-                wrong(format!("\"{name}\": a capital counts as its small letter, for the sake of caps lock"))
+                wrong(format!("\"{name}\": because of caps lock, a capital letter counts as its small letter"))
             }
             Some(letter) if !letter.is_control() => Ok(KeyChord::char(letter)),
-            _ => wrong(format!("\"{name}\", which is no key")),
+            _ => wrong(format!("\"{name}\", which is not the name of a key")),
         }
     }
 

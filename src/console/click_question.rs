@@ -31,7 +31,7 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
             model.notice = None;
             model.dialog = Some(Dialog::Send(SendConfirmation { chord, signal, offer, asked: model.clock }));
         }
-        Err(reason) => model.say(NoticeLevel::Refused, format!("not sent: {reason}")),
+        Err(reason) => model.say(NoticeLevel::Refused, format!("signal not sent: {reason}")),
     }
 }
 
@@ -45,9 +45,9 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
     let is_late = model.clock.secs_since(question.asked) > WAITS_S;
     let open = session.offers.open().filter(|offer| offer.opened > question.asked && Some(offer.seq) != question.offer);
     if is_late || open.is_some() {
-        let why = if is_late { "no answer in time" } else { "an offer has appeared" };
+        let why = if is_late { "the click was not confirmed in time" } else { "another signal is on offer now" };
         model.dialog = None;
-        model.say(NoticeLevel::Refused, format!("not sent: {why}; click again"));
+        model.say(NoticeLevel::Refused, format!("signal not sent: {why}; click again"));
     }
 }
 
@@ -79,7 +79,7 @@ pub(super) fn confirm(
     let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
     match question.offer {
         Some(offer) if now_meant != Some(offer) => {
-            model.say(NoticeLevel::Refused, "not sent: the clicked offer has closed");
+            model.say(NoticeLevel::Refused, "signal not sent: the clicked offer has closed");
             None
         }
         Some(_) => act(model, session, KeyAction::Accept),

@@ -33,7 +33,8 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Op
         RaterAction::Clear => None,
     };
     if let Some(error) = chosen.and_then(|chosen| coding.errors.get(chosen)) {
-        let words = format!("not coded: error {} is only selected; enter goes to it, esc stays here", error.error);
+        let words =
+            format!("no code given: error {} is only selected; enter goes to it, esc deselects it", error.error);
         coding.chosen = chosen;
         model.say(NoticeLevel::Refused, words);
         return None;
@@ -50,7 +51,7 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Op
 fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     let errors = model.coding.as_ref().map(|coding| &coding.errors)?;
     let Some(error) = to.and_then(|to| errors.get(to)) else {
-        model.say(NoticeLevel::Refused, "there is no other error");
+        model.say(NoticeLevel::Refused, "the recording has no other error");
         return None;
     };
     Some(ConsoleCommand::Move(ReplayAction::ToEvent(error.press)))
@@ -61,7 +62,11 @@ fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
     let press = if again { coding.redo() } else { coding.undo() };
     if press.is_none() {
-        let nothing = if again { "nothing to redo" } else { "nothing to undo since the recording was opened" };
+        let nothing = if again {
+            "no undone change of a code that could be redone"
+        } else {
+            "no code was changed since the recording was opened"
+        };
         model.say(NoticeLevel::Refused, nothing);
     }
     press.map(|press| ConsoleCommand::Code { press })

@@ -26,16 +26,16 @@ use crate::session::{Event, Session, TrialPhase};
 /// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S) {
-        model.say(NoticeLevel::Refused, "not sent: enter was pressed right after a list; press it again");
+        model.say(NoticeLevel::Refused, "signal not sent: enter came right after a list closed; press it again");
         return None;
     }
     match offers::enter(session, model.now) {
         Ok((offer, event)) => {
-            let words = format!("sent: {}", offer.signal().map_or(String::new(), wording::signal));
+            let words = format!("signal sent: {}", offer.signal().map_or(String::new(), wording::signal));
             send(model, session, event, NoticeLevel::Done, &words)
         }
         Err(reason) => {
-            model.say(NoticeLevel::Refused, format!("not sent: {reason}"));
+            model.say(NoticeLevel::Refused, format!("signal not sent: {reason}"));
             None
         }
     }
@@ -45,7 +45,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {
-            let words = format!("shown: {}", wording::signal(&signal));
+            let words = format!("signal sent: {}", wording::signal(&signal));
             send(
                 model,
                 session,
@@ -80,7 +80,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
                 None
             }
             _ => {
-                model.say(NoticeLevel::Refused, "there is no trial to end");
+                model.say(NoticeLevel::Refused, "no trial runs that could be ended");
                 None
             }
         },
@@ -107,7 +107,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::Belief => {
             let ranked: Vec<AspectId> = beliefs(session, model).iter().map(|belief| belief.aspect).collect();
             if ranked.is_empty() {
-                model.say(NoticeLevel::Refused, "beliefs are estimated after the trial's start");
+                model.say(NoticeLevel::Refused, "beliefs are estimated only after the trial's start");
             }
             model.focus_next_belief(&ranked);
             None
@@ -142,7 +142,7 @@ pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: Comparis
     let Some(compared) = &mut model.comparison else { return };
     compared.choose(step);
     match compared.chosen() {
-        None => model.say(NoticeLevel::Refused, "wizard and assistant do not differ yet"),
+        None => model.say(NoticeLevel::Refused, "signals of wizard and assistant do not differ so far"),
         Some((at, seen)) if step == ComparisonAction::Open => {
             model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
         }
@@ -153,7 +153,7 @@ pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: Comparis
 fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     let (event, words) = match session.phase {
         TrialPhase::Ready => return preflight::start(model, session),
-        TrialPhase::Running => (Event::TrialPaused, "paused"),
+        TrialPhase::Running => (Event::TrialPaused, "the trial is paused"),
         TrialPhase::Paused => (Event::TrialResumed, "the trial runs"),
         TrialPhase::Over(_) => return form::leave(model, session),
         TrialPhase::Closed => {

@@ -143,7 +143,7 @@ pub struct ConsoleModel {
     pub dialog: Option<Dialog>,
     /// Latest notice to the wizard.
     pub notice: Option<Notice>,
-    /// Whether the session is recorded.
+    /// State of the session's recording: on, off or lost.
     pub recording: RecordingStatus,
     /// State of the stream to Rerun viewers, if there is one.
     pub viewers: Option<RerunStreamStatus>,
@@ -174,9 +174,9 @@ pub struct ConsoleModel {
     pub gaze_pairing: Option<GazePairing>,
     /// State of the participant's display, if there is one.
     pub display: Option<ParticipantDisplayHealth>,
-    /// Times of the human's errors, in order.
+    /// Session times of the human's errors, in ascending order.
     pub errors: Vec<SessionTime>,
-    /// Judgement of the trial's signals at the times when they were sent (hit, late or needless).
+    /// Judgement of each signal of the trial at the time when the signal was sent (hit, late or needless).
     pub signals: SignalJudge,
     /// History of the estimate of the participant's beliefs.
     pub belief: BeliefHistory,
@@ -287,7 +287,7 @@ impl ConsoleModel {
         let has_doubled = self.rejected_senders.checked_ilog2() > before.checked_ilog2();
         if has_doubled {
             let told = count(self.rejected_senders, "sender", "senders");
-            self.warn(format!("gaze: {told} rejected: no JSON object, or not the eye tracker's address"));
+            self.warn(format!("gaze of {told} rejected: no JSON object, or not the eye tracker's address"));
         }
     }
 

@@ -13,7 +13,7 @@ pub struct ParticipantDisplayHealth {
     pub code: Option<String>,
     /// Size in pixels of the page that the participant uses; `None` if no such page is connected.
     pub page: Option<[u32; 2]>,
-    /// It shows the layout of upright screens, on which gaze is not mapped.
+    /// Whether the page shows the layout of upright screens, on which gaze is not mapped.
     pub upright: bool,
     /// Round-trip time between the program and the page, in milliseconds.
     pub round_trip_ms: Option<f64>,
@@ -21,7 +21,7 @@ pub struct ParticipantDisplayHealth {
     pub redraw_ms: Option<f64>,
     /// Number of connected participant pages that only watch.
     pub watching: u64,
-    /// Number of messages from pages that could not be read.
+    /// Number of unreadable messages from participant pages.
     pub malformed: u64,
     /// Number of rejected connections to the participant's display.
     pub refused: u64,
@@ -46,7 +46,7 @@ impl ParticipantDisplayHealth {
         format!("open {} in a browser, full screen", self.url)
     }
 
-    /// The text with the pairing code behind it, if the page asks for one.
+    /// The text, followed by the pairing code if the participant's page asks for a code.
     fn with_code(&self, text: String) -> String {
         match &self.code {
             Some(code) => format!("{text}; pairing code {code}"),
@@ -59,7 +59,7 @@ impl ParticipantDisplayHealth {
         self.page.is_none().then(|| self.with_code(self.address()))
     }
 
-    /// What is looked at before a trial with gaze from this source.
+    /// Preflight check of the participant's display before a trial whose gaze comes from this source.
     pub fn check(&self, gaze: GazeSource) -> PreflightCheck {
         let Some([width, height]) = self.page else {
             let found = self.with_code("participant's page not connected".to_string());
@@ -68,11 +68,11 @@ impl ParticipantDisplayHealth {
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms round trip"));
         let others = match self.watching {
             0 => String::new(),
-            watching => format!(", {watching} more watching"),
+            watching => format!(", {watching} more watch the page"),
         };
         let wrong = match self.malformed + self.refused {
             0 => String::new(),
-            _ => format!(", {} messages malformed, {} refused", self.malformed, self.refused),
+            _ => format!(", {} messages malformed, {} messages refused", self.malformed, self.refused),
         };
         let upright = if self.upright { " upright" } else { "" };
         let found = format!("{width}x{height}{upright}{trip}{others}{wrong}");
@@ -83,8 +83,12 @@ impl ParticipantDisplayHealth {
             _ if self.upright && gaze != GazeSource::None => {
                 (PreflightVerdict::Warning, "turn the screen: on an upright page there is no gaze")
             }
-            (true, _) => (PreflightVerdict::Warning, "full screen (F11) on a display of at least 1280x720"),
-            (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a cable instead of Wi-Fi"),
+            (true, _) => {
+                (PreflightVerdict::Warning, "show the page in full screen (F11) on a display of at least 1280x720")
+            }
+            (false, true) => {
+                (PreflightVerdict::Warning, "open the page on this computer, or use a cable instead of Wi-Fi")
+            }
             (false, false) => (PreflightVerdict::Ok, ""),
         };
         PreflightCheck::new("display", verdict, found, remedy)

@@ -1,6 +1,6 @@
 //! Sheets around a trial (forms at full size): steps to tick, questionnaire items, and an unmet practice criterion.
-//! Enter confirms; arrows go between items, digits answer or choose, and the advance key leaves a completed sheet. What
-//! is confirmed or answered is recorded as an event.
+//! Enter confirms; arrows go between items, digits answer or choose, and the advance key leaves a completed sheet.
+//! Confirmations and answers are recorded as events of the session.
 
 use crossterm::event::KeyCode;
 
@@ -19,8 +19,12 @@ use crate::session::tutorial::{TutorialEvent, TutorialReader};
 use crate::session::{Event, Session, TrialPhase};
 
 /// Preset reasons for waiving the practice criterion.
-pub const WAIVERS: [&str; 4] =
-    ["knows the task anyway", "no time for more practice", "technical problem", "other, see the notes"];
+pub const WAIVERS: [&str; 4] = [
+    "the participant knows the task anyway",
+    "no time for more practice",
+    "technical problem",
+    "other reason, see the notes",
+];
 
 /// Content of a sheet, a form of the console at full size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +35,7 @@ pub enum FormContent<'a> {
     Steps {
         /// Heading of the sheet with steps.
         title: &'static str,
-        /// Steps that the wizard has to do, in this order.
+        /// Steps of the phase that the wizard has to do, in this order.
         steps: &'a [String],
     },
     /// Tutorial, which the participant reads on the display.
@@ -144,7 +148,7 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
         SheetKey::Forward | SheetKey::Confirm => state.step + 1,
         SheetKey::Back | SheetKey::Undo => match state.step.checked_sub(1) {
             Some(before) => before,
-            None => return refuse(model, "this is the first step"),
+            None => return refuse(model, "this is the first page of the tutorial"),
         },
         SheetKey::Digit(0) => return tell(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by })),
         SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
@@ -179,7 +183,7 @@ fn ask(
             let is_choice = matches!(form, Some(AnswerFormat::Choice { .. }));
             match chosen.or((!is_choice).then(|| AnswerValue::from(digit))) {
                 Some(answer) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
-                None => refuse(model, "the item has no such option"),
+                None => refuse(model, "the item has no option with this number"),
             }
         }
         (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => {
@@ -236,7 +240,7 @@ pub(super) fn type_answer(
             let answer = match (&form, text.parse()) {
                 (AnswerFormat::Text { .. }, _) => Ok(AnswerValue::Text(text)),
                 (_, Ok(number)) => Ok(AnswerValue::Number(number)),
-                (_, Err(_)) => Err("enter a whole number"),
+                (_, Err(_)) => Err("the answer has to be a whole number"),
             };
             match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
                 Ok(answer) => return tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),

@@ -22,7 +22,7 @@ impl GazePairing {
     /// Entry of the preflight list with pairing code and address, while no gaze arrives.
     pub fn check(&self, session: &Session, now: SessionTime) -> Option<PreflightCheck> {
         // The pairing code stands before the address, because small screens cut the line.
-        let found = format!("pairing code {}; send to {}", self.code, self.address);
+        let found = format!("pairing code {}; send gaze to {}", self.code, self.address);
         session.gaze_hz(now).is_none().then(|| PreflightCheck::ok("gaze pairing", found))
     }
 }

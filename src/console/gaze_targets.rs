@@ -53,7 +53,9 @@ pub(super) fn answer(
             model.dialog = None;
             None
         }
-        KeyCode::Esc => decide(model, session, GazeCheckEvent::Dismissed, "the calibration stays as it was"),
+        KeyCode::Esc => {
+            decide(model, session, GazeCheckEvent::Dismissed, "gaze accuracy check cancelled: the gaze stays as it was")
+        }
         KeyCode::Char(REPEAT) if is_press && outcome.is_some() => begin(model, session),
         KeyCode::Char(CORRECTED) if found.is_some() => {
             model.gaze_choice = Some(AccuracyCheckAction::Corrected);
@@ -67,11 +69,11 @@ pub(super) fn answer(
             AccuracyCheckAction::Repeat => begin(model, session),
             AccuracyCheckAction::Corrected => {
                 let accepted = GazeCheckEvent::Accepted { corrected: true };
-                decide(model, session, accepted, "accepted: the offset is taken off the gaze")
+                decide(model, session, accepted, "gaze accepted: its offset is subtracted")
             }
             AccuracyCheckAction::AsItIs => {
                 let accepted = GazeCheckEvent::Accepted { corrected: false };
-                decide(model, session, accepted, "accepted: the gaze stays as it is")
+                decide(model, session, accepted, "gaze accepted without correction")
             }
         },
         _ => None,

@@ -42,10 +42,12 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: resume it first"),
         ManualAction::DriveRobot => ask(model, PickerQuestion::Button),
         ManualAction::Abort if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
-            refuse(model, "there is no trial to abort")
+            refuse(model, "no trial runs that could be aborted")
         }
         ManualAction::Abort => ask(model, PickerQuestion::Abort),
-        ManualAction::Preflight if session.phase != TrialPhase::Ready => refuse(model, "the trial was started already"),
+        ManualAction::Preflight if session.phase != TrialPhase::Ready => {
+            refuse(model, "preflight checks are shown only before the trial starts")
+        }
         ManualAction::Preflight => {
             model.dialog = Some(Dialog::Preflight);
             None
@@ -63,7 +65,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             send(model, session, Event::TrialIncluded, NoticeLevel::Done, "the trial is no longer excluded")
         }
         ManualAction::Exclude if matches!(session.phase, TrialPhase::Ready | TrialPhase::Closed) => {
-            refuse(model, "there is no trial to exclude")
+            refuse(model, "no trial has begun that could be excluded")
         }
         ManualAction::Exclude => ask(model, PickerQuestion::Exclude),
         ManualAction::AskProbe => {
@@ -90,7 +92,7 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
         && skippable(session) != Some(probe)
     {
         model.dialog = None;
-        model.say(NoticeLevel::Refused, format!("probe {probe} ended before it was skipped"));
+        model.say(NoticeLevel::Refused, format!("freeze probe {probe} ended before it was skipped"));
     }
 }
 
@@ -98,7 +100,7 @@ fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match session.phase {
         TrialPhase::Over(_) if session.aborted.is_some() || session.excluded.is_some() => Some(ConsoleCommand::Redo),
         TrialPhase::Over(_) => refuse(model, "only an aborted or excluded trial can be repeated"),
-        _ => refuse(model, "abort the trial first"),
+        _ => refuse(model, "abort the trial before you repeat it"),
     }
 }
 
@@ -163,7 +165,7 @@ pub(super) fn pick(
         (_, PickerAnswer::Place(place)) => ask(model, PickerQuestion::Content(place)),
         (PickerQuestion::Content(place), PickerAnswer::Content(content)) => {
             let (location, content) = (kitchen.location(place), kitchen.content(content).name.clone());
-            let words = format!("corrected: {} holds {}", location.label(), kitchen.worded(&content));
+            let words = format!("kitchen corrected: {} holds {}", location.label(), kitchen.worded(&content));
             let event = Event::KitchenCorrected { location: location.name.clone(), content };
             send(model, session, event, NoticeLevel::Done, &words)
         }
@@ -173,14 +175,20 @@ pub(super) fn pick(
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
         }
         (PickerQuestion::Abort, PickerAnswer::Reason(reason)) => {
-            send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "aborted")
+            send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "the trial is aborted")
         }
         (PickerQuestion::SkipProbe(probe), PickerAnswer::Reason(reason)) => {
             let event = ProbeEvent::Skipped { probe, reason };
-            send(model, session, Event::Probe(event), NoticeLevel::Done, "the rest of the probe is skipped")
+            send(
+                model,
+                session,
+                Event::Probe(event),
+                NoticeLevel::Done,
+                "the other questions of the freeze probe are skipped",
+            )
         }
         (_, PickerAnswer::Reason(reason)) => {
-            let words = format!("excluded: {reason}");
+            let words = format!("the trial is excluded: {reason}");
             send(model, session, Event::TrialExcluded { reason }, NoticeLevel::Done, &words)
         }
         (_, PickerAnswer::Content(_)) => None,

@@ -30,7 +30,7 @@ pub enum KeyAction {
     Accept,
     /// End the signal that the participant sees.
     TakeBack,
-    /// Record a marker with this preset note.
+    /// Record the preset note with this index as a marker of the trial.
     Note(usize),
     /// Start, pause or resume the trial.
     Advance,
@@ -91,7 +91,7 @@ pub enum ManualAction {
     SkipProbe,
 }
 
-/// Key that changes which panels or which time the screen shows.
+/// Action of a key that changes which panels or which time the screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewAction {
     /// Show the next panel at full size; after the last one, all panels.
@@ -167,7 +167,7 @@ pub struct KeyBinding {
     pub name: String,
     /// Keys of the action; the first one is shown on the screen.
     pub chords: Vec<KeyChord>,
-    /// Action that these keys carry out.
+    /// Action that the keys of the key table's entry carry out.
     pub action: KeyAction,
     /// Heading under which the help lists the action.
     pub group: &'static str,

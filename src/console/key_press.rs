@@ -86,7 +86,7 @@ pub(super) fn press(
         // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
         _ if touch == KeyPressKind::Held && !probe_keys::takes_digit(model, session, code) => {
             if model.dialog.is_none() {
-                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts as one press"));
+                model.say(NoticeLevel::Refused, format!("the key \"{chord}\" is held down: it counts as one press"));
             }
             None
         }
@@ -95,7 +95,7 @@ pub(super) fn press(
             on_sheet(model, session, code, action, touch)
         }
         Some(action) if touch == KeyPressKind::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press it again"));
+            model.say(NoticeLevel::Refused, format!("the key \"{chord}\" may still be held down: press it again"));
             None
         }
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
@@ -172,7 +172,7 @@ fn on_sheet(
         // Answers are always taken: a lost answer would shift the following answers to wrong items unnoticed, but an
         // additional one is seen.
         (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == KeyPressKind::Again => {
-            model.say(NoticeLevel::Refused, "too soon: read the text, then press the key again");
+            model.say(NoticeLevel::Refused, "key pressed too soon: read the text, then press the key again");
             None
         }
         (Some(stroke), _) => form::write(model, session, stroke),
@@ -258,8 +258,8 @@ fn unknown(model: &mut ConsoleModel, session: &Session, chord: KeyChord) {
     let key = chord.to_string();
     if model.keys.find(other, chord).is_some() {
         let whose = if other == KeyLayer::Wizard { "wizard" } else { "participant" };
-        model.say(NoticeLevel::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
+        model.say(NoticeLevel::Refused, format!("\"{key}\" is a key of the {whose}: tab switches to these keys"));
     } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != TrialPhase::Closed {
-        model.say(NoticeLevel::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
+        model.say(NoticeLevel::Refused, format!("the key \"{key}\" does nothing here: ? shows the keys"));
     }
 }

@@ -82,7 +82,7 @@ impl KeyFileBindings {
                     let names: Vec<&str> = known().map(|line| line.name.as_str()).collect();
                     return Err(KeyError {
                         place: KeyErrorSource::File(name.span()),
-                        found: format!("\"{}\", which is not a name in [{section}]", name.get_ref()),
+                        found: format!("\"{}\", which is no action with a key in [{section}]", name.get_ref()),
                         remedy: format!("one of {}", names.join(", ")),
                     });
                 }
@@ -127,7 +127,7 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
         match KeyChord::parse(name) {
             Ok(chord) if chord == KeyChord::SPACE && line.action != KeyAction::StopRobot => {
                 return wrong(
-                    "\"space\", which is the robot stop, always".to_string(),
+                    "\"space\", the key that always stops the robot".to_string(),
                     "another key: the space bar always stops the robot",
                 );
             }
@@ -140,7 +140,7 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
     }
     match line.action {
         KeyAction::StopRobot if !chords.contains(&KeyChord::SPACE) => wrong(
-            format!("{:?}, without the space bar", names.get_ref().0),
+            format!("{:?}, keys for the robot stop without the space bar", names.get_ref().0),
             "\"space\", or a list with \"space\" and other keys: the space bar is the robot stop, always",
         ),
         KeyAction::Quit if chords.is_empty() => {
@@ -155,7 +155,8 @@ pub fn write(lines: &[KeyBinding]) -> String {
     let mut text = String::from(
         "# The keys of tomcom's console, ready to be changed. A session file names this file (relative to itself):\n\
          #\n#     [console]\n#     keys = \"keys.toml\"\n#\n\
-         # A key is a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, tab,\n\
+         # A key is a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, \
+         tab,\n\
          # backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, home, end.\n\
          # Several keys for one thing: [\"f1\", \"?\"]; none: []. What is left out stays as it is.\n",
     );

@@ -59,7 +59,7 @@ impl KeyBindings {
     /// The key table of a wizard training: signals, and keys that affect only the screen.
     ///
     /// # Errors
-    /// As of [`KeyBindings::live`].
+    /// The errors of [`KeyBindings::live`]: a key with two meanings, or an invalid entry of the key file.
     pub fn training(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let mut keys = KeyBindings::live(kitchen, spec, map)?;
         keys.bindings.retain(|line| {
@@ -79,7 +79,7 @@ impl KeyBindings {
     /// The key table of a replay.
     ///
     /// # Errors
-    /// As of [`KeyBindings::live`].
+    /// The errors of [`KeyBindings::live`]: a key with two meanings, or an invalid entry of the key file.
     pub fn replay(kitchen: &Kitchen, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, coding, mut bindings } =
             Consoles::from_bindings(lines(kitchen, map)?, KeySection::Replay);
@@ -208,7 +208,7 @@ fn clash(map: &KeyFileBindings, earlier: &KeyBinding, line: &KeyBinding, chord: 
         Some((span, line, other)) => KeyError {
             place: KeyErrorSource::File(span),
             found: format!("the key \"{name}\" for {}, which is taken by {} ({})", line.name, other.name, other.help),
-            remedy: format!("another key for one of them; {} has its own in [{}]", other.name, other.section),
+            remedy: format!("another key for one of the two; the key of {} is set in [{}]", other.name, other.section),
         },
         None => KeyError {
             place: KeyErrorSource::Layout(layer, line.letter().unwrap_or(' ')),

@@ -137,7 +137,7 @@ fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     });
     let told = line.and_then(|line| Some(format!("{}: {}", line.chords.first()?, line.help)));
     let label = session.kitchen.location(location).label();
-    model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key for this place")));
+    model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key belongs to this place")));
 }
 
 /// Handles the mouse wheel: in a list or a help text it acts as an arrow key; over a panel it scrolls that panel.

@@ -103,7 +103,7 @@ impl Picker {
         }
     }
 
-    /// Handles a key in the list.
+    /// Handles a key in the open list of answers.
     pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
         let mut choices = self.choices(session);
         match self.cursor.key(choices.len(), code) {
@@ -143,7 +143,7 @@ fn buttons(session: &Session) -> Vec<PickerEntry> {
     let ids = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
     let choice = |id: ButtonId| {
         let does = kitchen.press(session.state, &recipes, Agent::Robot, id).is_some();
-        let remark = if does { "" } else { "no effect now" }.to_string();
+        let remark = if does { "" } else { "press has no effect now" }.to_string();
         PickerEntry { answer: PickerAnswer::Button(id), label: wording::button(kitchen, Agent::Robot, id), remark }
     };
     let mut choices: Vec<PickerEntry> = ids.map(choice).collect();

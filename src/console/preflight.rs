@@ -46,18 +46,23 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
             let resume = key(model, &KeyAction::ResumeRobot);
-            PreflightCheck::new("robot", PreflightVerdict::Failed, "stopped", format!("{resume} resumes it"))
+            PreflightCheck::new(
+                "robot",
+                PreflightVerdict::Failed,
+                "the robot is stopped",
+                format!("{resume} resumes the robot"),
+            )
         }
         (false, true) => {
             let release = key(model, &KeyAction::Hand(ManualAction::HoldRobot));
             PreflightCheck::new(
                 "robot",
                 PreflightVerdict::Warning,
-                "held before its first press",
-                format!("{release} releases it"),
+                "the robot is held before its first press",
+                format!("{release} releases the robot"),
             )
         }
-        (false, false) => PreflightCheck::ok("robot", "ready"),
+        (false, false) => PreflightCheck::ok("robot", "the robot is ready"),
     }
 }
 
@@ -65,19 +70,16 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
 fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
     let probes = of_trial(&session.spec)?;
     let minutes = session.spec.trial.seconds / 60.0;
-    let found = |where_: &str| format!("{} in {} min, {where_}", probes.per_trial, (10.0 * minutes).round() / 10.0);
+    let found = |where_: &str| {
+        format!("{} freeze probes in {} min, {where_}", probes.per_trial, (10.0 * minutes).round() / 10.0)
+    };
     Some(match answerer(session, model) {
-        ProbeAnswerer::Display => PreflightCheck::ok("probes", found("on the display")),
+        ProbeAnswerer::Display => PreflightCheck::ok("probes", found("answered on the display")),
         ProbeAnswerer::Simulated => PreflightCheck::ok("probes", found("answered by the simulated participant")),
-        ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("on the console")),
+        ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("answered at the console")),
         ProbeAnswerer::Console => {
             let remedy = "open the participant's page, or read the questions out and enter the answers here";
-            PreflightCheck::new(
-                "probes",
-                PreflightVerdict::Warning,
-                found("on the console: participant's page not connected"),
-                remedy,
-            )
+            PreflightCheck::new("probes", PreflightVerdict::Warning, found("participant's page missing"), remedy)
         }
     })
 }
@@ -89,13 +91,13 @@ fn recording(model: &ConsoleModel) -> PreflightCheck {
             "recording",
             PreflightVerdict::Failed,
             "the session is not recorded",
-            "restart the program",
+            "quit tomcom and start it again",
         ),
         RecordingStatus::Lost => PreflightCheck::new(
             "recording",
             PreflightVerdict::Failed,
             "the recording cannot be written",
-            "restart the program",
+            "quit tomcom and start it again",
         ),
     }
 }
@@ -104,31 +106,32 @@ fn viewers(viewers: &RerunStreamStatus) -> PreflightCheck {
     let RerunStreamStatus { address, dropped, .. } = viewers;
     let is_open = |address: &String| address.parse::<SocketAddr>().is_ok_and(|address| !address.ip().is_loopback());
     let found = match address {
-        Some(address) if is_open(address) => format!("viewers at {address} need no password"),
-        Some(address) => format!("viewers connect at {address}"),
-        None => "recorded, no viewer can connect".to_string(),
+        Some(address) if is_open(address) => format!("Rerun viewers at {address} need no password"),
+        Some(address) => format!("Rerun viewers connect at {address}"),
+        None => "stream for Rerun is recorded, no viewer can connect".to_string(),
     };
     let warning = |found, remedy: &str| PreflightCheck::new("rerun", PreflightVerdict::Warning, found, remedy);
     match (dropped, address.as_ref().is_some_and(is_open)) {
         (0, false) => PreflightCheck::ok("rerun", found),
         (0, true) => warning(
             found,
-            "whoever reaches this address can watch the session; start with --rerun-listen 127.0.0.1:9876 to let only this computer watch",
+            "whoever reaches this address can watch the session; start with --rerun-listen 127.0.0.1:9876 to let only \
+             this computer watch",
         ),
         (dropped, _) => warning(
             format!("{found}; {dropped} rows dropped"),
-            "close other programs that use the processor; tomcom review makes the stream from the log",
+            "close other programs that use the processor; tomcom review makes the Rerun stream again from the log",
         ),
     }
 }
 
 fn lsl(status: &LslStatus) -> PreflightCheck {
-    let found = format!("{}: any computer in the network can read them", status.streams.join(", "));
+    let found = format!("any computer in the network can read the streams {}", status.streams.join(", "));
     match status.lost {
         0 => PreflightCheck::ok("lsl", found),
         lost => {
-            let remedy = "close other programs that use the processor; the log has every event";
-            PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{found}; {lost} samples lost"), remedy)
+            let remedy = "close other programs that use the processor; the recording itself has every event";
+            PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{lost} samples lost; {found}"), remedy)
         }
     }
 }

@@ -83,8 +83,8 @@ pub(super) fn write(
 ) -> Option<ConsoleCommand> {
     if stroke == SheetKey::Leave {
         let (event, words) = match session.can_be_paused() {
-            true => (Event::TrialPaused, "the probe is paused"),
-            false => (Event::TrialResumed, "the probe continues"),
+            true => (Event::TrialPaused, "the freeze probe is paused"),
+            false => (Event::TrialResumed, "the freeze probe continues"),
         };
         return send(model, session, event, NoticeLevel::Done, words);
     }
@@ -93,7 +93,9 @@ pub(super) fn write(
         ProbeAnswerer::Display => return refuse(model, "the participant answers on the display"),
         ProbeAnswerer::Console => {}
     }
-    let Some((index, question)) = open.question() else { return refuse(model, "no question is asked now") };
+    let Some((index, question)) = open.question() else {
+        return refuse(model, "the probe asks no question now");
+    };
     let (mut entry, choices) = (model.probe_entry.for_question(open.number, index), question.choices.len());
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
     match stroke {
@@ -103,7 +105,7 @@ pub(super) fn write(
             let begun = entry.choice.filter(|_| entry.is_typed).unwrap_or(0);
             let number = 10 * begun + usize::from(digit);
             if number > choices {
-                return refuse(model, &format!("there is no choice {number}; backspace takes a digit back"));
+                return refuse(model, &format!("the question has no choice {number}; backspace deletes a digit"));
             }
             (entry.choice, entry.is_typed) = (Some(number), true);
         }

@@ -109,12 +109,12 @@ impl RaterSession {
         Some(press)
     }
 
-    /// Whether there is a change of a code to undo.
+    /// Whether the rater has changed a code that can be undone.
     pub fn can_undo(&self) -> bool {
         !self.done.is_empty()
     }
 
-    /// Whether there is an undone change of a code to redo.
+    /// Whether the rater has undone a change of a code that can be redone.
     pub fn can_redo(&self) -> bool {
         !self.undone.is_empty()
     }
@@ -143,14 +143,13 @@ impl RaterSession {
         }
     }
 
-    /// Coding progress in words: "12 of 31 coded, 3 since opening".
+    /// Coding progress in words: "12/31 errors coded, 3 since opening".
     pub fn progress(&self) -> String {
         let (what, all, coded) = (self.verb(), self.errors.len(), self.coded());
-        let now = match self.coded_now() {
-            0 => String::new(),
-            now => format!(", {now} since opening"),
-        };
-        format!("{coded} of {all} {what}{now}")
+        match self.coded_now() {
+            0 => format!("{coded}/{all} errors {what}"),
+            now => format!("{coded}/{all} errors {what}, {now} since opening"),
+        }
     }
 
     /// The rater's code of an error in words; "-" if there is none.
@@ -177,14 +176,14 @@ impl RaterSession {
             CodingRaters::Pair { .. } if number == 0 => {
                 "nothing to settle: both raters agree on every error".to_string()
             }
-            CodingRaters::Pair { .. } => format!("all {number} settled; next: tomcom study"),
+            CodingRaters::Pair { .. } => format!("all {number} errors settled; next: tomcom study"),
             CodingRaters::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
             CodingRaters::Rater(rater) => {
                 let next = match self.finished.first() {
                     None => "a second rater codes independently, with --rater".to_string(),
                     Some(other) => format!("tomcom codes compares, --settle {other} {rater} settles"),
                 };
-                format!("all {number} coded; next: {next}")
+                format!("all {number} errors coded; next: {next}")
             }
         })
     }

@@ -51,7 +51,8 @@ impl RecordingPicker {
         }
     }
 
-    /// Moves the cursor to a row of those that match the filter; chooses the row if the cursor was already there.
+    /// Moves the cursor to a row of the list, counted among the rows that match the filter; chooses the row if the
+    /// cursor was already there.
     pub fn click(&mut self, row: usize) -> Option<RecordingReply> {
         if self.cursor.at == row {
             return self.take(KeyCode::Enter);

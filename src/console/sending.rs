@@ -33,6 +33,7 @@ pub(super) fn send(
 
 /// Releases the robot after a stop.
 pub(super) fn resume_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
-    let words = if session.robot.held { "no longer stopped, still held" } else { "the robot goes on" };
+    let words =
+        if session.robot.held { "the robot is no longer stopped, but still held" } else { "the robot continues" };
     send(model, session, Event::RobotResumed, NoticeLevel::Done, words)
 }

@@ -9,11 +9,11 @@ pub(super) enum SheetKey {
     Leave,
     /// Show the next item of the sheet.
     Forward,
-    /// Show the previous item.
+    /// Show the previous item of the sheet.
     Back,
     /// Take back the last tick, or show the previous item.
     Undo,
-    /// Leave the item unanswered.
+    /// Leave the sheet's present item unanswered.
     Skip,
     /// A digit, which answers an item or selects a choice.
     Digit(u8),

@@ -19,19 +19,19 @@ use crate::session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";
 const TRIAL: &str = "Trial";
-const MARKERS: &str = "Markers";
+const NOTES: &str = "Notes";
 const REPLAY: &str = "Recording";
 const ROBOT: &str = "Robot";
 const BUTTONS: &str = "The participant's buttons";
 const CONSOLE: &str = "Console";
-const COMPARISON: &str = "Wizard and assistant";
+const COMPARISON: &str = "Signals compared";
 const CODING: &str = "Causes of errors";
 
 /// Help text of the key that shows one state aspect of the belief over time.
-const BELIEF: &str = "one belief over time; again: the next one";
+const BELIEF: &str = "show one belief over time; again: the next belief";
 
 /// Help text of the palette, the list of all actions.
-const PALETTE: &str = "list of all actions, with search";
+const PALETTE: &str = "list all actions, with search";
 
 /// Key binding of the palette, from which every other action can be found.
 fn palette() -> KeyBinding {
@@ -83,7 +83,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             "resume the robot after a stop",
             Some("resume robot"),
         ),
-        hand("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold the robot, release it"),
+        hand("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold the robot, or release it"),
         hand("skip_press", 's', ManualAction::SkipPress, ROBOT, "skip the robot's present press"),
         hand("drive_robot", 'd', ManualAction::DriveRobot, ROBOT, "choose the robot's next press"),
         line(
@@ -91,7 +91,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             &[KeyChord::char('.')],
             KeyAction::Advance,
             TRIAL,
-            "start, pause, resume",
+            "start, pause or resume the trial",
             Some("start/pause"),
         ),
         line(
@@ -104,7 +104,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         ),
         hand("preflight", 'f', ManualAction::Preflight, TRIAL, "show the preflight checks"),
         hand("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check gaze accuracy with targets"),
-        hand("correct", 'u', ManualAction::Correct, TRIAL, "correct a content of the kitchen"),
+        hand("correct", 'u', ManualAction::Correct, TRIAL, "correct what a place of the kitchen holds"),
         hand("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort the trial (asks why)"),
         hand("ask_probe", 'a', ManualAction::AskProbe, TRIAL, "ask for a freeze probe"),
         line(
@@ -116,18 +116,18 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             None,
         ),
         hand("redo_trial", 'n', ManualAction::Redo, TRIAL, "repeat an aborted or excluded trial"),
-        hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude the trial, include it again"),
+        hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude the trial, or include it again"),
         line(
             "switch_keys",
             &plain(Tab),
             KeyAction::SwitchLayer,
             CONSOLE,
-            "switch keys: wizard or participant",
+            "switch between keys of wizard and participant",
             Some("switch"),
         ),
     ];
     lines.extend(signals(kitchen));
-    let accept = "send the open offer";
+    let accept = "send the signal on offer";
     lines.push(wizards(line("accept", &plain(Enter), KeyAction::Accept, SIGNALS, accept, Some("send offer"))));
     let take_back = "take back the signal on the display";
     lines.push(wizards(line(
@@ -142,15 +142,15 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         let digit = char::from(b'1' + index as u8);
         let footer = (index == 0).then_some("note");
         let name = format!("note_{digit}");
-        let help = format!("note {digit} of the session file");
-        lines.push(wizards(line(&name, &[KeyChord::char(digit)], KeyAction::Note(index), MARKERS, &help, footer)));
+        let help = format!("record note {digit} of the session file");
+        lines.push(wizards(line(&name, &[KeyChord::char(digit)], KeyAction::Note(index), NOTES, &help, footer)));
     }
     let help = "type a note (while paused)";
     lines.push(wizards(line(
         "note_in_words",
         &[KeyChord::char('0')],
         KeyAction::Hand(ManualAction::NoteInWords),
-        MARKERS,
+        NOTES,
         help,
         Some("type note"),
     )));
@@ -162,7 +162,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         palette(),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
-        line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit (asks first)", Some("quit")),
+        line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit tomcom (asks first)", Some("quit")),
     ]);
     lines
 }
@@ -171,34 +171,46 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
 pub fn replay() -> Vec<KeyBinding> {
     use ReplayAction::{BackTo, On};
     let moves = [
-        ("step_forward", plain(Right), ReplayAction::StepForward, "to the next event", Some("step")),
-        ("step_back", plain(Left), ReplayAction::StepBack, "to the previous event", None),
-        ("next_error", [KeyChord::char('e')], On(ReplayLandmark::Error), "to the next error", Some("error")),
-        ("last_error", [KeyChord::char('w')], BackTo(ReplayLandmark::Error), "to the previous error", None),
-        ("next_signal", [KeyChord::char('s')], On(ReplayLandmark::Signal), "to the next signal", None),
-        ("last_signal", [KeyChord::char('a')], BackTo(ReplayLandmark::Signal), "to the previous signal", None),
-        ("next_marker", [KeyChord::char('m')], On(ReplayLandmark::Marker), "to the next marker", None),
-        ("last_marker", [KeyChord::char('n')], BackTo(ReplayLandmark::Marker), "to the previous marker", None),
-        ("next_false_belief", [KeyChord::char('b')], On(ReplayLandmark::FalseBelief), "to the next false belief", None),
+        ("step_forward", plain(Right), ReplayAction::StepForward, "go to the next event", Some("step")),
+        ("step_back", plain(Left), ReplayAction::StepBack, "go to the previous event", None),
+        ("next_error", [KeyChord::char('e')], On(ReplayLandmark::Error), "go to the next error", Some("error")),
+        ("last_error", [KeyChord::char('w')], BackTo(ReplayLandmark::Error), "go to the previous error", None),
+        ("next_signal", [KeyChord::char('s')], On(ReplayLandmark::Signal), "go to the next signal", None),
+        ("last_signal", [KeyChord::char('a')], BackTo(ReplayLandmark::Signal), "go to the previous signal", None),
+        ("next_marker", [KeyChord::char('m')], On(ReplayLandmark::Marker), "go to the next note", None),
+        ("last_marker", [KeyChord::char('n')], BackTo(ReplayLandmark::Marker), "go to the previous note", None),
+        (
+            "next_false_belief",
+            [KeyChord::char('b')],
+            On(ReplayLandmark::FalseBelief),
+            "go to the next false belief",
+            None,
+        ),
         (
             "last_false_belief",
             [KeyChord::char('v')],
             BackTo(ReplayLandmark::FalseBelief),
-            "to the previous false belief",
+            "go to the previous false belief",
             None,
         ),
-        ("seek_forward", plain(PageDown), ReplayAction::SeekForward, "ten seconds forward", Some("10 s")),
-        ("seek_back", plain(PageUp), ReplayAction::SeekBack, "ten seconds back", None),
-        ("faster", [KeyChord::char('+')], ReplayAction::Faster, "play faster", Some("speed")),
-        ("slower", [KeyChord::char('-')], ReplayAction::Slower, "play slower", None),
-        ("to_start", plain(Home), ReplayAction::ToStart, "to the beginning, before the trial", None),
-        ("to_end", plain(End), ReplayAction::ToEnd, "to the end; follows a growing recording", Some("start/end")),
+        ("seek_forward", plain(PageDown), ReplayAction::SeekForward, "go ten seconds forward", Some("10 s")),
+        ("seek_back", plain(PageUp), ReplayAction::SeekBack, "go ten seconds back", None),
+        ("faster", [KeyChord::char('+')], ReplayAction::Faster, "play the recording faster", Some("speed")),
+        ("slower", [KeyChord::char('-')], ReplayAction::Slower, "play the recording slower", None),
+        ("to_start", plain(Home), ReplayAction::ToStart, "go to the beginning, before the trial", None),
+        ("to_end", plain(End), ReplayAction::ToEnd, "go to the end; follow a growing recording", Some("start/end")),
     ];
     let of_move =
         |name, keys: &[KeyChord], to, help, footer| line(name, keys, KeyAction::Move(to), REPLAY, help, footer);
     let quit = [KeyChord::char('q'), KeyChord::ctrl('c')];
     let mut lines = vec![
-        of_move("play_pause", &[KeyChord::char('.')], ReplayAction::PlayPause, "play, pause", Some("play/pause")),
+        of_move(
+            "play_pause",
+            &[KeyChord::char('.')],
+            ReplayAction::PlayPause,
+            "play or pause the recording",
+            Some("play/pause"),
+        ),
         line("quit", &quit, KeyAction::Quit, CONSOLE, "quit", Some("quit")),
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         palette(),
@@ -224,15 +236,21 @@ fn codes() -> [KeyBinding; 9] {
             "code_next",
             &plain(Enter),
             RaterAction::Next,
-            "to the next error, or to the selected one",
+            "go to the next error, or to the selected error",
             Some("next error"),
         ),
-        code("code_last", &plain(Backspace), RaterAction::Last, "to the previous error", None),
+        code("code_last", &plain(Backspace), RaterAction::Last, "go to the previous error", None),
         cause("slip", '1', ErrorCauseKind::Slip),
         cause("race", '2', ErrorCauseKind::Race),
         cause("other_cause", '3', ErrorCauseKind::Other),
         cause("mixed_up_buttons", '4', ErrorCauseKind::Buttons),
-        code("clear_code", &plain(Delete), RaterAction::Clear, "remove the code of the error", Some("remove code")),
+        code(
+            "clear_code",
+            &plain(Delete),
+            RaterAction::Clear,
+            "remove the code of the present error",
+            Some("remove code"),
+        ),
         code(
             "undo_code",
             &[KeyChord::char('u'), KeyChord::ctrl('z')],
@@ -240,7 +258,7 @@ fn codes() -> [KeyBinding; 9] {
             "undo the last change of a code",
             Some("undo"),
         ),
-        code("redo_code", &[KeyChord::ctrl('y')], RaterAction::Redo, "redo the undone change", Some("redo")),
+        code("redo_code", &[KeyChord::ctrl('y')], RaterAction::Redo, "redo the undone change of a code", Some("redo")),
     ]
 }
 
@@ -248,10 +266,10 @@ fn codes() -> [KeyBinding; 9] {
 pub fn choosing(action: &KeyAction) -> Option<(RaterAction, &'static str)> {
     match action {
         KeyAction::Look(ViewAction::Back) => {
-            Some((RaterAction::ChooseEarlier, "select the error above; enter goes there"))
+            Some((RaterAction::ChooseEarlier, "select the error above; enter goes to it"))
         }
         KeyAction::Look(ViewAction::Forward) => {
-            Some((RaterAction::ChooseLater, "select the error below; enter goes there"))
+            Some((RaterAction::ChooseLater, "select the error below; enter goes to it"))
         }
         _ => None,
     }
@@ -277,24 +295,30 @@ fn differences() -> [KeyBinding; 3] {
             "open_difference",
             'o',
             ComparisonAction::Open,
-            "show what each knew at the difference",
+            "show what wizard and assistant knew then",
             Some("difference"),
         ),
-        differ("next_difference", 'g', ComparisonAction::Next, "the next difference", Some("next")),
-        differ("last_difference", 't', ComparisonAction::Last, "the previous difference", Some("previous")),
+        differ("next_difference", 'g', ComparisonAction::Next, "select the next difference of signals", Some("next")),
+        differ(
+            "last_difference",
+            't',
+            ComparisonAction::Last,
+            "select the previous difference of signals",
+            Some("previous"),
+        ),
     ]
 }
 
 /// Key bindings that change which panels the screen shows.
 fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     let look = |name, code, look, help, footer| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, footer);
-    let panels = "next panel at full size";
+    let panels = "show the next panel at full size";
     [
         line("next_panel", next, KeyAction::Look(ViewAction::Next), CONSOLE, panels, Some("panels")),
-        look("last_panel", BackTab, ViewAction::Last, "previous panel at full size", None),
+        look("last_panel", BackTab, ViewAction::Last, "show the previous panel at full size", None),
         look("all_panels", Esc, ViewAction::All, "show all panels, at the present time", Some("all panels")),
-        look("back", Up, ViewAction::Back, "scroll back in events or timeline", None),
-        look("forward", Down, ViewAction::Forward, "scroll forward again", None),
+        look("back", Up, ViewAction::Back, "scroll events or timeline back", None),
+        look("forward", Down, ViewAction::Forward, "scroll events or timeline forward again", None),
     ]
 }
 

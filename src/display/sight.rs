@@ -173,7 +173,8 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     }
 }
 
-/// The clock, if the session shows it and there is a trial, which a tutorial is not. A probe shows the time that it has itself instead.
+/// The trial's clock, if the session shows the clock and there is a trial (a tutorial is none). During a probe, the
+/// display shows the time that the probe still has instead.
 fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
     if !session.spec.display.clock || session.tutorial().is_some() {
         return None;

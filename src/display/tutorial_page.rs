@@ -31,9 +31,9 @@ pub struct DisplayedTutorial {
     pub hint: Option<TutorialHint>,
     /// Number of presses made and number of presses required, if the step has presses.
     pub presses: Option<[usize; 2]>,
-    /// Whether the page says how buttons are pressed: in the first step that requires presses.
+    /// Whether the tutorial's page says how buttons are pressed: in the first step that requires presses.
     pub explains_buttons: bool,
-    /// Whether the last press was another than the required one.
+    /// Whether the participant's last press was another than the required press.
     pub missed: bool,
     /// Recipe cards, while they are shown.
     pub cards: Vec<RecipeCard>,

@@ -38,7 +38,7 @@ pub fn read_battery(path: &Path) -> FileResult<BatteryFiles> {
     };
     let participant = &session.spec.participant;
     if participant.kind != ParticipantKind::Simulated || !is_simulated(participant.gaze) {
-        let found = format!("session = \"{file}\", whose participant or gaze is not simulated");
+        let found = format!("session = \"{file}\", a session file whose participant or gaze is not simulated");
         let remedy = "a session file with kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
         return wrong(spec.session.span(), found, remedy);
     }
@@ -57,7 +57,7 @@ pub fn read_battery(path: &Path) -> FileResult<BatteryFiles> {
         }
     }
     if spec.cohorts.is_empty() {
-        return wrong(0..0, "no cohort".to_string(), "a [[cohort]] with a name");
+        return wrong(0..0, "a battery without cohorts".to_string(), "at least one [[cohort]] with a name");
     }
     Ok(BatteryFiles { session, cohorts: spec.cohorts })
 }

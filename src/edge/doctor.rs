@@ -71,23 +71,24 @@ pub fn describe(findings: &DoctorReport) -> String {
 
 fn terminal(spec: &ConsoleSpec) -> Vec<PreflightCheck> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-        let remedy = "run it in a terminal, not through a pipe";
+        let remedy = "run tomcom in a terminal, not through a pipe";
         return vec![PreflightCheck::new(
             "terminal",
             PreflightVerdict::Failed,
-            "input or output is no terminal",
+            "input or output of tomcom is no terminal",
             remedy,
         )];
     }
     let mut checks = vec![screen_size(), colours(spec)];
     let keys = match supports_keyboard_enhancement() {
-        Ok(true) => (PreflightVerdict::Ok, "the terminal reports them: a held key is told from a second press"),
+        Ok(true) => (PreflightVerdict::Ok, "the terminal reports key releases: a held key is told from a second press"),
         _ => (
             PreflightVerdict::Warning,
-            "the terminal does not report them: a held key is told from a second press by time",
+            "the terminal reports no key releases: a held key is told from a second press by time",
         ),
     };
-    let remedy = "a terminal with the kitty keyboard protocol (kitty, foot, WezTerm, Ghostty), without a multiplexer";
+    let remedy = "use a terminal with the kitty keyboard protocol (kitty, foot, WezTerm, Ghostty), without a \
+                  multiplexer";
     checks.push(PreflightCheck::new("key releases", keys.0, keys.1, remedy));
     let mouse = match mouse_mode() {
         Some(true) => (PreflightVerdict::Ok, "the terminal knows mouse reports (SGR)"),
@@ -98,7 +99,7 @@ fn terminal(spec: &ConsoleSpec) -> Vec<PreflightCheck> {
         "mouse",
         mouse.0,
         mouse.1,
-        "matters for --gaze mouse only: try it, or take another terminal",
+        "matters for --gaze mouse only: try the mouse, or use another terminal",
     ));
     checks
 }
@@ -115,15 +116,15 @@ fn screen_size() -> PreflightCheck {
         "terminal size",
         verdict,
         format!("{columns}x{rows}"),
-        "a larger window or a smaller font: 120x40, at least 80x24",
+        "use a larger window or a smaller font: 120x40 characters, at least 80x24",
     )
 }
 
 fn colours(spec: &ConsoleSpec) -> PreflightCheck {
     let (theme, count) = (theme(spec, TerminalBackground::Dark), available_color_count());
     let signs = if theme.unicode { "Unicode signs" } else { "ASCII signs" };
-    let remedy =
-        "TERM=xterm-256color, no NO_COLOR, and a UTF-8 locale such as LC_ALL=C.UTF-8, if the terminal has them";
+    let remedy = "set TERM=xterm-256color and a UTF-8 locale such as LC_ALL=C.UTF-8, and unset NO_COLOR, if the terminal has \
+         colours and Unicode";
     let found = match theme.colour {
         true => format!("{} colours, {signs}", if count > 256 { "16 million".to_string() } else { count.to_string() }),
         false => format!("no colours (NO_COLOR is set), {signs}"),
@@ -154,7 +155,9 @@ fn folder(out: &Path) -> PreflightCheck {
     let there = existing(out);
     let place = match out.is_dir() {
         true => out.display().to_string(),
-        false => format!("{} is not there yet, and {} where it will be", out.display(), there.display()),
+        false => {
+            format!("the folder {} is not there yet, and {}, in which it will be made,", out.display(), there.display())
+        }
     };
     let probe = there.join(format!(".tomcom-doctor-{}", std::process::id()));
     let made = fs::create_dir(&probe).map_err(|reason| reason.to_string());
@@ -169,10 +172,10 @@ fn folder(out: &Path) -> PreflightCheck {
     if is_own {
         let _ = fs::remove_dir_all(&probe);
     }
-    let remedy = "a folder that can be written to, with --out";
+    let remedy = "give a folder that can be written to with --out";
     match tried {
         Ok(took) => {
-            let found = format!("{place} can be written to (64 KiB on the disk in {} ms)", took.as_millis());
+            let found = format!("{place} can be written to (64 KiB were on the disk after {} ms)", took.as_millis());
             PreflightCheck::new("recordings", PreflightVerdict::Ok, found, remedy)
         }
         Err(reason) => {
@@ -201,7 +204,7 @@ pub fn free_bytes(_: &Path) -> io::Result<u64> {
 fn wall_clock() -> PreflightCheck {
     let now = WallTime::now();
     let verdict = if now.date().as_str() >= WRITTEN { PreflightVerdict::Ok } else { PreflightVerdict::Failed };
-    let remedy = "set the clock: recordings are named by date (session time does not depend on it)";
+    let remedy = "set the computer's clock: recordings are named by date (session time does not depend on this clock)";
     PreflightCheck::new("wall clock", verdict, now.rfc3339(), remedy)
 }
 
@@ -222,15 +225,23 @@ fn viewer() -> PreflightCheck {
         ViewerAvailability::Ready(path) => {
             (PreflightVerdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), "")
         }
-        ViewerAvailability::NoScreen => {
-            (PreflightVerdict::Ok, "there, but no screen: tomcom review serves it for a browser".to_string(), "")
-        }
+        ViewerAvailability::NoScreen => (
+            PreflightVerdict::Ok,
+            "a Rerun viewer is installed, but there is no screen: tomcom review serves the \
+                                    viewer for a browser"
+                .to_string(),
+            "",
+        ),
         ViewerAvailability::Other(version) => {
-            (PreflightVerdict::Warning, format!("rerun {version}: another version"), REMEDY)
+            (PreflightVerdict::Warning, format!("the Rerun viewer {version} is installed: another version"), REMEDY)
         }
-        ViewerAvailability::None => {
-            (PreflightVerdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), REMEDY)
-        }
+        ViewerAvailability::None => (
+            PreflightVerdict::Warning,
+            "no Rerun viewer in PATH: tomcom review serves one for a \
+                                         browser"
+                .to_string(),
+            REMEDY,
+        ),
     };
     PreflightCheck::new("viewer", verdict, found, remedy)
 }
@@ -248,7 +259,7 @@ fn timer() -> PreflightCheck {
     PreflightCheck::new(
         "timer",
         verdict,
-        format!("wakes at most {late_ms:.1} ms late"),
+        format!("a timer wakes the program at most {late_ms:.1} ms late"),
         "close other programs that use the processor",
     )
 }

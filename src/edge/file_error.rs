@@ -85,7 +85,14 @@ impl FileError {
     pub fn not_built(what: &Path, missing: MissingFeature) -> FileError {
         let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
         let remedy = format!("{}{instead}", missing.remedy());
-        FileError::from_finding(what, format!("a session for another build; this one is {missing}"), remedy)
+        FileError::from_finding(
+            what,
+            format!(
+                "a session that needs another build of tomcom; this build is \
+                                               {missing}"
+            ),
+            remedy,
+        )
     }
 
     /// The error about a file that cannot be read or written.
@@ -95,7 +102,7 @@ impl FileError {
 
     /// The error about an output file, whose name the user chose, that cannot be written.
     pub fn unwritable(path: &Path, reason: io::Error) -> FileError {
-        FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
+        FileError::unreadable(path, reason, "give another name for the file, in a folder that can be written to")
     }
 }
 

@@ -30,7 +30,7 @@ pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
     };
     write().map_err(|reason| match reason.kind() {
         ErrorKind::AlreadyExists => {
-            let remedy = "another name: what was frozen is never written over".to_string();
+            let remedy = "another name for the file: a frozen plan is never overwritten".to_string();
             FileError::from_finding(path, "a file that is there already".to_string(), remedy)
         }
         _ => FileError::unreadable(path, reason, "a new file in a folder that can be written to"),
@@ -53,18 +53,18 @@ pub fn read_frozen(path: &Path) -> FileResult<(String, FrozenPlan)> {
     if found != digest.trim_end() {
         return Err(wrong(
             HEAD.len()..first.len(),
-            format!("a file with the SHA-256 {found}, so it was changed"),
+            format!("a file with the SHA-256 {found}: it was changed after the plan was frozen"),
             REMEDY,
         ));
     }
     let frozen: FrozenPlan = serde_json::from_str(body).map_err(|error| {
         let start = text.len() - body.len();
         let before: usize = body.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
-        wrong(start + before..start + before, error.to_string(), "the version of the program that froze it")
+        wrong(start + before..start + before, error.to_string(), "the version of the program that froze the plan")
     })?;
     if frozen.frozen_plan != FROZEN_FORMAT {
         let found = format!("a frozen plan of format {}", frozen.frozen_plan);
-        return Err(wrong(0..first.len(), found, "the version of the program that froze it"));
+        return Err(wrong(0..first.len(), found, "the version of the program that froze the plan"));
     }
     Ok((digest.trim_end().to_string(), frozen))
 }

@@ -80,10 +80,10 @@ impl GazeSenderRejection {
     /// The reason for the rejection in words, to complete "gaze from ADDRESS is rejected: …".
     pub fn words(self) -> &'static str {
         match self {
-            GazeSenderRejection::Unlisted => "gaze_from does not list it",
-            GazeSenderRejection::Unpaired => "it does not begin with the pairing code",
+            GazeSenderRejection::Unlisted => "gaze_from does not list this address",
+            GazeSenderRejection::Unpaired => "its first line is not the pairing code",
             GazeSenderRejection::WrongCode => "the pairing code is wrong",
-            GazeSenderRejection::Locked => "no code is checked for a while, after wrong ones",
+            GazeSenderRejection::Locked => "after wrong pairing codes no code is checked for a while",
         }
     }
 }

@@ -53,7 +53,7 @@ fn read_part(path: &Path) -> FileResult<SimulationPool> {
 }
 
 fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
-    serde_json::from_str(line).map_err(|error| format!("a line that is none of a pool: {error}"))
+    serde_json::from_str(line).map_err(|error| format!("a line that is not a line of a pool: {error}"))
 }
 
 /// Checks that a pool with this header can be written to this path. A pool takes long to simulate, so a file with

@@ -201,7 +201,7 @@ impl Part {
         } else if any(|part| part.criterion_failed) && !any(|part| part.criterion_waived) {
             void("criterion not met")
         } else if phase < self.step.phases.len() || !any(|part| part.trial_over) {
-            void("closed before everything was done")
+            void("closed before every step of the plan was done")
         } else {
             excluded.map_or(RecordingOutcome::Complete, |reason| RecordingOutcome::Excluded { reason })
         };

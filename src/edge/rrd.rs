@@ -52,11 +52,14 @@ impl RerunFileState {
     pub fn reason(self) -> Option<&'static str> {
         match self {
             RerunFileState::Missing | RerunFileState::Whole => None,
-            RerunFileState::Cut => Some("it was not written to its end"),
-            RerunFileState::Other => Some("another version wrote it, or it began in the middle of the session"),
-            RerunFileState::Unsealed => Some("nothing said which log it shows"),
-            RerunFileState::Damaged => Some("it was damaged or exchanged"),
-            RerunFileState::Stale => Some("it did not show the log as that is now"),
+            RerunFileState::Cut => Some("the stream was not written to its end"),
+            RerunFileState::Other => Some(
+                "another version wrote the stream, or the stream began in the middle of the \
+                                           session",
+            ),
+            RerunFileState::Unsealed => Some("nothing said which log the stream shows"),
+            RerunFileState::Damaged => Some("the stream was damaged or exchanged"),
+            RerunFileState::Stale => Some("the stream did not show the log as the log is now"),
         }
     }
 }

@@ -98,8 +98,11 @@ impl PartReader {
         };
         let header: PartHeader = parsed(&path, number, &text)?;
         if header.study_part != PART_FORMAT {
-            let found = format!("a part of format {}", header.study_part);
-            let remedy = format!("a part of format {PART_FORMAT}, or the version of the program that wrote it");
+            let found = format!("a study's part of format {}", header.study_part);
+            let remedy = format!(
+                "a study's part of format {PART_FORMAT}, or the version of the program that wrote \
+                                  the part"
+            );
             return Err(at_line(&path, number, &text, 0, found, remedy));
         }
         let cut = || FileError::from_finding(&path, "the end after the first line".to_string(), REMEDY.to_string());
@@ -163,7 +166,7 @@ fn next_line(path: &Path, lines: &mut BufReader<File>, number: &mut usize) -> Fi
 
 fn parsed<T: DeserializeOwned>(path: &Path, number: usize, text: &str) -> FileResult<T> {
     serde_json::from_str(text).map_err(|error| {
-        let found = format!("a line that is none of a part: {error}");
+        let found = format!("a line that is not a line of a study's part: {error}");
         at_line(path, number, text, error.column().saturating_sub(1), found, REMEDY.to_string())
     })
 }

@@ -20,10 +20,12 @@ pub(super) struct TrackerFinding {
     pub remedy: String,
 }
 
-const PLAYER: &str = "open it in Pupil Player with the plugin Surface Tracker and export: gaze_positions_on_surface_NAME.csv in exports/000/surfaces";
-const NEON: &str = "open it in Neon Player with the plugin Surface Tracking and export: gaze_positions_on_surface_NAME.csv; or gaze.csv of \
-                    Pupil Cloud's Marker Mapper";
-const CLOUD: &str = "Pupil Cloud's Marker Mapper: gaze.csv of its download; or the native recording data, exported by Neon Player with the \
+const PLAYER: &str = "open the recording in Pupil Player with the plugin Surface Tracker and export \
+                      gaze_positions_on_surface_NAME.csv in exports/000/surfaces";
+const NEON: &str = "open the recording in Neon Player with the plugin Surface Tracking and export \
+                    gaze_positions_on_surface_NAME.csv; or give gaze.csv of Pupil Cloud's Marker Mapper";
+const CLOUD: &str = "Pupil Cloud's Marker Mapper: gaze.csv of its download; or the native recording data, exported by \
+                     Neon Player with the \
                      plugin Surface Tracking";
 
 /// What a path contains, if it belongs to an eye tracker's program and is no gaze on the display; else `None`.
@@ -33,8 +35,8 @@ pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
         return folder(path).or_else(|| sub_folders(path).iter().find_map(|sub| folder(sub)));
     }
     if extension == "zip" {
-        let remedy =
-            "unpack it, and give the table in it: gaze_positions_on_surface_NAME.csv, or gaze.csv of Marker Mapper";
+        let remedy = "unpack the archive, and give the table in it: gaze_positions_on_surface_NAME.csv, or gaze.csv of Marker \
+             Mapper";
         return Some(TrackerFinding { found: "an archive".to_string(), remedy: remedy.to_string() });
     }
     path.parent().filter(|_| RECORDED.contains(&extension)).and_then(folder)

@@ -30,7 +30,7 @@ pub(super) fn in_words(message: &str) -> (String, Option<String>) {
         }
         () if let Some(name) = found.strip_prefix("unknown variant ") => quoted(name),
         () if let Some(name) = found.strip_prefix("unknown field ") => {
-            format!("{}, which is no setting here", quoted(name))
+            format!("{}, which is not the name of a setting here", quoted(name))
         }
         () if let Some(name) = found.strip_prefix("missing field ") => {
             return (format!("no {}", quoted(name)), Some(format!("{} = …", name.trim_matches('`'))));
@@ -103,7 +103,11 @@ mod tests {
             ("invalid type: string \"fast\", expected f64", "\"fast\"", "a number"),
             ("invalid type: integer `5`, expected a boolean", "5", "true or false"),
             ("unknown variant `all`, expected one of `state`, `belief`", "\"all\"", "one of \"state\", \"belief\""),
-            ("unknown field `len`, expected `seed` or `trial`", "\"len\", which is no setting here", "seed or trial"),
+            (
+                "unknown field `len`, expected `seed` or `trial`",
+                "\"len\", which is not the name of a setting here",
+                "seed or trial",
+            ),
             ("missing field `layout`", "no \"layout\"", "layout = …"),
             (
                 "invalid IP address syntax",

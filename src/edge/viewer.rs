@@ -105,7 +105,14 @@ fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     let mut answer = Vec::new();
     viewer.take(ANSWER_BYTES).read_to_end(&mut answer)?;
     let answer = String::from_utf8_lossy(&answer);
-    if answer.contains("grpc-status:0") { Ok(()) } else { Err(io::Error::other("the viewer does not go there")) }
+    if answer.contains("grpc-status:0") {
+        Ok(())
+    } else {
+        Err(io::Error::other(
+            "the Rerun viewer does not go to this \
+                                                                                time",
+        ))
+    }
 }
 
 /// A field of a Protocol Buffers message whose content has a length.

@@ -193,12 +193,11 @@ impl SenderComparison {
     /// An unmatched communication in one line: "4:32  only tom-com: recipe of order 1".
     pub fn headline(&self, difference: &UnmatchedCommunication) -> String {
         let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
-        let not = match self.lanes.len() {
-            0..=2 => String::new(),
-            _ => format!(", not {}", self.lanes[difference.not].name),
-        };
-        let only = if not.is_empty() { "only " } else { "" };
-        format!("{}  {only}{by}{not}: {}", spoken.said.clock, spoken.what.words())
+        let (clock, words) = (spoken.said.clock, spoken.what.words());
+        match self.lanes.len() {
+            0..=2 => format!("{clock}  only {by}: {words}"),
+            _ => format!("{clock}  {by}, not {}: {words}", self.lanes[difference.not].name),
+        }
     }
 
     /// The context of an unmatched communication, as lines of text.
@@ -206,32 +205,33 @@ impl SenderComparison {
         let spoken = self.spoken(difference);
         let other = &self.lanes[difference.not];
         let apart = |near: &&Communication| near.said.press.abs_diff(spoken.said.press);
-        let near = match other.spoken.iter().min_by_key(apart) {
+        let (press, name) = (spoken.said.press, &other.name);
+        let lacks = match other.spoken.iter().min_by_key(apart) {
             Some(near) => {
-                let presses = count(apart(&near), "press", "presses");
-                format!("whose nearest is {} at {}, {presses} away", near.what.words(), near.said.clock)
+                let (words, clock, presses) =
+                    (near.what.words(), near.said.clock, count(apart(&near), "press", "presses"));
+                format!(
+                    "after press {press}; not sent by {name}, whose nearest signal is {words} at {clock}, {presses} away"
+                )
             }
-            None => "which said nothing in this trial".to_string(),
+            None => format!("after press {press}; not sent by {name}, which sent no signal in this trial"),
         };
-        let mut lines = vec![
-            self.headline(difference),
-            format!("after press {}; not said by {}, {near}", spoken.said.press, other.name),
-        ];
+        let mut lines = vec![self.headline(difference), lacks];
         let Some(known) = &spoken.known else {
-            lines.push("nothing was asked yet: before the first press or order".to_string());
+            lines.push("the assistant had not been asked: there was no press or order before".to_string());
             return lines;
         };
         if let Some(advice) = self.advice(difference) {
             let lane = &self.lanes[self.assistant(difference)];
             lines.push(format!(
-                "{} then: {}",
+                "recommendation of {} at this time: {}",
                 lane.name,
                 thought(kitchen, advice, lane.concept == Some(ConceptName::Tom))
             ));
         }
         lines.extend(believed(kitchen, known));
-        lines.push(format!("truly: {}", truly(kitchen, known.state)));
-        lines.push(format!("on the wizard's screen: {}", seen(known.screen.as_ref())));
+        lines.push(format!("true contents of the kitchen: {}", truly(kitchen, known.state)));
+        lines.push(format!("panels on the wizard's screen: {}", seen(known.screen.as_ref())));
         lines
     }
 }
@@ -245,17 +245,17 @@ fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
         let (signal, SignalOption { benefit, standard_error, net, .. }) = (wording::signal(&option.signal), option);
         match is_tom {
             true => format!("{signal} {benefit:.2} (above threshold {net:+.2})"),
-            false => format!("{signal} {benefit:.2} ±{standard_error:.2} (net {net:+.2})"),
+            false => format!("{signal} {benefit:.2} ±{standard_error:.2} (net benefit {net:+.2})"),
         }
     };
     let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
-    let best = advice.best.as_ref().map_or("say nothing".to_string(), wording::signal);
+    let best = advice.best.as_ref().map_or("send no signal".to_string(), wording::signal);
     let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
     let reason = reason.map_or(String::new(), |reason| format!("; the human {}", reason.words()));
     match options.is_empty() {
         true => best,
-        false if is_tom => format!("{best}{reason}; deviations: {}", options.join(", ")),
-        false => format!("{best}{reason}; presses saved: {}", options.join(", ")),
+        false if is_tom => format!("{best}{reason}; expected deviation of beliefs: {}", options.join(", ")),
+        false => format!("{best}{reason}; presses saved by each signal: {}", options.join(", ")),
     }
 }
 
@@ -273,20 +273,25 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
         let name = wording::location(&aspect.name);
         let (believes, truth_label) = (&aspect.wordings[usize::from(held.believes)], &aspect.wordings[truth]);
         match usize::from(held.believes) == truth {
-            true => format!("{name}: most likely {truth_label}, but only {:.2}", held.p_truth),
-            false => format!("{name}: {believes} {:.2}, truly {truth_label} {:.2}", held.p, held.p_truth),
+            true => format!("{name}: most probably {truth_label}, but with a probability of only {:.2}", held.p_truth),
+            false => {
+                format!("{name}: thinks {believes} (probability {:.2}), is {truth_label} ({:.2})", held.p, held.p_truth)
+            }
         }
     };
     let doubted = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
         format!("{} {:.2}", wording::location(&kitchen.aspects[index].name), held.p_truth)
     };
-    let list = |told: Vec<String>| if told.is_empty() { "nothing".to_string() } else { told.join("; ") };
+    let list = |told: Vec<String>| if told.is_empty() { "none".to_string() } else { told.join("; ") };
     [
         format!(
-            "believed wrong, by the estimate without what was just sent: {}",
+            "false beliefs, by the estimate without the signal just sent: {}",
             list(wrong.iter().take(4).map(told).collect())
         ),
-        format!("right, but less than {SURE} sure: {}", list(unsure.iter().take(6).map(doubted).collect())),
+        format!(
+            "right beliefs with a probability below {SURE}: {}",
+            list(unsure.iter().take(6).map(doubted).collect())
+        ),
     ]
 }
 
@@ -301,15 +306,15 @@ fn truly(kitchen: &Kitchen, state: State) -> String {
         is_there.then(|| format!("{} {}", location.label(), kitchen.content_label(state, id)))
     };
     let there: Vec<String> = (0..kitchen.locations.len()).filter_map(location).collect();
-    if there.is_empty() { "an empty kitchen".to_string() } else { there.join(", ") }
+    if there.is_empty() { "all places are empty".to_string() } else { there.join(", ") }
 }
 
 fn seen(screen: Option<&WizardScreenContent>) -> String {
     match screen {
         Some(screen) => {
-            let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));
+            let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", with the dialog {dialog}"));
             format!("{} ({}{dialog})", screen.panels.join(", "), screen.room)
         }
-        None => "not known: no console was open".to_string(),
+        None => "unknown, since no console was open".to_string(),
     }
 }

@@ -19,7 +19,7 @@ impl ReplayLandmark {
         match self {
             ReplayLandmark::Error => "error",
             ReplayLandmark::Signal => "signal",
-            ReplayLandmark::Marker => "marker",
+            ReplayLandmark::Marker => "note",
             ReplayLandmark::FalseBelief => "false belief",
         }
     }

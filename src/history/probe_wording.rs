@@ -22,8 +22,8 @@ pub fn subject(about: &ProbeSubject) -> String {
 pub fn event(event: &ProbeEvent) -> String {
     match event {
         ProbeEvent::Requested => "the wizard requests a freeze probe".to_string(),
-        ProbeEvent::Delayed { probe, reason } => format!("probe {probe} is delayed: {}", reason.words()),
-        ProbeEvent::Dropped { probe, reason } => format!("probe {probe} is dropped: {}", reason.words()),
+        ProbeEvent::Delayed { probe, reason } => format!("freeze probe {probe} is delayed: {}", reason.words()),
+        ProbeEvent::Dropped { probe, reason } => format!("freeze probe {probe} is dropped: {}", reason.words()),
         ProbeEvent::Begun { probe, origin, questions, .. } => {
             let by = match origin {
                 ProbeOrigin::Schedule => "",
@@ -31,16 +31,20 @@ pub fn event(event: &ProbeEvent) -> String {
             };
             let about: Vec<String> = questions.iter().map(|question| subject(&question.about)).collect();
             let questions = count(questions.len() as u64, "question", "questions");
-            format!("probe {probe} begins{by}: the task stands still, {questions}: {}", about.join(", "))
+            format!("freeze probe {probe} begins{by}: the task stands still, {questions}: {}", about.join(", "))
         }
-        ProbeEvent::Asked { probe, question } => format!("probe {probe} asks question {question}"),
+        ProbeEvent::Asked { probe, question } => format!("freeze probe {probe} asks question {question}"),
         ProbeEvent::Answered { question, answer: Some(answer), confidence, .. } => {
             let sure = confidence.map_or(String::new(), |step| format!(" (confidence {step} of 3)"));
-            format!("answer to question {question}: {}{sure}", said(answer))
+            format!("answer to probe question {question}: {}{sure}", said(answer))
         }
-        ProbeEvent::Answered { question, answer: None, .. } => format!("answer to question {question}: I don't know"),
-        ProbeEvent::Skipped { probe, reason } => format!("the wizard skips the rest of probe {probe}: {reason}"),
-        ProbeEvent::Closed { probe, reason } => format!("probe {probe} closes: {}", reason.words()),
-        ProbeEvent::Ended { probe } => format!("the task continues after probe {probe}"),
+        ProbeEvent::Answered { question, answer: None, .. } => {
+            format!("answer to probe question {question}: I don't know")
+        }
+        ProbeEvent::Skipped { probe, reason } => {
+            format!("the wizard skips the other questions of freeze probe {probe}: {reason}")
+        }
+        ProbeEvent::Closed { probe, reason } => format!("freeze probe {probe} closes: {}", reason.words()),
+        ProbeEvent::Ended { probe } => format!("the task continues after freeze probe {probe}"),
     }
 }

@@ -46,7 +46,7 @@ pub fn code(code: &ErrorCauseCode) -> String {
 /// columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
-    Some(format!("no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
+    Some(format!("the press has no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
 }
 
 /// Why a press has no effect, in words; `content` is the content of the location that the reason is about.
@@ -58,11 +58,11 @@ fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &
         NoEffectReason::BothEmpty => "the hand and the place are empty".to_string(),
         NoEffectReason::PlaceEmpty => format!("the {name} is empty"),
         NoEffectReason::PlaceFull => format!("the {name} is full"),
-        NoEffectReason::NotAccepted => "it is not accepted there".to_string(),
+        NoEffectReason::NotAccepted => "the item is not accepted there".to_string(),
         NoEffectReason::NotStacked => "the items cannot be stacked".to_string(),
-        NoEffectReason::NotProcessed => format!("cannot process {content}"),
-        NoEffectReason::NoOrder => format!("{name} wants nothing"),
-        NoEffectReason::NotServed => "it cannot be served there".to_string(),
+        NoEffectReason::NotProcessed => format!("{content} cannot be processed there"),
+        NoEffectReason::NoOrder => format!("{name} asks for no dish"),
+        NoEffectReason::NotServed => "the item cannot be served there".to_string(),
     }
 }
 
@@ -154,34 +154,38 @@ pub fn protocol(event: &ProtocolEvent) -> String {
             "the participant agrees to be recorded, on the display".to_string()
         }
         ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),
-        ProtocolEvent::PhaseStarted { phase, .. } => format!("phase: {}", phase.name()),
-        ProtocolEvent::Ticked { step, done: true } => format!("step {step} is done"),
-        ProtocolEvent::Ticked { step, done: false } => format!("step {step} is unticked"),
+        ProtocolEvent::PhaseStarted { phase, .. } => format!("phase of the study begins: {}", phase.name()),
+        ProtocolEvent::Ticked { step, done: true } => format!("step {step} of the phase is done"),
+        ProtocolEvent::Ticked { step, done: false } => format!("step {step} of the phase is unticked"),
         ProtocolEvent::Tutorial(event) => tutorial(event),
-        ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
-        ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
-        // Answers in words and choices can be personal, and the people who watch the stream need not be those who
-        // analyse the study.
-        ProtocolEvent::ItemAnswered { item, answer: AnswerValue::Number(number) } => format!("item {item}: {number}"),
-        ProtocolEvent::ItemAnswered { item, .. } => format!("item {item} is answered"),
-        ProtocolEvent::ItemSkipped { item } => format!("item {item}: no answer"),
-        ProtocolEvent::AnswersConfirmed => "the answers are confirmed".to_string(),
+        ProtocolEvent::ItemShown { item } => format!("questionnaire item {item} is shown"),
+        ProtocolEvent::AnswersShown => "all answers to the questionnaire are shown".to_string(),
+        // Answers in words and choices can be personal, and people who watch the stream are not the ones who analyse
+        // the study.
+        ProtocolEvent::ItemAnswered { item, answer: AnswerValue::Number(number) } => {
+            format!("questionnaire item {item}: answer {number}")
+        }
+        ProtocolEvent::ItemAnswered { item, .. } => format!("questionnaire item {item} is answered"),
+        ProtocolEvent::ItemSkipped { item } => format!("questionnaire item {item}: no answer"),
+        ProtocolEvent::AnswersConfirmed => "the answers to the questionnaire are confirmed".to_string(),
         ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {
             let met = if *met { "met" } else { "not met" };
             let orders = count(*orders, "order", "orders");
             let errors = count(*errors, "error", "errors");
-            format!("criterion {met}: {orders} served, {errors} in {}", count(*presses, "press", "presses"))
+            format!("practice criterion {met}: {orders} served, {errors} in {}", count(*presses, "press", "presses"))
         }
-        ProtocolEvent::CriterionWaived { reason } => format!("criterion waived: {reason}"),
+        ProtocolEvent::CriterionWaived { reason } => format!("practice criterion waived: {reason}"),
     }
 }
 
 fn tutorial(event: &TutorialEvent) -> String {
     match event {
         TutorialEvent::Shown { step, by } => format!("tutorial: the {} turns to step {step}", by.name()),
-        TutorialEvent::Pressed { button } => format!("tutorial: pressed {button}"),
+        TutorialEvent::Pressed { button } => format!("tutorial: the participant presses {button}"),
         TutorialEvent::CardsHidden { .. } => "tutorial: the recipe cards are hidden".to_string(),
-        TutorialEvent::Answered { step, choice } => format!("tutorial: question {step}, choice {choice}"),
+        TutorialEvent::Answered { step, choice } => {
+            format!("tutorial: the participant answers question {step} with choice {choice}")
+        }
         TutorialEvent::Ended { by } => format!("tutorial: ended by the {}", by.name()),
     }
 }
@@ -196,7 +200,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Signal { by, signal: shown } => (sender(*by), signal(shown)),
         TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => ("wizard", "took the signal back".to_string()),
         TimelineEvent::SignalEnded(SignalEndReason::Elapsed | SignalEndReason::Outdated) => {
-            ("", "signal is over".to_string())
+            ("", "the signal is over".to_string())
         }
         TimelineEvent::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
         TimelineEvent::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
@@ -303,11 +307,11 @@ pub fn drops(counts: &DroppedInputCounts) -> String {
 pub fn calibration(event: &GazeCheckEvent) -> String {
     match event {
         GazeCheckEvent::Begun { targets } => format!("gaze accuracy check begins: {} targets", targets.len()),
-        GazeCheckEvent::TargetShown { target } => format!("target {} is shown", target + 1),
-        GazeCheckEvent::TargetsHidden => "the targets are hidden".to_string(),
-        GazeCheckEvent::Measured { found: None } => "gaze not measured: too few usable samples".to_string(),
+        GazeCheckEvent::TargetShown { target } => format!("gaze target {} is shown", target + 1),
+        GazeCheckEvent::TargetsHidden => "the gaze targets are hidden".to_string(),
+        GazeCheckEvent::Measured { found: None } => "gaze accuracy not measured: too few usable samples".to_string(),
         GazeCheckEvent::Measured { found: Some(found) } => format!(
-            "gaze measured: accuracy {:.2} deg, {:.2} deg without its offset, precision {:.2} deg",
+            "gaze accuracy measured: {:.2} deg, {:.2} deg without its offset; precision {:.2} deg",
             found.accuracy_deg, found.corrected_deg, found.precision_deg
         ),
         GazeCheckEvent::Accepted { corrected: true } => "gaze accepted, its offset is subtracted".to_string(),

@@ -231,7 +231,8 @@ pub fn describe(summary: &BidsSummary) -> String {
     let changed = summary.changed_codes.iter();
     let line = |(code, label): &(String, String)| {
         format!(
-            "the code {code} is sub-{label}: labels have letters and digits only, and differ by more than capitals\n"
+            "the participant with the code {code} is sub-{label} in the data set: labels have letters and digits \
+             only, and differ by more than capitals\n"
         )
     };
     let changed: String = changed.map(line).collect();
@@ -244,7 +245,8 @@ pub fn describe(summary: &BidsSummary) -> String {
         ),
     };
     format!(
-        "{}: {}\n{recordings}rows: {} events, {} gaze, {} fixations and blinks, {} arm, {} beliefs; {}\n{changed}{words}",
+        "{}: {}\n{recordings}rows: {} events, {} gaze samples, {} fixations and blinks, {} arm samples, {} beliefs; \
+         {}\n{changed}{words}",
         summary.folder.display(),
         count(summary.recordings.len() as u64, "recording", "recordings"),
         rows(|rows| rows.events),

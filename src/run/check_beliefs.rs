@@ -29,7 +29,8 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
     let thresholds = match choose_on.first() {
         None => None,
         Some(first) => Some(chosen_thresholds(&other, &aspect_groups(&kitchen)).ok_or_else(|| {
-            let found = "recordings to choose thresholds on whose participants' beliefs are not known".to_string();
+            let found =
+                "recordings for the choice of thresholds, in which the participants' beliefs are not known".to_string();
             FileError::from_finding(first, found, "recordings of simulated participants".to_string())
         })?),
     };

@@ -10,9 +10,9 @@ use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use crate::measures::consensus::RaterConsensus;
 use crate::session::settings::is_code;
 
-/// Advice in error messages on how a row of the table names its rater.
-const RATER: &str =
-    "a code of 1 to 32 letters, digits, - and _, never a name; or two of them such as R1+R2, for their consensus";
+/// Advice in error messages on how the table names a rater.
+const RATER: &str = "a rater's code of 1 to 32 letters, digits, - and _, never a name; or two codes such as R1+R2, \
+                     for the consensus of these raters";
 
 /// Author of a row of the table of codes: one rater, or two raters with a consensus.
 enum RowAuthor {
@@ -47,7 +47,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
         let wrong = |found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
         let Some(index) = names.iter().position(|name| *name == row.recording) else {
             let found = format!("the recording \"{}\"", row.recording);
-            let remedy = format!("a recording that was named: {}", names.join(", "));
+            let remedy = format!("one of the recordings that were given: {}", names.join(", "));
             return Err(wrong(found, &remedy).into());
         };
         let one = &mut recordings[index];
@@ -93,13 +93,19 @@ impl CodedRecording {
         let own = new.raters.clone().map(|rater| self.codes.get(&rater).cloned().unwrap_or_default());
         let consensus = self.consensus.take().unwrap_or_else(|| new.clone());
         if consensus.raters != new.raters {
-            let remedy = format!("{}, who settled this recording; or delete its consensus first", consensus.name());
+            let remedy = format!(
+                "the consensus of {}, who settled this recording; or delete this consensus first",
+                consensus.name()
+            );
             return Err((format!("the consensus of {}", new.raters.join(" and ")), remedy));
         }
         let decided = RaterCodes([(press, code.clone())].into());
         let consensus = consensus.with_agreed(own.each_ref()).with_decided(&decided, own.each_ref());
         if let Some(remedy) = consensus.settled.get(&press).and_then(|settled| settled.fault()) {
-            return Err((format!("press {press} with another cause than both raters say"), remedy.to_string()));
+            return Err((
+                format!("press {press} with another cause than the one that both raters gave"),
+                remedy.to_string(),
+            ));
         }
         self.consensus = Some(consensus);
         Ok(())

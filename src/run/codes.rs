@@ -266,7 +266,7 @@ pub fn describe(figures: &RaterCodesSummary) -> String {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();
         let coded = match coded.is_empty() {
             true => "no rater has coded this recording yet".to_string(),
-            false => format!("coded: {}", coded.join(", ")),
+            false => format!("coded by each rater: {}", coded.join(", ")),
         };
         text += &format!("{}: {}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
         text += &one.consensus.as_ref().map_or(String::new(), describe_consensus);
@@ -275,8 +275,8 @@ pub fn describe(figures: &RaterCodesSummary) -> String {
     for pair in figures.agreements.iter().chain(&figures.known) {
         let RaterAgreement { errors, same_cause, kappa_cause, beliefs, same_aspect, kappa_aspect } = pair.agreement;
         text += &format!(
-            "{} and {}: the same cause for {same_cause} of {errors} errors (kappa {}), the same wrong belief for \
-             {same_aspect} of {beliefs} (kappa {})\n",
+            "{} and {}: the same cause for {same_cause} of {errors} errors (kappa {}), the same false belief for \
+             {same_aspect} of {beliefs} errors by false beliefs (kappa {})\n",
             pair.of,
             pair.with,
             number(kappa_cause),
@@ -289,9 +289,13 @@ pub fn describe(figures: &RaterCodesSummary) -> String {
 fn describe_consensus(found: &ConsensusSummary) -> String {
     let ConsensusSummary { of, with, agreed, settled, open, stale } = found;
     let decided = settled.saturating_sub(*agreed);
-    let mut text = format!("  consensus of {of} and {with}: {agreed} agreed, {decided} settled, {open} open\n");
+    let mut text = format!(
+        "  consensus of {of} and {with} on errors: {agreed} agreed, {decided} settled, {open} \
+                            open\n"
+    );
     for ChangedRaterCode { error, press, rater } in stale {
-        text += &format!("  stale: {rater} changed the code of error {error} (press {press}) after it was settled\n");
+        text +=
+            &format!("  stale code: {rater} changed the code of error {error} (press {press}) after it was settled\n");
     }
     text
 }
@@ -301,7 +305,8 @@ fn describe_disagreements(all: &[RaterDisagreement]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);
     let open = all.iter().filter(|one| one.settled_words.is_none()).count();
-    let mut text = format!("{}, {open} of them open:\n", count(all.len() as u64, "disagreement", "disagreements"));
+    let mut text =
+        format!("{} between raters, {open} of them open:\n", count(all.len() as u64, "disagreement", "disagreements"));
     text += &format!("  {:<recordings$}  error   time  press  button\n", "recording");
     for one in all {
         let ListedError { error, press, .. } = one.error;
@@ -312,12 +317,14 @@ fn describe_disagreements(all: &[RaterDisagreement]) -> String {
             one.recording,
             one.of,
             one.with,
-            one.settled_words.as_ref().map_or(String::new(), |settled| format!("; settled: {settled}")),
+            one.settled_words.as_ref().map_or(String::new(), |settled| format!("; settled as {settled}")),
         );
     }
     if open == 0 {
         return text;
     }
     let (of, with) = (&first.of, &first.with);
-    text + &format!("settle them together, recording by recording: tomcom replay RECORDING --settle {of} {with}\n")
+    text + &format!(
+        "settle the disagreements together, recording by recording: tomcom replay RECORDING --settle {of} {with}\n"
+    )
 }

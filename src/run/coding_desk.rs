@@ -83,7 +83,11 @@ pub(super) fn greeting(session: &RaterSession) -> String {
     changed.dedup();
     match changed.is_empty() {
         true => format!("{name}: {}; {begins}", session.progress()),
-        false => format!("{name}: {}; open again, since {} changed codes", session.progress(), changed.join(" and ")),
+        false => format!(
+            "{name}: {}; settled errors are open again, since {} changed codes",
+            session.progress(),
+            changed.join(" and ")
+        ),
     }
 }
 

@@ -51,8 +51,8 @@ pub enum LiveError {
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
     /// The port for gaze samples cannot be opened.
-    #[error("nothing can listen at {at} for gaze: {reason}")]
-    #[diagnostic(help("another gaze_port in the session file, or as gaze_listen an address of this computer"))]
+    #[error("the port for gaze samples at {at} cannot be opened: {reason}")]
+    #[diagnostic(help("set another gaze_port in the session file, or an address of this computer as gaze_listen"))]
     Gaze {
         /// Address and port for gaze that cannot be opened.
         at: SocketAddr,
@@ -63,9 +63,9 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy()))]
     Lsl(#[from] LslError),
-    /// The server of the participant's display cannot be opened.
-    #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
-    #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]
+    /// The participant's display cannot be served.
+    #[error("the address {address}, port {port}, for the participant's display cannot be opened: {reason}")]
+    #[diagnostic(help("set another port in the session file (port under [display]), or an address of this computer"))]
     Display {
         /// Network address of the display's server.
         address: IpAddr,
@@ -76,7 +76,7 @@ pub enum LiveError {
     },
     /// The display tags do not fit on the display, so that the eye tracker could not find the display.
     #[error("the eye tracker has no surface to look for: found {}", .0.found)]
-    #[diagnostic(help("{}; or a surface of your own, with its corners in [tracker]", .0.remedy))]
+    #[diagnostic(help("{}; or set a surface of your own, with its corners, in [tracker]", .0.remedy))]
     Tags(TagError),
     /// The recording cannot be written.
     #[error(transparent)]
@@ -89,7 +89,8 @@ pub enum LiveError {
     /// Recordings do not belong to the study plan, for this reason.
     #[error("found {0}")]
     #[diagnostic(help(
-        "the plan as it was, or another folder with --out for another plan; tomcom plan SESSION shows it"
+        "keep the plan as it was, or give another folder with --out for another plan; tomcom plan SESSION shows the \
+         plan"
     ))]
     Plan(String),
 }
@@ -117,7 +118,7 @@ pub enum ReviewError {
     Recording(#[from] RecordingWriteError),
     /// The record of a wizard's training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
-    #[diagnostic(help("a folder that can be written to, with --out"))]
+    #[diagnostic(help("give a folder that can be written to with --out"))]
     Training {
         /// Path of the training record.
         path: PathBuf,

@@ -57,8 +57,12 @@ impl FitTrials {
         let people = names(&people);
         if probes && observations.iter().all(|one| one.answers.is_empty()) {
             let first = recordings.first().map_or(Path::new("."), PathBuf::as_path);
-            let found = "no answer to a probe in any of the recordings".to_string();
-            return Err(FileError::from_finding(first, found, "recordings with probes, or no --probes".to_string()));
+            let found = "no answer to a freeze probe in any of the recordings".to_string();
+            return Err(FileError::from_finding(
+                first,
+                found,
+                "recordings with freeze probes, or the command without --probes".to_string(),
+            ));
         }
         let kitchen = one_kitchen.kitchen()?;
         let differ = models.windows(2).any(|pair| pair[0] != pair[1]);

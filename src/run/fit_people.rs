@@ -34,8 +34,8 @@ pub fn require_people(recordings: &[PathBuf], trials: &FitTrials) -> FileResult<
     }
     let first = recordings.first().map_or(Path::new("."), PathBuf::as_path);
     let codes: Vec<&str> = people.into_keys().collect();
-    let found = format!("recordings of {} alone", codes.join(", "));
-    let remedy = "recordings of several persons with different codes, or no --people".to_string();
+    let found = format!("recordings of one person, {}", codes.join(", "));
+    let remedy = "recordings of several persons with different codes, or the command without --people".to_string();
     Err(FileError::from_finding(first, found, remedy))
 }
 

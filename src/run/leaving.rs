@@ -54,7 +54,7 @@ impl TutorialCompletion {
     }
 }
 
-/// Result of a live session: recording, summary, and how it was left.
+/// Result of a live session: its recording, its summary, and how the wizard left it.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
     /// Folder of the recording.
@@ -78,16 +78,16 @@ impl LiveOutcome {
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
         let signals = count(self.figures.signals, "signal", "signals");
         let served = count(self.figures.served.len() as u64, "order", "orders");
-        let trial = || format!("{presses} of both, {signals}, {served} served");
+        let trial = || format!("{presses} of human and robot, {signals}, {served} served");
         let reached = self.tutorial.map_or_else(trial, TutorialCompletion::describe);
         let standing = if self.standing.counts() {
             String::new()
         } else {
-            format!("left out of the analysis: {}\n", self.standing.describe())
+            format!("the recording is left out of the analysis: {}\n", self.standing.describe())
         };
         format!(
             "{reached}\n{standing}recorded in {folder}\n\
-             look at it again: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
+             look at the recording: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
         )
     }
 }

@@ -38,11 +38,14 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
         return wrong("a recording that is still being written", "a recording whose session is over");
     }
     if !log.path().ends_with(LOG_NAME) {
-        return wrong("a log by another name", "the folder of a recording, into which its MCAP is written");
+        return wrong(
+            "a log that is not called events.jsonl",
+            "the folder of a recording, into which its MCAP is written",
+        );
     }
     let folder = log.folder().to_path_buf();
     let unwritable =
-        |reason: io::Error| FileError::unreadable(&folder, reason, "a folder of the recording that can be written to");
+        |reason: io::Error| FileError::unreadable(&folder, reason, "a folder of a recording, which can be written to");
     let mut file = McapFile::create(&folder).map_err(unwritable)?;
     let session = log.session();
     let cost = CostToGo::new(session.kitchen.clone());

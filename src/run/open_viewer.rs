@@ -42,8 +42,8 @@ pub enum RerunViewerError {
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
     /// The stream file cannot be written.
-    #[error("{}: the stream cannot be written: {reason}", path.display())]
-    #[diagnostic(help("a place that can be written to, with --save=FILE"))]
+    #[error("{}: the Rerun stream cannot be written: {reason}", path.display())]
+    #[diagnostic(help("give a file that can be written to with --save=FILE"))]
     Unwritable {
         /// Path of the stream file.
         path: PathBuf,
@@ -53,20 +53,20 @@ pub enum RerunViewerError {
     /// The web viewer cannot be served on this computer.
     #[error("the viewer cannot be served on this machine: {0}")]
     #[diagnostic(help(
-        "a free port from {WEB_PORT} and from {SERVER_PORT} on, up to {PORTS} further: end another tomcom review, or see who \
-         listens there"
+        "{PORTS} ports from {WEB_PORT} on and from {SERVER_PORT} on were tried, and none is free: end another tomcom \
+         review, or see which program uses these ports"
     ))]
     Web(io::Error),
     /// Another program is writing the stream file of this recording.
-    #[error("{}: another program writes this recording, and its stream", folder.display())]
-    #[diagnostic(help("--save=FILE, for what is there up to now"))]
+    #[error("{}: another program writes this recording and its Rerun stream", folder.display())]
+    #[diagnostic(help("save the stream up to now with --save=FILE"))]
     InUse {
         /// Folder of the recording.
         folder: PathBuf,
     },
     /// The viewer's program cannot be started.
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
-    #[diagnostic(help("--web serves one for a browser"))]
+    #[diagnostic(help("--web serves a viewer for a browser"))]
     Viewer {
         /// Path of the viewer's program.
         path: PathBuf,
@@ -164,10 +164,10 @@ pub fn review(asked: &RerunReviewRequest) -> Result<RerunReviewOutcome, RerunVie
         }
         (None, other) => {
             let because = match other {
-                ViewerAvailability::Other(_) => "the viewer that is installed is of another version",
-                ViewerAvailability::NoScreen => "there is no screen for a window",
-                _ if asked.web => "as asked for",
-                _ => "there is no viewer in PATH",
+                ViewerAvailability::Other(_) => "the Rerun viewer that is installed is of another version",
+                ViewerAvailability::NoScreen => "there is no screen for a window of the Rerun viewer",
+                _ if asked.web => "as --web asks for",
+                _ => "there is no Rerun viewer in PATH",
             };
             serve(&asked.recordings, asked.at, because)
         }

@@ -88,8 +88,8 @@ impl SettingOverrides {
         let spec = &mut files.spec;
         let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];
         if let Some((key, _)) = decided.into_iter().find(|(_, is_given)| *is_given && spec.plan.is_some()) {
-            let found = format!("{key}, with a session that has a plan");
-            let remedy = "the plan decides it: groups and conditions follow from it";
+            let found = format!("{key}, with a session file that has a plan");
+            let remedy = "no {key}: the plan of the study decides about conditions and seed";
             return Err(SettingError::new(key, found, remedy));
         }
         spec.seed = self.seed.unwrap_or(spec.seed);
@@ -128,9 +128,9 @@ impl SettingOverrides {
 pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize, SettingError> {
     let remedy = "--code with one of the codes that tomcom plan SESSION lists";
     let wrong = |found: String| SettingError::new("code", found, remedy);
-    let code = code.ok_or_else(|| wrong(format!("the plan \"{}\", and no participant", plan.name)))?;
+    let code = code.ok_or_else(|| wrong(format!("the plan \"{}\", and no code of a participant", plan.name)))?;
     let place = plan.codes().iter().position(|one| one == code);
-    place.ok_or_else(|| wrong(format!("--code {code}, who is not in the plan \"{}\"", plan.name)))
+    place.ok_or_else(|| wrong(format!("--code {code}, a participant who is not in the plan \"{}\"", plan.name)))
 }
 
 /// Reads the given session file, or else `sessions/default.toml` if it exists, or else the built-in default session.

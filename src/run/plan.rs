@@ -41,7 +41,9 @@ impl StudyPlanSummary {
         let codes = study.plan.codes();
         if let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) {
             let (recording, code) = (&stranger.recording, &stranger.code);
-            return Err(LiveError::Plan(format!("{recording} of {code}, who is not in the plan")));
+            return Err(LiveError::Plan(format!(
+                "the recording {recording} of {code}, a participant who is not in the plan"
+            )));
         }
         let progress =
             |participant| ParticipantProgress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
@@ -76,10 +78,11 @@ impl FrozenPlanSummary {
         let (file, before) = (self.file.display(), count(self.recordings_before, "recording", "recordings"));
         let warning = match self.recordings_before {
             0 => String::new(),
-            _ => format!("{before} of the plan were made before it was frozen; the file says so\n"),
+            _ => format!("{before} of the plan were made before the plan was frozen; the file says so\n"),
         };
         format!(
-            "plan {} is frozen in {file}\nSHA-256 {}\n{warning}after the study: tomcom study RECORDINGS --frozen {file}\n",
+            "the plan {} is frozen in {file}\nSHA-256 {}\n{warning}after the study: tomcom study RECORDINGS --frozen \
+             {file}\n",
             self.plan, self.digest
         )
     }
@@ -111,7 +114,7 @@ pub fn describe(figures: &StudyPlanSummary) -> String {
     }
     let sizes: Vec<String> = sizes.iter().map(|(group, size)| format!("{size} {group}")).collect();
     let head = format!(
-        "plan {} ({}), seed {}: {} of {} participants are through; groups: {}\n",
+        "plan {} ({}), seed {}: {} of {} participants have done everything; groups: {}\n",
         figures.plan,
         figures.digest,
         figures.seed,

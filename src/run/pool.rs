@@ -94,7 +94,10 @@ impl PoolRequest {
         let wrong = |found: String, remedy: &str| Err(FileError::from_finding(path, found, remedy.to_string()));
         let conditions = &pool.header.conditions;
         if conditions.len() < 2 {
-            return wrong("a plan with one condition".to_string(), "two conditions or more, which can be compared");
+            return wrong(
+                "a plan with one condition".to_string(),
+                "a plan with two conditions or more, which can be compared",
+            );
         }
         for period in (1..=conditions.len() as u32).filter(|_| self.arms) {
             let item = PoolItem { participant: 0, period, is_twin: false };

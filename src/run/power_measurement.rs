@@ -82,12 +82,15 @@ pub fn measure(
     match request.effect {
         DrawnEffect::AsSimulated if !header.arms => {
             return wrong(
-                "a pool of unassisted trials alone".to_string(),
+                "a pool that has only unassisted trials".to_string(),
                 "--effect RATIO, or a pool made without --null",
             );
         }
         DrawnEffect::Ratio(_) if !header.unassisted => {
-            return wrong("a pool without unassisted twins".to_string(), "a pool of tomcom power, not of tomcom arms");
+            return wrong(
+                "a pool without unassisted twins".to_string(),
+                "a pool that tomcom power wrote, not tomcom arms",
+            );
         }
         _ => {}
     }

@@ -22,17 +22,20 @@ pub enum ResumeError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The recording is complete: its session ended properly.
-    #[error("{}: this session was brought to its end: there is nothing to continue", .0.display())]
-    #[diagnostic(help("a recording that was cut; a new session: tomcom operate"))]
+    /// The session of this recording ended properly.
+    #[error("{}: the session of this recording was brought to its end, so it cannot be continued", .0.display())]
+    #[diagnostic(help("continue a recording that was cut; a new session: tomcom operate"))]
     Ended(PathBuf),
     /// The recording is of a simulated trial, which cannot be continued.
-    #[error("{}: this recording is simulated", .0.display())]
+    #[error("{}: this recording is simulated, and only a person's session can be continued", .0.display())]
     #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
     Simulated(PathBuf),
-    /// Running the session again gives another event than the recording has.
-    #[error("{}: event {seq} does not come out the same again, so nobody knows how the session stood", log.display())]
-    #[diagnostic(help("the tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"))]
+    /// Running the session again gives another event than the recorded one.
+    #[error("{}: event {seq} does not come out the same when the recording is run again, so the session's state at \
+             the cut is not known", log.display())]
+    #[diagnostic(help(
+        "continue it with the version of tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"
+    ))]
     Differs {
         /// Path of the recording's log.
         log: PathBuf,

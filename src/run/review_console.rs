@@ -177,7 +177,7 @@ impl Review {
         let Some(coding) = &self.model.coding else { return };
         let error = coding.errors.iter().find(|error| error.press == press);
         let said = match (coding.next_step(), error) {
-            (Some(next), _) => format!("saved; {next}"),
+            (Some(next), _) => format!("code saved; {next}"),
             (None, Some(error)) => match coding.code(error) {
                 Some(code) => format!("saved: error {}, {}", error.error, wording::code(code)),
                 None => format!("saved: code of error {} removed", error.error),
@@ -190,7 +190,7 @@ impl Review {
         }
         match saved {
             Ok(()) => self.model.say(NoticeLevel::Done, said),
-            Err(error) => self.model.say(NoticeLevel::Alarm, format!("not saved: {error}")),
+            Err(error) => self.model.say(NoticeLevel::Alarm, format!("code not saved: {error}")),
         }
     }
 
@@ -275,8 +275,8 @@ impl Review {
         match self.film.landmark(what, forward) {
             Some(position) => self.stand_at(position),
             None => {
-                let which = if forward { "further" } else { "earlier" };
-                self.model.say(NoticeLevel::Refused, format!("no {which} {}", what.name()));
+                let which = if forward { "later" } else { "earlier" };
+                self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {}", what.name()));
             }
         }
     }

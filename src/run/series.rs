@@ -156,7 +156,7 @@ impl Planned {
         match ask_consent(desk, &consent(&self.study, progress, &label, on_display), on_display).await? {
             Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
             Some(_) => {
-                let remark = format!("{} does not agree: nothing was recorded", progress.code);
+                let remark = format!("{} does not agree to be recorded: nothing was recorded", progress.code);
                 Ok(Choice::Leave(Some(remark)))
             }
             None => Ok(Choice::Leave(None)),
@@ -171,10 +171,12 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQ
     let presses = attempt.map_or(0, |attempt| attempt.presses);
     StartQuestion {
         title: format!("{}: {name} is not done", progress.code),
-        text: vec![format!("{recording} was cut, or left before everything was done. It has {presses} presses.")],
+        text: vec![format!(
+            "The recording {recording} was cut, or left before everything was done. It has {presses} presses."
+        )],
         answers: vec![
-            "continue it where it was, with a running trial paused".to_string(),
-            "do it again from its beginning; what was recorded is kept, and does not count".to_string(),
+            "continue this recording where it ended, with a running trial paused".to_string(),
+            "do this part again from its beginning; the unfinished recording is kept, and does not count".to_string(),
         ],
     }
 }
@@ -187,14 +189,14 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
         text.push("Waiting for the participant, who agrees on the display by holding a button.".to_string());
     }
     let yes = if on_display {
-        "the participant agrees, told to you: recorded as such"
+        "the participant agrees, as told to you: this is recorded"
     } else {
         "yes, the participant agrees"
     };
     StartQuestion {
         title: format!("{}: {label}", progress.code),
         text,
-        answers: vec![yes.to_string(), "no: nothing is recorded".to_string()],
+        answers: vec![yes.to_string(), "no, the participant does not agree: nothing is recorded".to_string()],
     }
 }
 
@@ -212,13 +214,13 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
     match &progress.next {
         NextRecording::Finished => format!("{code}: everything is done"),
         NextRecording::Begin { slot, attempt: 1 } => {
-            format!("{code}: {done} of {all} done, next {}", slot_name(progress, *slot))
+            format!("{code}: {done} of {all} done, next: {}", slot_name(progress, *slot))
         }
         NextRecording::Begin { slot, attempt } => {
-            format!("{code}: {done} of {all} done, next {} again (attempt {attempt})", slot_name(progress, *slot))
+            format!("{code}: {done} of {all} done, next: {} again (attempt {attempt})", slot_name(progress, *slot))
         }
         NextRecording::Choose { slot, recording, .. } => {
-            format!("{code}: {done} of {all} done, {} is open in {recording}", slot_name(progress, *slot))
+            format!("{code}: {done} of {all} done, {} is unfinished in {recording}", slot_name(progress, *slot))
         }
     }
 }

@@ -55,7 +55,7 @@ pub fn open(watched: &[ComparedRecording], number: usize) -> FileResult<String> 
         return Err(FileError::from_finding(
             Path::new(&one.recording),
             found,
-            format!("a number from 1 to {}, of the list of differences", differences.len()),
+            format!("the number of a difference in the list, from 1 to {}", differences.len()),
         ));
     };
     Ok(one.comparison.opened(one.kitchen(), difference).join("\n") + "\n")

@@ -272,17 +272,17 @@ fn simulate_trial(
 /// The summary of a simulation as text for the terminal.
 pub fn describe(figures: &SimulationSummary) -> String {
     let each = match (figures.presses_per_order, figures.optimal_presses_per_order) {
-        (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),
+        (Some(presses), Some(best)) => format!(", {presses:.1} presses for an order in the median (at best {best:.1})"),
         _ => String::new(),
     };
     let excluded = match figures.excluded {
         0 => String::new(),
-        some => format!("{} excluded, and left out of these figures\n", count(some, "recording is", "recordings are")),
+        some => format!("{} excluded, and left out of these numbers\n", count(some, "recording is", "recordings are")),
     };
     let share = |errors: u64, actions: u64| 100.0 * errors as f64 / actions.max(1) as f64;
     let found = match figures.found {
         0 => String::new(),
-        some => format!(", {some} of them before"),
+        some => format!(", {some} of them in an earlier run"),
     };
     let moved = describe_moved(&figures.moved);
     let offers = figures.offers.describe();
@@ -292,7 +292,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
         several => several.iter().map(describe_arm).collect(),
     };
     let look = figures.recordings.first().map_or(String::new(), |first| {
-        format!("look at one: tomcom replay {first}, or in Rerun: tomcom review {first}\n")
+        format!("look at a recording: tomcom replay {first}, or in Rerun: tomcom review {first}\n")
     });
     format!(
         "{moved}{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
@@ -329,5 +329,9 @@ pub(super) fn describe_moved(moved: &[String]) -> String {
 fn describe_arm(one: &StudyArmTotals) -> String {
     let per_100 = |number: u64| 100.0 * number as f64 / one.human_actions.max(1) as f64;
     let (errors, signals) = (per_100(one.errors), count(one.signals, "signal", "signals"));
-    format!("  {}: {errors:.1} %, {signals} ({:.1} per 100 presses)\n", one.arm.title(), per_100(one.signals))
+    format!(
+        "  {}: errors in {errors:.1} % of the human's presses, {signals} ({:.1} per 100 presses)\n",
+        one.arm.title(),
+        per_100(one.signals)
+    )
 }

@@ -93,7 +93,7 @@ impl FromStr for ParameterSweepAxis {
         };
         let is_twice = |index: &usize| values[..*index].contains(&values[*index]);
         if let Some(index) = (0..values.len()).find(is_twice) {
-            return Err(format!("{name}={} twice: each value once", values[index]));
+            return Err(format!("{name}={} twice: right would be each value once", values[index]));
         }
         match values.iter().find(|value| !is_right(value)) {
             None => Ok(ParameterSweepAxis { name, knob, values }),
@@ -218,7 +218,7 @@ fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RunError> {
     };
     let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].iter().any(|one| one.name == axis.name));
     if let Some((_, axis)) = twice {
-        return wrong(format!("{} twice", axis.name), "each setting once, with all its values".to_string());
+        return wrong(format!("{} twice", axis.name), "each setting once, with all of its values".to_string());
     }
     let count: usize = axes.iter().map(|axis| axis.values.len()).product();
     if count > MAX_CELLS {
@@ -250,7 +250,7 @@ fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), Run
     for axis in axes {
         let Some(concept) = of(axis.knob).filter(|concept| decides != Some(*concept)) else { continue };
         let by = decides.map_or("the wizard", ConceptName::name);
-        let found = format!("{}, which only {} heeds, where {by} decides", axis.name, concept.name());
+        let found = format!("{}, a setting that only {} uses, where {by} decides", axis.name, concept.name());
         let remedy = format!("--condition assistant --concept {}, or another setting", concept.name());
         return Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into());
     }
@@ -363,8 +363,8 @@ pub fn describe(figures: &ParameterSweepSummary, axes: &[ParameterSweepAxis]) ->
         );
     }
     text + &format!(
-        "per 100 presses of the human; spared, fewer: mean and standard error over trials; related: belief related errors, and how many \
-         fewer there are than in the first line with signals\n{}\n",
+        "numbers per 100 presses of the human; spared, fewer: mean and standard error over trials; related: belief \
+         related errors, and how many fewer there are than in the first line with signals\n{}\n",
         figures.table.display()
     )
 }

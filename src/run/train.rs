@@ -67,9 +67,9 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
     if film.session.spec.trial.condition != Condition::None {
         return Err(unfit("a trial in which somebody sends signals"));
     }
-    let spells =
-        spells(&film.replay.follower).ok_or_else(|| unfit("a trial of which nobody knows what was believed"))?;
-    // The recording is shown as a wizard session, with the amount of information that the paper's wizard had.
+    let spells = spells(&film.replay.follower)
+        .ok_or_else(|| unfit("a trial in which the participant's beliefs are not known"))?;
+    // The recording is shown as a wizard session with the information that the paper's wizard had.
     film.session.spec.trial.condition = Condition::Wizard;
     film.session.spec.console.visibility = WizardVisibility::State;
     Ok((film, spells))

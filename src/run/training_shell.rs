@@ -129,7 +129,7 @@ impl TrainingShell {
         self.at = Instant::now();
         if let Some(playback) = &mut self.model.playback {
             playback.playing = !playback.playing;
-            let text = if playback.playing { "it runs" } else { "it stands" };
+            let text = if playback.playing { "the recording plays" } else { "the recording is paused" };
             self.model.say(NoticeLevel::Done, text);
             if let Some(lesson) = &mut self.model.lesson {
                 lesson.begun = true;
@@ -158,7 +158,7 @@ impl TrainingShell {
     fn signal(&mut self, shown: Event) {
         let Event::SignalShown { signal, .. } = &shown else { return };
         if !self.model.playback.as_ref().is_some_and(|playback| playback.playing) {
-            self.model.say(NoticeLevel::Refused, "not counted: it stands; . lets it run");
+            self.model.say(NoticeLevel::Refused, "signal not counted: the recording is paused; . plays it");
             return;
         }
         let signal = signal.clone();
@@ -172,15 +172,17 @@ impl TrainingShell {
         self.show(shown);
         let (level, text) = match worth {
             SignalVerdict::Hit { latency_s, .. } => {
-                (NoticeLevel::Done, format!("hit: believed wrong for {latency_s:.1} s"))
+                (NoticeLevel::Done, format!("hit: the belief has been false for {latency_s:.1} s"))
             }
-            SignalVerdict::Again => (NoticeLevel::Done, "told already".to_string()),
-            SignalVerdict::Harmless => (NoticeLevel::Done, "believed wrong, but it leads to no error".to_string()),
-            SignalVerdict::Late => (NoticeLevel::Refused, "late: it was seen to be right a moment ago".to_string()),
+            SignalVerdict::Again => (NoticeLevel::Done, "a signal already told this".to_string()),
+            SignalVerdict::Harmless => (NoticeLevel::Done, "the belief is false, but leads to no error".to_string()),
+            SignalVerdict::Late => {
+                (NoticeLevel::Refused, "late: the false belief was corrected a moment ago".to_string())
+            }
             SignalVerdict::WrongTarget => {
-                (NoticeLevel::Refused, format!("wrong: that is known; it is about {}", self.wrong_now(clock)))
+                (NoticeLevel::Refused, format!("wrong place: the false belief is about {}", self.wrong_now(clock)))
             }
-            SignalVerdict::Needless => (NoticeLevel::Refused, "wrong: nothing is believed wrong".to_string()),
+            SignalVerdict::Needless => (NoticeLevel::Refused, "wrong: no belief is false now".to_string()),
         };
         self.tell(level, format!("{words}: {text}"));
     }

@@ -166,8 +166,8 @@ impl RepeatedSession {
 /// The result of the verification as text.
 pub fn describe(found: &Verification) -> String {
     let until = match (found.running, found.cut) {
-        (true, _) => "; the session is still running, and this is what was written so far",
-        (false, true) => ", up to where it was cut",
+        (true, _) => "; the session is still running, and only the events written so far are verified",
+        (false, true) => ", up to where the recording was cut",
         (false, false) => "",
     };
     match (&found.difference, found.people_changed) {
@@ -176,17 +176,17 @@ pub fn describe(found: &Verification) -> String {
             let come = if found.events == 1 { "comes" } else { "come" };
             format!("verified: {events} {come} out the same again{until}\n")
         }
-        (None, _) => "not verified: the re-run ends in another state than the recording\n".to_string(),
+        (None, _) => "not verified: when the recording is run again, the session ends in another state\n".to_string(),
         (Some(difference), Some(since)) => format!(
-            "not verified: simulated participants decide otherwise since version {since}, and an earlier one made this \
-             recording; all its events can be applied, but from event {} ({}:{}) on the session does not come out the same \
-             again\n",
+            "not verified: simulated participants decide otherwise since version {since}, and an earlier version made \
+             this recording; all events of the recording can be applied, but from event {} ({}:{}) on the session \
+             does not come out the same again\n",
             difference.seq,
             difference.log.display(),
             difference.line,
         ),
         (Some(difference), None) => format!(
-            "not verified: event {} ({}:{}) differs\n  recorded: {}\n  again:    {}\n",
+            "not verified: event {} ({}:{}) differs when the recording is run again\n  recorded: {}\n  again:    {}\n",
             difference.seq,
             difference.log.display(),
             difference.line,

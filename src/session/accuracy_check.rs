@@ -43,27 +43,37 @@ pub(super) fn admit(session: &Session, event: &GazeCheckEvent) -> Result<(), &'s
         GazeCheckEvent::Begun { targets } => {
             unless(session.spec.participant.gaze != GazeSource::None, "there is no gaze in this session")?;
             unless(session.phase != TrialPhase::Running, "pause the trial first: the targets hide the kitchen")?;
-            unless(!session.is_frozen(), "a probe is held: check the gaze after it")?;
+            unless(!session.is_frozen(), "a freeze probe is running: check the gaze after the probe")?;
             let are_places = targets.iter().flatten().all(|value| (0.0..=1.0).contains(value));
-            unless(!targets.is_empty() && targets.len() <= 64 && are_places, "the targets are not on the display")
+            unless(!targets.is_empty() && targets.len() <= 64 && are_places, "the gaze targets are not on the display")
         }
         GazeCheckEvent::TargetShown { target } => {
             let open = check.filter(|check| !check.are_hidden);
-            unless(open.is_some_and(|check| *target < check.targets.len()), "there is no such target to be shown")
+            unless(
+                open.is_some_and(|check| *target < check.targets.len()),
+                "there is no gaze target with this number \
+                                                                             to be shown",
+            )
         }
-        GazeCheckEvent::TargetsHidden => unless(check.is_some_and(|check| check.shown.is_some()), "no target is shown"),
-        GazeCheckEvent::Measured { .. } => {
-            unless(check.is_some_and(|check| check.are_hidden && check.result.is_none()), "there is nothing to measure")
-        }
+        GazeCheckEvent::TargetsHidden => unless(
+            check.is_some_and(|check| check.shown.is_some()),
+            "no gaze target is \
+                                                                                                   shown",
+        ),
+        GazeCheckEvent::Measured { .. } => unless(
+            check.is_some_and(|check| check.are_hidden && check.result.is_none()),
+            "no gaze target was shown, \
+                                                                                           so nothing can be measured",
+        ),
         GazeCheckEvent::Accepted { .. } => {
             let found = check.and_then(|check| check.result.as_ref()?.found.as_ref());
-            unless(found.is_some(), "nothing was measured that could be accepted")
+            unless(found.is_some(), "no gaze accuracy was measured that could be accepted")
         }
         GazeCheckEvent::Carried { .. } => {
             unless(session.spec.participant.gaze != GazeSource::None, "there is no gaze in this session")?;
             unless(session.phase == TrialPhase::Ready, "the trial has begun")
         }
-        GazeCheckEvent::Dismissed => unless(check.is_some(), "the calibration is not being checked"),
+        GazeCheckEvent::Dismissed => unless(check.is_some(), "no gaze accuracy check is running"),
     }
 }
 

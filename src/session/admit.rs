@@ -25,15 +25,15 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     match event {
         Event::TrialStarted => {
             refuse_if(phase != TrialPhase::Ready, "the trial was started already")?;
-            refuse_if(session.is_calibrating(), "the calibration is being checked")?;
+            refuse_if(session.is_calibrating(), "a gaze accuracy check is running")?;
             protocol::admit_trial(session)
         }
         Event::Preflight { .. } => refuse_if(phase != TrialPhase::Ready, "the trial was started already"),
         Event::TrialPaused => refuse_if(!session.can_be_paused(), "no trial runs"),
         Event::TrialResumed => {
             refuse_if(phase != TrialPhase::Paused, "the trial is not paused")?;
-            refuse_if(session.can_be_paused(), "the trial goes on by itself after the probe")?;
-            refuse_if(session.is_calibrating(), "the calibration is being checked")
+            refuse_if(session.can_be_paused(), "the trial goes on by itself after the freeze probe")?;
+            refuse_if(session.is_calibrating(), "a gaze accuracy check is running")
         }
         Event::TrialEnded { reason: TrialEndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
         Event::TrialEnded { .. } => {
@@ -45,15 +45,17 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::Tracker(event) => tracker::admit(event),
         Event::Calibration(event) => accuracy_check::admit(session, event),
-        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
-            refuse_if(session.spec.robot.arm == ArmKind::Timed, "the robot's arm is timed in this session")
-        }
+        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
+            session.spec.robot.arm == ArmKind::Timed,
+            "the robot's arm is timed in this session: it is not \
+                                                                 simulated physically",
+        ),
         Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal, offer, .. } => {
             admit_signal(session, *by, signal)?;
             let is_there = |seq: u64| session.offers.find(seq).is_some_and(|offer| offer.signal() == Some(signal));
-            refuse_if(offer.is_some_and(|seq| !is_there(seq)), "that was not the last offer")
+            refuse_if(offer.is_some_and(|seq| !is_there(seq)), "the event names an offer that was not the last one")
         }
         Event::OfferOpened(_) => {
             refuse_if(phase != TrialPhase::Running, "no trial runs")?;
@@ -61,7 +63,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         }
         Event::OfferClosed { offer, .. } => {
             let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
-            refuse_if(!is_open, "that offer is not open")
+            refuse_if(!is_open, "the event names an offer that is not open")
         }
         Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {
             refuse_if(phase != TrialPhase::Running, "no trial runs")
@@ -70,7 +72,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             refuse_if(phase != TrialPhase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
         }
-        Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
+        Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown to the participant"),
         Event::Probe(event) => probes::admit(session, event),
         Event::Protocol(event) => protocol::admit(session, event),
         other => interventions::admit(session, other),
@@ -122,11 +124,14 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
         return Err("the scripted wizard sends the signals in this session".to_string());
     }
     if session.shown.as_ref().is_some_and(|shown| shown.by == Sender::Wizard && shown.signal == *signal) {
-        return Err("that signal is shown already".to_string());
+        return Err("this signal is shown already".to_string());
     }
     let (cool_down_s, since) = (session.spec.signals.cool_down_s, session.signalled_at);
     match since.map(|since| now.secs_since(since)).filter(|&age_s| age_s < cool_down_s) {
-        Some(age_s) => Err(format!("too soon: {age_s:.1} s after the last signal, it takes {cool_down_s} s")),
+        Some(age_s) => Err(format!(
+            "too soon: the last signal is {age_s:.1} s ago, signals need {cool_down_s} s \
+                                    between them"
+        )),
         None => Ok(()),
     }
 }

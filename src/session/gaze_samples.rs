@@ -57,8 +57,8 @@ pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
         (dropped.malformed, "malformed"),
         (dropped.too_frequent, "too frequent"),
         (dropped.overrun, "overrun"),
-        (read.duplicate, "twice"),
-        (read.too_old, "too old"),
+        (read.duplicate, "duplicate"),
+        (read.too_old, "late"),
         (read.out_of_order, "out of order"),
     ];
     all.into_iter().filter(|(count, _)| *count > 0).collect()

@@ -20,8 +20,8 @@ pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str
         Event::RobotReleased { by } => by_the_wizard(*by).and(refuse_if(!robot.held, "the robot is not held")),
         Event::RobotSkipped { by } => {
             by_the_wizard(*by)?;
-            refuse_if(phase != TrialPhase::Running, "presses are skipped while the trial runs")?;
-            refuse_if(robot.intention.is_none(), "the robot is on its way to no press")
+            refuse_if(phase != TrialPhase::Running, "the robot's presses can be skipped only while the trial runs")?;
+            refuse_if(robot.intention.is_none(), "the robot is not on its way to a press")
         }
         Event::RobotDriven { by, .. } => {
             by_the_wizard(*by)?;
@@ -29,10 +29,10 @@ pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str
             refuse_if(robot.stopped, "the robot is stopped: resume it first")
         }
         Event::TrialAborted { .. } => {
-            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "there is no trial to abort")
+            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "no trial runs that could be aborted")
         }
         Event::TrialExcluded { .. } => {
-            refuse_if(phase == TrialPhase::Ready, "there is no trial to exclude")?;
+            refuse_if(phase == TrialPhase::Ready, "no trial has begun that could be excluded")?;
             refuse_if(session.excluded.is_some(), "the trial is excluded already")
         }
         Event::TrialIncluded => refuse_if(session.excluded.is_none(), "the trial is not excluded"),
@@ -41,7 +41,12 @@ pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str
 }
 
 fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
-    if by == Sender::Wizard { Ok(()) } else { Err("only the wizard has hands on the robot") }
+    if by == Sender::Wizard {
+        Ok(())
+    } else {
+        Err("only the wizard can hold the robot, skip its presses and choose \
+                                                   them")
+    }
 }
 
 fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
@@ -49,19 +54,18 @@ fn admit_correction(session: &Session, location: &str, content: &str) -> Result<
         return Err("the kitchen can be corrected only during a trial");
     }
     if session.is_frozen() {
-        // The kitchen is corrected after the probe, whose questions are about the kitchen as it was when the task was
-        // frozen.
-        return Err("the kitchen is corrected after the probe");
+        // The probe's questions are about the kitchen as it was when the task was frozen.
+        return Err("the kitchen can be corrected only after the freeze probe");
     }
     let kitchen = &session.kitchen;
-    let place = kitchen.location_named(location).ok_or("there is no such location")?;
-    let what = kitchen.content_named(content).ok_or("there is no such content")?;
+    let place = kitchen.location_named(location).ok_or("the kitchen has no location with this name")?;
+    let what = kitchen.content_named(content).ok_or("the kitchen has no content with this name")?;
     match () {
         () if kitchen.location(place).kind == LocationKind::Order => {
             Err("orders are shown by the program, and cannot be corrected")
         }
-        () if session.state.content(place) == what => Err("that is what the program thinks"),
-        () if what != ContentId::EMPTY && !kitchen.accepts(place, what) => Err("it cannot be there"),
+        () if session.state.content(place) == what => Err("the program assumes this content already"),
+        () if what != ContentId::EMPTY && !kitchen.accepts(place, what) => Err("this content cannot be at this place"),
         () => Ok(()),
     }
 }

@@ -160,8 +160,8 @@ pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str
     match (still_takes(session, now), open) {
         (Some(last), _) if last.used.is_none() => Ok(last),
         (_, Some(_)) => Err("the offer has just appeared: read it, then press again"),
-        (Some(_), None) => Err("the offer was taken already"),
-        (None, None) => Err("nothing is on offer"),
+        (Some(_), None) => Err("the signal on offer was sent already"),
+        (None, None) => Err("no signal is on offer"),
     }
 }
 

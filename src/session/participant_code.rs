@@ -335,7 +335,8 @@ pub const FILE_WORDS: &[&str] = &[
     "yes",
 ];
 /// Description of a valid participant code, for the message that refuses another one.
-pub const REMEDY: &str = "1 to 32 letters, digits, - and _, beginning with a letter or digit, and no word of the program's own \
+pub const REMEDY: &str = "1 to 32 letters, digits, - and _, beginning with a letter or digit, and no word of the \
+                          program's own \
      files, such as \"P07\"; never a name";
 
 /// Whether a text can be the code of a participant in a new session.
@@ -346,11 +347,11 @@ pub fn is_participant_code(code: &str) -> bool {
 /// Why a code with valid characters is still refused as a participant's code, in words; `None` if the code is allowed.
 pub fn fault(code: &str) -> Option<&'static str> {
     if !code.starts_with(|first: char| first.is_ascii_alphanumeric()) {
-        return Some("it does not begin with a letter or digit");
+        return Some("a code begins with a letter or digit");
     }
     let word = code.to_ascii_lowercase();
     if TABLE_WORDS.contains(&word.as_str()) || FILE_WORDS.contains(&word.as_str()) {
-        return Some("it is a word of the program's own files");
+        return Some("this code is a word of the program's own files");
     }
     without_seed(&word).map(|_| "tables name simulated participants like that, by their seed")
 }

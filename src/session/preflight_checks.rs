@@ -21,12 +21,12 @@ const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 
 /// Checks the free disk space for a recording; `None` if the system does not report it.
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
-    let remedy = "free some, or record elsewhere with --out";
+    let remedy = "free some space, or record elsewhere with --out";
     let Some(free) = free_bytes else {
         return PreflightCheck::new(
             "free space",
             PreflightVerdict::Warning,
-            "the system does not say how much there is",
+            "the system does not say how much space is free",
             remedy,
         );
     };
@@ -35,7 +35,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
         free if free >= FREE_BYTES.1 => PreflightVerdict::Warning,
         _ => PreflightVerdict::Failed,
     };
-    PreflightCheck::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
+    PreflightCheck::new("free space", verdict, format!("{} MB free on the disk", free / 1_000_000), remedy)
 }
 
 /// Checks whether the trial's settings are those of the study arm that the plan prescribes; `None` outside of plans.
@@ -60,7 +60,7 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let file = spec.human_model.as_deref().unwrap_or("its file");
     let found = match spec.parameters_of? {
-        ParametersOf::Person => format!("parameters of {}, from {file}", spec.participant.code),
+        ParametersOf::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
         ParametersOf::Population => {
             format!("parameters of the population: {file} has none of {}", spec.participant.code)
         }
@@ -81,11 +81,11 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
     checks.extend(human_model(session));
     match spec.gaze {
-        GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated: it comes with the trial")),
-        GazeSource::None => checks.push(PreflightCheck::ok("gaze", "none is asked for")),
+        GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
+        GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),
         GazeSource::File => {
             let file = session.spec.tracker.file.clone().unwrap_or_default();
-            checks.push(PreflightCheck::ok("gaze", format!("{file}: it comes with the trial")));
+            checks.push(PreflightCheck::ok("gaze", format!("gaze from {file}: it comes with the trial")));
         }
         GazeSource::Mouse => checks.extend(gaze(session, now)),
         GazeSource::Json => {
@@ -108,8 +108,10 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
 
 fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
-        GazeSource::Json => format!("start what sends lines to port {}", session.spec.participant.gaze_port),
-        GazeSource::Pupil => "let the participant look at the wall display; Capture needs a calibration".to_string(),
+        GazeSource::Json => format!("start the program that sends gaze to port {}", session.spec.participant.gaze_port),
+        GazeSource::Pupil => "let the participant look at the wall display; Pupil Capture needs a \
+                              calibration"
+            .to_string(),
         GazeSource::Lsl => "let the participant look at the display: the stream has no gaze".to_string(),
         GazeSource::Mouse | GazeSource::Simulated | GazeSource::File | GazeSource::None => {
             "move the pointer over the kitchen".to_string()
@@ -120,29 +122,32 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
         let verdict = if is_mouse { PreflightVerdict::Warning } else { PreflightVerdict::Failed };
         let malformed = session.tracker.dropped.malformed;
         if malformed > 0 && session.spec.participant.gaze == GazeSource::Json {
-            let found = format!("{malformed} lines arrived, none of late was a sample");
-            let remedy = "a line each: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" in seconds if there is a clock";
+            let found = format!("{malformed} lines arrived, and the last of them were no gaze samples");
+            let remedy = "send a line for each sample: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" \
+                          in seconds if there is a clock";
             return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
         }
-        return vec![PreflightCheck::new("gaze", verdict, "no sample arrives", mends)];
+        return vec![PreflightCheck::new("gaze", verdict, "no gaze sample arrives", mends)];
     };
     let verdict = if hz < SLOW_HZ { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
     let rate = PreflightCheck::new(
         "gaze",
         verdict,
-        format!("{hz:.0} samples a second"),
-        "a faster tracker: 60 a second or more",
+        format!("{hz:.0} gaze samples a second"),
+        "use an eye tracker with 60 samples a second or more",
     );
     let usable = session.gaze.last.filter(|(at, _)| now.secs_since(*at) <= UNUSABLE_S);
     let quality = match usable {
-        Some((_, sample)) => PreflightCheck::ok("gaze quality", format!("usable, confidence {:.2}", sample.confidence)),
+        Some((_, sample)) => {
+            PreflightCheck::ok("gaze quality", format!("gaze is usable, confidence {:.2}", sample.confidence))
+        }
         None => {
-            let found = "no sample is on the display with enough confidence";
+            let found = "no gaze sample is on the display with enough confidence";
             PreflightCheck::new(
                 "gaze quality",
                 PreflightVerdict::Warning,
                 found,
-                "set the tracker up anew, or calibrate it",
+                "set up the eye tracker again, or calibrate it",
             )
         }
     };
@@ -153,11 +158,11 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
         // Real gaze streams have some faulty samples; faulty samples are ignored, and matter only if there are many.
         let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
         let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
-        let found = format!("{samples} samples; {}", kinds.join(", "));
-        // Delayed gaze samples come from a slow computer or network, not from wrong values.
+        let found = format!("{samples} gaze samples; {}", kinds.join(", "));
+        // Delayed samples come from a slow computer or network, not from wrong values.
         let remedy = match session.tracker.dropped.malformed * 2 > wrong {
-            true => "look at what the tracker sends: values are missing, or are no numbers",
-            false => "less load on the tracker's computer, a better network",
+            true => "check what the tracker sends: values are missing, or are no numbers",
+            false => "end other programs on the tracker's computer, or use a better network",
         };
         checks.push(PreflightCheck::new("gaze stream", verdict, found, remedy));
     }
@@ -178,12 +183,16 @@ fn tracker(session: &Session) -> PreflightCheck {
             let (found, remedy) = match others.first() {
                 None => (
                     format!("{device}, does not see \"{}\"", spec.surface),
-                    format!("tags in view and lit; Capture's Surface Tracker with a surface \"{}\"", spec.surface),
+                    format!(
+                        "keep the display tags in view and lit; define a surface \"{}\" in Capture's Surface \
+                             Tracker",
+                        spec.surface
+                    ),
                 ),
                 Some(first) => (
                     format!("{device}, sees {first}, not \"{}\"", spec.surface),
                     format!(
-                        "surface = {} under [tracker], or name it \"{}\" in Capture",
+                        "set surface = {} under [tracker], or name the surface \"{}\" in Capture",
                         others.join(" or "),
                         spec.surface
                     ),
@@ -192,7 +201,7 @@ fn tracker(session: &Session) -> PreflightCheck {
             PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy)
         }
         _ => {
-            let remedy = format!("start Pupil Capture on {}, Pupil Remote on port {}", spec.address, spec.port);
+            let remedy = format!("start Pupil Capture on {}, with Pupil Remote on port {}", spec.address, spec.port);
             PreflightCheck::new(name, PreflightVerdict::Failed, "Pupil Capture does not answer", remedy)
         }
     }
@@ -204,9 +213,10 @@ fn stream(session: &Session) -> PreflightCheck {
     let found = match &session.tracker.link {
         TrackerConnection::Connected { device } => return PreflightCheck::ok("eye tracker", device.clone()),
         TrackerConnection::Lost { reason, .. } => reason.clone(),
-        TrackerConnection::Unknown => format!("no stream {wanted} in the Lab Streaming Layer"),
+        TrackerConnection::Unknown => format!("no stream {wanted} is in the Lab Streaming Layer"),
     };
-    let remedy = "start what sends it, or set name, x, y and confidence under [lsl.gaze]; tomcom doctor lists streams and channels";
+    let remedy = "start the program that sends the stream, or set name, x, y and confidence under [lsl.gaze]; tomcom \
+                  doctor lists streams and channels";
     PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 
@@ -218,11 +228,11 @@ fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
         deg if deg <= USABLE_DEG => PreflightVerdict::Warning,
         _ => PreflightVerdict::Failed,
     };
-    let remedy = format!("calibrate the tracker anew, then check it by targets ({check_gaze})");
-    Some(PreflightCheck::new("calibration", verdict, format!("off by {accuracy_deg:.1} deg"), remedy))
+    let remedy = format!("calibrate the tracker again, then check its accuracy with targets ({check_gaze})");
+    Some(PreflightCheck::new("calibration", verdict, format!("gaze is off by {accuracy_deg:.1} deg"), remedy))
 }
 
 fn unchecked(check_gaze: &str) -> PreflightCheck {
     let remedy = format!("{check_gaze} checks gaze accuracy with targets (check_gaze in the key file)");
-    PreflightCheck::new("calibration", PreflightVerdict::Warning, "not checked", remedy)
+    PreflightCheck::new("calibration", PreflightVerdict::Warning, "gaze accuracy is not checked", remedy)
 }

@@ -179,9 +179,9 @@ impl ProbeEndReason {
     /// The reason for the end of the questions in words.
     pub fn words(self) -> &'static str {
         match self {
-            ProbeEndReason::Answered => "all questions are answered",
-            ProbeEndReason::TimeOver => "its time is over",
-            ProbeEndReason::Skipped => "the wizard skipped the rest",
+            ProbeEndReason::Answered => "all questions of the probe are answered",
+            ProbeEndReason::TimeOver => "the probe's time is over",
+            ProbeEndReason::Skipped => "the wizard skipped the other questions",
             ProbeEndReason::TrialEnded => "the trial is over",
         }
     }

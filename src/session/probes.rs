@@ -127,52 +127,55 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeD
 /// # Errors
 /// Why the session refuses the event, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
-    let spec = of_trial(&session.spec).ok_or("there are no probes in this trial")?;
+    let spec = of_trial(&session.spec).ok_or("this trial has no freeze probes")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let book = &session.probes;
     let is_next = |probe: u32| probe == book.waiting.as_ref().map_or(book.numbered + 1, |waiting| waiting.number);
     match event {
         ProbeEvent::Requested => {
-            unless(book.open.is_none(), "a probe is held already")?;
-            unless(session.phase == TrialPhase::Running, "probes are held while the trial runs")?;
-            unless(book.waiting.is_none(), "a probe is waiting already")
+            unless(book.open.is_none(), "a freeze probe is running already")?;
+            unless(session.phase == TrialPhase::Running, "a freeze probe can begin only while the trial runs")?;
+            unless(book.waiting.is_none(), "a freeze probe is waiting already")
         }
         ProbeEvent::Delayed { probe, .. } => {
-            unless(session.phase == TrialPhase::Running && is_next(*probe), "that probe is not due")
+            unless(session.phase == TrialPhase::Running && is_next(*probe), "this freeze probe is not due")
         }
         ProbeEvent::Dropped { probe, .. } => {
             let waits = book.waiting.as_ref().is_some_and(|waiting| waiting.number == *probe);
-            unless(session.phase == TrialPhase::Running && waits, "that probe is not waiting")
+            unless(session.phase == TrialPhase::Running && waits, "this freeze probe is not waiting")
         }
         ProbeEvent::Begun { probe, questions, .. } => {
-            unless(session.phase == TrialPhase::Running && is_next(*probe), "that probe is not due")?;
-            unless(!questions.is_empty(), "a probe needs a question")?;
+            unless(session.phase == TrialPhase::Running && is_next(*probe), "this freeze probe is not due")?;
+            unless(!questions.is_empty(), "a freeze probe needs at least one question")?;
             let fit = questions.iter().all(|question| probe_sampling::fits(&session.kitchen, question));
-            unless(fit, "the kitchen has no such question")
+            unless(fit, "the probe asks about something that the kitchen does not have")
         }
         ProbeEvent::Asked { probe, question } => {
             let open = opened(session, *probe)?;
             let next = open.shown.map_or(1, |shown| shown as u32 + 2);
-            unless(open.question().is_none() && *question == next, "another question comes next")?;
-            unless(*question as usize <= open.questions.len(), "the probe has no such question")
+            unless(open.question().is_none() && *question == next, "another question of the probe comes next")?;
+            unless(*question as usize <= open.questions.len(), "the probe has no question with this number")
         }
         ProbeEvent::Answered { probe, question, answer, confidence, .. } => {
             let open = opened(session, *probe)?;
-            let (shown, asked) = open.question().ok_or("no question waits for an answer")?;
-            unless(shown as u32 + 1 == *question, "another question is shown")?;
+            let (shown, asked) = open.question().ok_or("no question of the probe waits for an answer")?;
+            unless(shown as u32 + 1 == *question, "another question of the probe is shown")?;
             unless(!open.is_paused(), "the probe is paused")?;
             let is_choice = answer.as_ref().is_none_or(|answer| asked.choices.contains(answer));
-            unless(is_choice, "the question has no such choice")?;
+            unless(is_choice, "the probe's question has no such choice")?;
             let is_step = confidence.is_none_or(|step| spec.confidence && (1..=3).contains(&step));
-            unless(is_step, "the question has no such confidence")
+            unless(is_step, "the probe's question has no such confidence")
         }
         ProbeEvent::Skipped { probe, reason } => {
             unless(opened(session, *probe)?.skipped.is_none(), "the probe's questions are over")?;
-            unless(!reason.trim().is_empty(), "a reason is needed")
+            unless(!reason.trim().is_empty(), "skipping questions of a probe needs a reason")
         }
         ProbeEvent::Closed { probe, .. } => opened(session, *probe).map(drop),
         ProbeEvent::Ended { probe } => {
-            let open = book.open.as_ref().filter(|open| open.number == *probe).ok_or("that probe is not held")?;
+            let open = book.open.as_ref().filter(|open| open.number == *probe).ok_or(
+                "this freeze probe is not \
+                                                                                      running",
+            )?;
             unless(open.closed.is_some() && session.phase == TrialPhase::Paused, "the probe's questions are not over")?;
             unless(!open.is_paused(), "the probe is paused")
         }
@@ -181,7 +184,10 @@ pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
 
 /// The open freeze probe with this number, if its questions have not ended.
 fn opened(session: &Session, probe: u32) -> Result<&OpenProbe, &'static str> {
-    let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or("that probe is not held")?;
+    let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or(
+        "this freeze probe is not \
+                                                                                       running",
+    )?;
     match open.closed.is_some() {
         true => Err("the probe's questions are over"),
         false => Ok(open),

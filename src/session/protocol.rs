@@ -52,7 +52,7 @@ impl Session {
         }
         match self.study_phase()? {
             PhaseSpec::Instruction { .. } | PhaseSpec::Debriefing { .. } => {
-                protocol.ticks.contains(&false).then_some("not every step is done")
+                protocol.ticks.contains(&false).then_some("not every step of this phase is done")
             }
             PhaseSpec::Tutorial { .. } => {
                 let is_over = protocol.tutorial.as_ref().is_some_and(|tutorial| tutorial.is_over);
@@ -61,7 +61,10 @@ impl Session {
             PhaseSpec::Trial | PhaseSpec::Familiarisation => {
                 (!matches!(self.phase, TrialPhase::Over(_))).then_some("the trial is not over")
             }
-            PhaseSpec::Questionnaire { .. } => (!protocol.confirmed).then_some("the answers are not confirmed"),
+            PhaseSpec::Questionnaire { .. } => (!protocol.confirmed).then_some(
+                "the answers to the questionnaire are \
+                                                                                not confirmed",
+            ),
         }
     }
 
@@ -80,42 +83,60 @@ impl Session {
 /// # Errors
 /// Why the session refuses the event, in words for the wizard.
 pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
-    let Some((step, protocol)) = session.step() else { return Err("the session has no plan") };
+    let Some((step, protocol)) = session.step() else { return Err("the session has no study plan") };
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     match event {
         ProtocolEvent::ConsentGiven { .. } => {
-            unless(!protocol.consent && protocol.number == 0, "consent is given once, and first")
+            unless(!protocol.consent && protocol.number == 0, "consent is given once, before everything else")
         }
         ProtocolEvent::PhaseStarted { phase, number } => {
             let next = step.phases.get(protocol.number).map(PhaseSpec::phase);
-            unless(*number == protocol.number + 1 && next == Some(*phase), "another phase comes next")?;
+            unless(*number == protocol.number + 1 && next == Some(*phase), "another phase of the study comes next")?;
             session.phase_lacks().map_or(Ok(()), Err)
         }
         ProtocolEvent::Ticked { step, done } => {
             let is_done = step.checked_sub(1).and_then(|index| protocol.ticks.get(index));
-            unless(is_done.is_some_and(|is_done| is_done != done), "there is no such step to be ticked")
+            unless(
+                is_done.is_some_and(|is_done| is_done != done),
+                "the phase has no step with this number to be \
+                                                                    ticked",
+            )
         }
         ProtocolEvent::Tutorial(event) => tutorial::admit(session, event),
         ProtocolEvent::ItemShown { item } => open_item(session, item).map(drop),
         ProtocolEvent::AnswersShown => unless(is_open(session), "no questionnaire is being answered"),
         ProtocolEvent::ItemAnswered { item, answer } => {
             let questionnaire = shown_item(session, item)?;
-            questionnaire.form(protocol.item).ok_or("the item lacks what its kind needs")?.admit(answer)
+            questionnaire
+                .form(protocol.item)
+                .ok_or(
+                    "the questionnaire's item lacks a setting that its kind \
+                                                     needs",
+                )?
+                .admit(answer)
         }
         ProtocolEvent::ItemSkipped { item } => shown_item(session, item).map(drop),
         ProtocolEvent::AnswersConfirmed => {
             unless(is_open(session), "no questionnaire is being answered")?;
-            unless(protocol.answers.iter().all(Option::is_some), "not every item is answered or skipped")
+            unless(
+                protocol.answers.iter().all(Option::is_some),
+                "not every item of the questionnaire is answered or \
+                                                                  skipped",
+            )
         }
         ProtocolEvent::CriterionChecked { .. } => {
             let is_practice = matches!(session.study_phase(), Some(PhaseSpec::Familiarisation));
             let is_over = matches!(session.phase, TrialPhase::Over(_));
-            unless(is_practice && is_over && protocol.practice.is_none(), "there is no practice to judge")
+            unless(
+                is_practice && is_over && protocol.practice.is_none(),
+                "no practice has been completed that could \
+                                                                           be judged",
+            )
         }
         ProtocolEvent::CriterionWaived { reason } => {
             let failed = protocol.practice.as_ref().is_some_and(|practice| !practice.met && practice.waived.is_none());
-            unless(failed, "there is no criterion to waive")?;
-            unless(!reason.is_empty(), "a reason is needed")
+            unless(failed, "no practice criterion is unmet that could be waived")?;
+            unless(!reason.is_empty(), "waiving the criterion needs a reason")
         }
     }
 }
@@ -128,7 +149,7 @@ pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
     match session.protocol.is_none() || has_trial {
         true => Ok(()),
-        false => Err("it is not the phase for a trial"),
+        false => Err("this phase of the study has no trial"),
     }
 }
 
@@ -147,7 +168,7 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
     let shown = session.protocol.as_ref().and_then(|protocol| questionnaire.items.get(protocol.item));
     match shown.is_some_and(|shown| shown.id == item) {
         true => Ok(questionnaire),
-        false => Err("another item is shown"),
+        false => Err("another item of the questionnaire is shown"),
     }
 }
 

@@ -28,7 +28,7 @@ impl Session {
 /// # Errors
 /// Why the session refuses the event, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
-    let (tutorial, _) = session.tutorial().ok_or("there is no tutorial now")?;
+    let (tutorial, _) = session.tutorial().ok_or("no tutorial is shown now")?;
     let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let may_leave = |by: TutorialReader| by == TutorialReader::Wizard || state.is_done();
@@ -36,22 +36,30 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
     match event {
         TutorialEvent::Shown { step, by } => {
             let to = tutorial.position(step).ok_or("the tutorial has no such step")?;
-            unless(to + 1 == state.step || to == state.step + 1, "the step before or the next one can be shown")?;
-            unless(to < state.step || may_leave(*by), "the participant has not done this step yet")
+            unless(
+                to + 1 == state.step || to == state.step + 1,
+                "only the next step of the tutorial or the one \
+                                                                  before can be shown",
+            )?;
+            unless(to < state.step || may_leave(*by), "the participant has not done this step of the tutorial yet")
         }
         TutorialEvent::Pressed { button } => {
             unless(session.kitchen.button_named(Agent::Human, button).is_some(), "the kitchen has no such button")?;
-            unless(step.has_presses(), "nothing is pressed in this step")
+            unless(step.has_presses(), "this step of the tutorial has no presses")
         }
         TutorialEvent::CardsHidden { step: id } => {
             is_shown(id)?;
-            unless(step.is_timed() && !state.are_cards_hidden, "there are no cards to be hidden")
+            unless(
+                step.is_timed() && !state.are_cards_hidden,
+                "the tutorial shows no recipe cards that could be \
+                                                                hidden",
+            )
         }
         TutorialEvent::Answered { step: id, choice } => {
             is_shown(id)?;
             let is_choice = *choice > 0 && usize::from(*choice) <= step.choices.len();
-            unless(step.kind == TutorialStepKind::Question && is_choice, "the step has no such choice")?;
-            unless(!state.is_done(), "the question is answered")
+            unless(step.kind == TutorialStepKind::Question && is_choice, "the tutorial's question has no such choice")?;
+            unless(!state.is_done(), "this question of the tutorial is answered already")
         }
         TutorialEvent::Ended { by } => {
             let is_last = state.step + 1 == tutorial.steps.len();

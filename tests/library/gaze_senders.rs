@@ -319,7 +319,7 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     }
     assert_eq!(model.rejected_senders, 112);
     let text = model.notice.as_ref().map(|notice| notice.text.as_str()).unwrap_or_default();
-    assert_eq!(text, "gaze from 192.168.1.8 is rejected: gaze_from does not list it");
+    assert_eq!(text, "gaze from 192.168.1.8 is rejected: gaze_from does not list this address");
     model.notice = None;
     model.refuse_sender("192.168.1.7", unlisted, 8);
     assert_eq!(model.notice.as_ref().map(|notice| &notice.text), None, "each is told once");

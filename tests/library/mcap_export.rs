@@ -106,7 +106,7 @@ fn a_file_of_somebody_else_is_left_and_an_own_one_replaced() {
     assert!(!first.is_empty() && messages(&file) == first, "the same log gives the same messages");
     assert!(!folder.join("recording.mcap.new").exists());
     let error = export(Path::new("tests/golden/format-1-people.jsonl")).expect_err("no folder").to_string();
-    assert!(error.contains("a log by another name"), "{error}");
+    assert!(error.contains("a log that is not called events.jsonl"), "{error}");
 }
 
 #[test]

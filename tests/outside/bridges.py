@@ -156,13 +156,13 @@ def check_tobii(tomcom, folder):
         assert to in shown, f"{to}:\n{shown}"
         code = re.search(r"pairing code ([A-Z0-9]{6})", shown)[1]
         console.key("\x1b")
-        console.wait_for(rf"0 Hz, pairing code {code}")
+        console.wait_for(rf"  pairing code {code}")
         for wrong, told in ((["--pair", "WRONG2"], "does not take the pairing code WRONG2"), ([], "it wants --pair CODE")):
             with bridge("tobii", ["--to", to, *wrong], log, environment) as sender:
                 if wrong:
                     sender.wait(20)
                 else:
-                    console.wait_for("rejected: it does not begin with the pairing code", 20)
+                    console.wait_for("rejected: its first line is not the pairing code", 20)
                     time.sleep(2)
             assert told in log.read_text(), log.read_text()
         console.wait_for("rejected")

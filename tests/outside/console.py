@@ -92,7 +92,7 @@ class Console:
     def start(self):
         """Starts the trial, as soon as nothing that is looked at before it speaks against it."""
         self.key(".")
-        self.wait_for("RUNNING|Before the trial")
+        self.wait_for("RUNNING|Checks before the trial")
         if "RUNNING" not in self.text():
             # Gaze that has only just begun to arrive is slow for a second.
             self.wait_for("start the trial +esc close")

@@ -72,7 +72,7 @@ def start(console, page, robot_held=True):
     time.sleep(1.5)
     console.key(".")
     if robot_held:
-        console.wait_for("Before the trial")
+        console.wait_for("Checks before the trial")
         console.key("o")
     page.stage("running")
     page.wait_for("Stage.shown().contents.some((what) => what.dish)")

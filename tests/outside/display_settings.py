@@ -107,7 +107,7 @@ def upright(tomcom, chromium, folder, kitchen, seed):
         console.wait_for("ROBOT HELD")
         time.sleep(1.5)
         console.key(".")
-        console.wait_for("Before the trial")
+        console.wait_for("Checks before the trial")
         assert "turn the screen" in plain(console.text()), console.text()
         console.key("o")
         page.stage("running")

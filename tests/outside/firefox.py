@@ -26,7 +26,7 @@ def serves_an_order(tomcom, folder, kitchen):
         console.wait_for("ROBOT HELD")
         # Nothing moves the pointer here: the trial starts without gaze.
         console.key(".")
-        console.wait_for("Before the trial")
+        console.wait_for("Checks before the trial")
         console.key("o")
         firefox.wait_for("Stage.shown() && Stage.shown().stage === 'running' && Stage.shown().contents.some((what) => what.dish)")
         dish = firefox.ask("Stage.shown().contents.find((what) => what.dish).dish")

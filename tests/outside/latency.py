@@ -45,7 +45,7 @@ while True:
 def send(console, log, key, name):
     """Sends one signal; seconds from the key to its line in the log and to its words on the screen."""
     log.new_lines()
-    console.watch(lambda rows: any(f"shown: highlight {name}" in row for row in rows))
+    console.watch(lambda rows: any(f"signal sent: highlight {name}" in row for row in rows))
     wanted = f'{{"highlight":"{name.replace(" ", "_")}"}}'.encode()
     pressed, logged = time.monotonic(), None
     console.key(key)

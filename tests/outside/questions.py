@@ -135,7 +135,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
     page.close()
     console = Console(tomcom, arguments)
     with console:
-        console.wait_for("continue it")
+        console.wait_for("continue this recording")
         page = Page(browser, url)
         keyboard, click = page.page.keyboard, page.page.click
         console.key("1")

@@ -155,19 +155,19 @@ def main():
         seal = recording / "recording.rrd.toml"
         middle = len(whole) // 2
         spoils = {
-            "it was not written to its end": lambda: stream.write_bytes(whole[:-1000]),
-            "it was damaged or exchanged": lambda: stream.write_bytes(
+            "the stream was not written to its end": lambda: stream.write_bytes(whole[:-1000]),
+            "the stream was damaged or exchanged": lambda: stream.write_bytes(
                 whole[:middle] + b"\xff" * 20_000 + whole[middle + 20_000 :]
             ),
-            "nothing said which log it shows": seal.unlink,
-            "it did not show the log as that is now": lambda: seal.write_text(
+            "nothing said which log the stream shows": seal.unlink,
+            "the stream did not show the log as the log is now": lambda: seal.write_text(
                 seal.read_text().replace("[[logs]]\nbytes = ", "[[logs]]\nbytes = 1")
             ),
         }
         for reason, spoil in spoils.items():
             spoil()
             told = run(tomcom, "review", recording, "--save")
-            assert "made from the log" in told and reason in told, f"{reason}: {told}"
+            assert "was made from the log" in told and reason in told, f"{reason}: {told}"
             run(RERUN, "rrd", "verify", stream)
             compare(stream, log)
             assert "is there already" in run(tomcom, "review", recording, "--save"), "it is sealed again"

@@ -72,7 +72,7 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     terminal.key("C-c");
     terminal.is_whole("1");
     let told = fs::read_to_string(errors).expect("errors");
-    assert!(told.contains(says) && told.contains("what was recorded until then is in"), "{name}: {told}");
+    assert!(told.contains(says) && told.contains("everything recorded until then is in"), "{name}: {told}");
 }
 
 fn opened(log: &Path) -> File {
@@ -209,7 +209,7 @@ fn a_log_without_its_header_is_moved_aside_and_made_again() {
     let again = tomcom(&arguments);
     let told = String::from_utf8_lossy(&again.stdout).into_owned();
     assert!(again.status.success(), "{again:?}");
-    assert!(told.contains(", 2 of them before"), "{told}");
+    assert!(told.contains(", 2 of them in an earlier run"), "{told}");
     assert!(logs(&out) == whole, "the same recordings again");
     for (trial, bytes) in (1..).zip(damaged) {
         let aside = recording(trial).join(ASIDE);

@@ -48,7 +48,7 @@ fn a_damaged_table_is_told_and_those_beside_it_stay_until_it_is_gone() {
         }
         if name == "short-row" {
             assert!(
-                told.contains("study/participants.csv: 1 row is about the participant; it is changed together"),
+                told.contains("study/participants.csv: 1 row is about the participant; this table is changed together"),
                 "{told}"
             );
             let (code, told) = lab.forget(&["P01", "--yes"]);
@@ -86,7 +86,9 @@ fn a_header_says_whose_a_recording_is_and_else_the_settings() {
     }
     let (code, told) = lab.forget(&["P02", "--yes"]);
     assert!(
-        code == Some(1) && told.contains("nothing of P02 that can be deleted") && told.contains("seed1-P02-1: "),
+        code == Some(1)
+            && told.contains("no files of participant P02 that can be deleted")
+            && told.contains("seed1-P02-1: "),
         "{told}"
     );
     // An empty log, as a power cut leaves it.

@@ -108,15 +108,18 @@ fn tables_of_other_programs_stay_as_they_are_and_are_told_where_they_name_the_pa
     let before = lab.files();
     let (code, told) = lab.forget(&["P01", "--yes"]);
     assert_eq!(code, Some(1), "something is left: {told}");
-    let (_, left) = told.split_once("left:\n").expect("what is left");
+    let (_, left) = told.split_once("not deleted:\n").expect("what is left");
     let left: Vec<&str> = left.lines().collect();
     assert_eq!(left.len(), 4, "{told}");
     assert!(
         left[0].contains("ages/participants.csv: 1 row is about the participant, in a table that tomcom did not write")
     );
-    assert!(left[1].contains("excel/participants.csv: it names the participant"), "{told}");
+    assert!(left[1].contains("excel/participants.csv: the table names the participant"), "{told}");
     assert!(left[2].contains("report.html: a report that does not say who made it"), "{told}");
-    assert!(left[3].contains("seed1-P01-1.mp4: it has the name of one of the participant's recordings"), "{told}");
+    assert!(
+        left[3].contains("seed1-P01-1.mp4: the file has the name of one of the participant's recordings"),
+        "{told}"
+    );
     let after = lab.files();
     for (path, bytes) in
         before.iter().filter(|(path, _)| !path.starts_with("seed1-P01-1/") && !path.starts_with("seed1-P01-2/"))

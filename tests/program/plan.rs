@@ -93,10 +93,13 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     };
     let study = "sessions/study.toml";
     refused(&["plan", "sessions/default.toml"], "a session without a plan");
-    refused(&["operate", study], "and no participant");
-    refused(&["operate", study, "--code", "P15"], "--code P15, who is not in the plan");
-    refused(&["operate", study, "--code", "P01", "--condition", "none"], "--condition, with a session that has a plan");
-    refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session that has a plan");
+    refused(&["operate", study], "and no code of a participant");
+    refused(&["operate", study, "--code", "P15"], "--code P15, a participant who is not in the plan");
+    refused(
+        &["operate", study, "--code", "P01", "--condition", "none"],
+        "--condition, with a session file that has a plan",
+    );
+    refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session file that has a plan");
     let root = env!("CARGO_MANIFEST_DIR");
     let wrong = folder("wrong").join("study.toml");
     // The settings of a recording are no session file: its place in the plan is not for people to write.
@@ -168,13 +171,13 @@ fn check_goes_on_after_a_kill(other: &Terminal, session: &Path, out: &Path) {
             other.key(".");
             std::thread::sleep(std::time::Duration::from_millis(800));
         }
-        other.screen().contains(". next: questionnaire")
+        other.screen().contains(". next phase: questionnaire")
     });
     other.key(".");
     answer(other, "4");
     other.key(".");
     other.see("A1 trial 2/2");
-    trial(other, ". next: questionnaire");
+    trial(other, ". next phase: questionnaire");
     other.key(".");
     answer(other, "7");
     on_until(other, "Debriefing of the wizard");
@@ -197,7 +200,7 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     terminal.see("and agrees to");
     terminal.key("2");
     terminal.is_whole("0");
-    terminal.see("A1 does not agree: nothing was recorded");
+    terminal.see("A1 does not agree to be recorded: nothing was recorded");
     assert!(!out.exists(), "nothing is recorded without consent");
     operate(&terminal, &session, &out);
     terminal.see("and agrees to");

@@ -104,8 +104,8 @@ fn the_type_i_error_needs_unassisted_trials_alone() {
     ]);
     let strong: Value = serde_json::from_str(&strong).expect("one JSON object");
     assert_eq!(strong["ratio"].as_f64(), Some(0.2));
-    refused(&["power", &plan, "--from", &pool], "a pool of unassisted trials alone");
-    refused(&["arms", &plan, "--from", &pool], "a pool of unassisted trials alone");
+    refused(&["power", &plan, "--from", &pool], "a pool that has only unassisted trials");
+    refused(&["arms", &plan, "--from", &pool], "a pool that has only unassisted trials");
 }
 
 #[test]
@@ -134,5 +134,5 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
     assert_eq!(found["preregistration"]["differences"][0], "1 participant is without a recording: P03");
     let text = fs::read_to_string(&file).expect("frozen");
     fs::write(&file, text.replacen("\"level\": 0.95", "\"level\": 0.90", 1)).expect("written");
-    refused(&["study", &recordings, "--skip", "concepts,events", "--frozen", &file], "so it was changed");
+    refused(&["study", &recordings, "--skip", "concepts,events", "--frozen", &file], "it was changed after");
 }

@@ -130,7 +130,7 @@ fn parts_that_do_not_make_one_study_are_refused() {
     join(&[&one, &other], "the end after 1 of 4 recordings");
     let other = changed(&two, &folder.join("half.jsonl"), |text| text[..text.len() - 100].to_string());
     join(&[&one, &other], "a line without its end");
-    join(&[&one, &plan], "a line that is none of a part");
+    join(&[&one, &plan], "a line that is not a line of a study's part");
     // A part takes no other file's place, but that of the same part.
     refused(&["study", &at("trials"), "--shard", "1/2", "--out", &plan], "a file is there that is not the same part");
     refused(&["study", &at("trials"), "--shard", "1/2", "--out", &two], "a file is there that is not the same part");

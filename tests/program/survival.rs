@@ -158,7 +158,7 @@ fn a_recording_is_written_by_one_program_and_continued_once() {
     fs::rename(&recording, root.join("elsewhere")).expect("moved");
     let output = tomcom(&["replay", &last.display().to_string(), "--verify"]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.code() == Some(2) && told.contains("which is not there"), "{told}");
+    assert!(output.status.code() == Some(2) && told.contains("a recording that is not there"), "{told}");
 }
 
 /// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.
@@ -285,7 +285,7 @@ fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
     signal(&pid, "STOP");
     std::thread::sleep(Duration::from_millis(2500));
     signal(&pid, "CONT");
-    terminal.see("the clock jumped by");
+    terminal.see("clock jumped by");
     terminal.wait("the jump", || terminal.count("clock_jumped") == 1);
     let log = terminal.log();
     let events: Vec<Value> = log.lines().skip(1).filter_map(|line| serde_json::from_str(line).ok()).collect();
@@ -317,7 +317,11 @@ fn onward(screen: &str, turn: u64) -> Option<&'static str> {
         () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
         () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
         () if shows("RUNNING") => None,
-        () if shows("READY") || shows("PAUSED") || shows(". next recording") || shows(". next: questionnaire") => {
+        () if shows("READY")
+            || shows("PAUSED")
+            || shows(". next recording")
+            || shows(". next phase: questionnaire") =>
+        {
             Some(".")
         }
         () if shows("enter ") => Some(on),

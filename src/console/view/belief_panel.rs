@@ -36,7 +36,7 @@ const SCALE: u16 = 6;
 pub(super) const QUIET: &str = "No false beliefs";
 
 /// Text of the belief panel before the trial's first estimate.
-const BEFORE: &str = "estimated after the trial's start";
+const BEFORE: &str = "no estimate before the trial starts";
 
 /// Drawing context of the belief panel: session, present time, and estimates.
 struct Panel<'a> {
@@ -78,10 +78,10 @@ impl Panel<'_> {
     }
 
     fn remark(&self) -> String {
-        let order = if are_by_cost(self.session) { "most costly first" } else { "oldest first" };
         match self.of_standing(BeliefCorrectness::False).count() {
-            0 => "estimated".to_string(),
-            number => format!("{number} false, {order}"),
+            0 => "estimated, not known".to_string(),
+            number if are_by_cost(self.session) => format!("{number} false, costliest first"),
+            number => format!("{number} false, oldest first"),
         }
     }
 
@@ -120,9 +120,10 @@ impl Panel<'_> {
         }
         let quiet = brush.style(TextRole::Quiet);
         if right > 0 && y < area.bottom() {
-            let others = if told.is_empty() { "" } else { "other " };
-            let words =
-                format!("{} right", count(right as u64, &format!("{others}belief"), &format!("{others}beliefs")));
+            let words = match told.is_empty() {
+                true => count(right as u64, "belief is right", "beliefs are right"),
+                false => count(right as u64, "other belief is right", "other beliefs are right"),
+            };
             brush.text(area.x, y, area.width, &words, quiet);
             y += 2;
         }
@@ -142,7 +143,7 @@ impl Panel<'_> {
     fn told(&self, belief: &EstimatedBelief, columns: u16) -> Vec<String> {
         let (thinks, truth) = self.values(belief);
         if belief.standing == BeliefCorrectness::Unsure {
-            return vec![format!("unsure, perhaps {thinks}")];
+            return vec![format!("unsure, may think {thinks}")];
         }
         let whole = format!("thinks {thinks}, is {truth}");
         match width(&whole) <= columns {
@@ -169,7 +170,7 @@ impl Panel<'_> {
     fn title(&self, belief: &EstimatedBelief) -> String {
         let name = name(self.session, belief.aspect);
         match belief.standing {
-            BeliefCorrectness::Unsure => format!("unsure: {name}, perhaps {}", self.values(belief).0),
+            BeliefCorrectness::Unsure => format!("{name}: unsure, may think {}", self.values(belief).0),
             _ => name,
         }
     }

@@ -68,12 +68,15 @@ fn place(session: &Session) -> String {
 
 fn before(session: &Session, model: &ConsoleModel) -> Card {
     let trial = &session.spec.trial;
-    let length =
-        format!("{} or {}", count(trial.presses, "press", "presses"), SessionTime::from_secs_f64(trial.seconds));
+    let length = format!(
+        "ends after {} or {}",
+        count(trial.presses, "press", "presses"),
+        SessionTime::from_secs_f64(trial.seconds)
+    );
     let mut facts = vec![
         fact("participant", place(session), TextRole::Strong),
         fact("kitchen", session.kitchen.title.clone(), TextRole::Text),
-        fact("length", length, TextRole::Text),
+        fact("trial length", length, TextRole::Text),
     ];
     for (index, (text, role)) in head::healths(session, model, ScreenSize::Medium).into_iter().enumerate() {
         let name = if index == 0 { "devices" } else { "" };
@@ -82,7 +85,7 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     let mut keys = Vec::new();
     keys.extend(model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
     let preflight = KeyAction::Hand(ManualAction::Preflight);
-    keys.extend(model.keys.chord_for(&preflight).map(|key| (key, "all preflight checks".to_string())));
+    keys.extend(model.keys.chord_for(&preflight).map(|key| (key, "show all preflight checks".to_string())));
     Card { title: "Ready to start".to_string(), facts, keys }
 }
 
@@ -91,9 +94,9 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
 fn recipes(session: &Session, model: &ConsoleModel) -> Card {
     let kitchen = &session.kitchen;
     let recipe = |dish: &Dish| (dish.name.clone(), wording::dish(kitchen, dish), TextRole::Text);
-    let on = model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "resume".to_string()));
+    let on = model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "resume the trial".to_string()));
     Card {
-        title: "Paused: the recipes".to_string(),
+        title: "Trial paused: the recipes of all dishes".to_string(),
         facts: kitchen.dishes.iter().map(recipe).collect(),
         keys: on.into_iter().collect(),
     }

@@ -20,7 +20,7 @@ const NUMBER: u16 = 4;
 const CLOCK: u16 = 6;
 /// Least width, in columns, of an error list that shows codes in full.
 const WIDE: u16 = 62;
-/// Columns of a code in full ("wrong about assembly board"), and in short ("assembly board").
+/// Terminal columns of a rater's code in full ("wrong about assembly board"), and in short ("assembly board").
 const WHOLE_CODE: u16 = 27;
 const SHORT_CODE: u16 = 14;
 /// Columns of the bar for the coding progress.
@@ -133,7 +133,7 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
             }
         }
     } else {
-        lines.push(("no error reached yet: enter goes to the first one".to_string(), TextRole::Quiet));
+        lines.push(("enter goes to the first error".to_string(), TextRole::Quiet));
     }
     for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height.saturating_sub(1))) {
         let style = brush.style(*role);

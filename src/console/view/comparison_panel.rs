@@ -19,21 +19,27 @@ use crate::session::Session;
 const COLUMN_S: f64 = 1.0;
 const LABELS: u16 = 10;
 
-const TITLE: &str = "Wizard and assistant";
+const TITLE: &str = "Signals of wizard and assistant compared";
 
 /// Draws the comparison of wizard and assistants.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.comparison;
     let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };
     let is_small = regions.room == ScreenSize::Small;
-    let window = compared.seen.as_ref().map(|seen| format!("matched within {} presses", seen.window));
+    let window = compared.seen.as_ref().map(|seen| format!("signals match within {} presses", seen.window));
     let inside = match is_small {
         true => area,
         false => brush.panel(area, TITLE, &window.unwrap_or_default()),
     };
     let Some(seen) = &compared.seen else {
         let quiet = brush.style(TextRole::Quiet);
-        brush.text(inside.x + 1, inside.y, inside.width, "the comparison starts with the first order or press", quiet);
+        brush.text(
+            inside.x + 1,
+            inside.y,
+            inside.width,
+            "signals are compared from the first order or press on",
+            quiet,
+        );
         return;
     };
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
@@ -127,11 +133,11 @@ impl View<'_> {
     }
 }
 
-/// Draws how similar the communications of this lane are to those of the first lane.
+/// Draws the statistics of how similar the communications of an assistant's lane are to those of the first lane.
 fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &SenderComparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
-        let text = "no signal was sent yet: nothing to compare with";
+        let text = "no signal was sent so far: nothing to compare with";
         brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (text, TextRole::Quiet)]);
         return;
     }
@@ -142,11 +148,11 @@ fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &SenderComparis
     let (kappa, chance) = (number(found.kappa), number(found.signal.chance_recall));
     let text = match inside.width >= ROOMY_COLUMNS - 8 {
         true => format!(
-            "recall {recall} (chance {chance})  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}   \
-             {} of {} matched, {} said",
+            "recall {recall} (chance {chance}), precision {precision}, F1 {f1}, kappa {kappa}, lead {lead}; {}/{} \
+             signals matched, {} sent",
             found.matched, found.of_n, found.with_n
         ),
-        false => format!("recall {recall}  precision {precision}  F1 {f1}  kappa {kappa}  lead {lead}"),
+        false => format!("recall {recall}, precision {precision}, F1 {f1}, kappa {kappa}, lead {lead}"),
     };
     brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (&text, TextRole::Text)]);
 }
@@ -162,7 +168,13 @@ fn differences(
     let Some((at, _)) = chosen.filter(|_| area.height > 0) else {
         let quiet = brush.style(TextRole::Quiet);
         if area.height > 0 {
-            brush.text(area.x + 1, area.y, area.width - 1, "no differences yet", quiet);
+            brush.text(
+                area.x + 1,
+                area.y,
+                area.width - 1,
+                "signals of wizard and assistant do not differ so far",
+                quiet,
+            );
         }
         return;
     };

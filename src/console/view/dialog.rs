@@ -31,7 +31,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
         Some(Dialog::EndTrial) => {
             let yes = yes_keys(model, &KeyAction::EndTrial);
-            ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], &yes);
+            ask(brush, screen, "End the trial?", &["A trial that was ended cannot be resumed."], &yes);
         }
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
@@ -105,7 +105,7 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
     let from = model.help_from.min(rest);
-    let remark = if rest == 0 { "" } else { "up, down: more" };
+    let remark = if rest == 0 { "" } else { "up, down: more of the report" };
     let size = (columns, lines.len().min(rows) as u16 + 4);
     let inside = open(brush, screen, size, "The training is over", remark);
     for (row, line) in lines.iter().skip(from).take(rows).enumerate() {
@@ -158,25 +158,25 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
         (signs.gaze, "where the participant looks or just looked"),
         (signs.trail, "where the participant looked before"),
-        (signs.rules[1], "content just changed; colour: by whom"),
+        (signs.rules[1], "content changed just now; colour: by whom"),
         (signs.changed, "time since the content changed"),
-        (signs.rules[2], "highlighted on the participant's display"),
+        (signs.rules[2], "place highlighted on the participant's display"),
         (signs.to, "robot's next press; trial or robot resumed"),
-        (signs.bar_full, "probability of a belief; presses saved"),
+        (signs.bar_full, "probability of a belief; presses a signal saves"),
         (signs.bar_empty, "presses saved, up to one standard error more"),
-        (signs.frame[5], "line between those: cost of a signal"),
-        (signs.press, "press"),
-        (signs.no_effect, "ineffective press"),
-        (signs.error, "error; trial excluded"),
+        (signs.frame[5], "cost of a signal, in a bar of presses saved"),
+        (signs.press, "press with an effect"),
+        (signs.no_effect, "press without effect"),
+        (signs.error, "error of the human; trial excluded"),
         (signs.served, "order served"),
         ("+", "new order; further entries without room"),
         (signs.taken_back, "signal taken back; robot's press skipped"),
         (signs.by_hand, "manual intervention of the experimenter"),
         (signs.stopped, "robot stopped"),
-        (signs.touched, "a person touched the arm"),
-        (signs.levels[3], "joint angles of the arm, from the base on"),
+        (signs.touched, "a person touched the robot's arm"),
+        (signs.levels[3], "joint angles of the robot's arm, base first"),
         (signs.pause, "trial paused; robot held"),
-        ("*", "typed note"),
+        ("*", "note that the wizard typed"),
         (signs.cursor, "selected row of a list"),
         ("!", "keyboard focus was lost"),
     ];
@@ -192,7 +192,7 @@ fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (
             None => groups.push((binding.group, vec![Line::Key(binding)])),
         }
     }
-    groups.push(("Signs", legend(theme.signs())));
+    groups.push(("Signs on the screen", legend(theme.signs())));
     let columns = columns(&groups, usize::from(size.1.saturating_sub(3)));
     let fits = usize::from((size.0.saturating_sub(4) / HELP_COLUMNS).max(1)).min(columns.len());
     (columns, fits)
@@ -211,7 +211,7 @@ fn help(brush: &mut Painter, screen: Rect, model: &ConsoleModel) {
     let from = model.help_from.min(columns.len() - fits);
     let remark = match columns.len() - fits {
         0 => "any key closes".to_string(),
-        more => format!("arrows: page {} of {}, other keys close", from + 1, more + 1),
+        more => format!("arrows: help page {} of {}, other keys close", from + 1, more + 1),
     };
     // Help columns are as wide as the longest line, if that fits.
     let longest = columns.iter().flatten().map(Line::columns).max().unwrap_or(0).max(HELP_COLUMNS);

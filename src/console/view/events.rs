@@ -17,8 +17,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         return;
     }
     let remark = match model.events_back {
-        0 => "newest first".to_string(),
-        back => format!("{back} newer"),
+        0 => "newest event first".to_string(),
+        back => format!("{back} newer events hidden"),
     };
     let inside = brush.panel(regions.events, "Events", &remark);
     let clock = session.trial_clock(model.now);

@@ -118,7 +118,7 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
     let group = |words: String, filter: &'static str| vec![(words, Some(ClickAction::Palette(filter)))];
     let keys = match binding.action {
         KeyAction::Note(_) if session.spec.console.notes.len() > 1 => {
-            group(format!("1-{}", session.spec.console.notes.len()), "markers")
+            group(format!("1-{}", session.spec.console.notes.len()), "notes")
         }
         KeyAction::Rate(RaterAction::Belief(_)) => group("letters".to_string(), "wrongabout"),
         KeyAction::Move(ReplayAction::StepForward) => pair([ReplayAction::StepBack, ReplayAction::StepForward]),
@@ -151,7 +151,7 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         let arm = &session.robot.arm;
         let why = wording::arm_stopped(arm.mode, arm.stopped_by_n, None);
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
-        let resume = resume.map_or(String::new(), |key| format!("; {key} resumes it"));
+        let resume = resume.map_or(String::new(), |key| format!("; {key} resumes the arm"));
         let alarm = brush.style(TextRole::Alarm);
         brush.text(area.x + 2, area.y, area.width - 2, &format!("Arm stopped: {why}{resume}"), alarm);
     }
@@ -175,7 +175,7 @@ pub(super) fn onward(session: &Session) -> Option<String> {
     session.protocol.as_ref().filter(|_| session.phase != TrialPhase::Closed)?;
     Some(match session.next_phase() {
         _ if session.aborted.is_some() => "repeat the trial".to_string(),
-        Some(phase) => format!("next: {}", phase.name()),
+        Some(phase) => format!("next phase: {}", phase.name()),
         None => "next recording".to_string(),
     })
 }

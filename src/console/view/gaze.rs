@@ -34,7 +34,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
     // The gaze panel shows only the most frequent fault; the preflight checks and the summaries show all.
     let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
-    let rejected = Some((model.rejected_senders, "rejected")).filter(|(count, _)| *count > 0);
+    let rejected = Some((model.rejected_senders, "senders rejected")).filter(|(count, _)| *count > 0);
     let told = worst.into_iter().chain(rejected).map(|(count, kind)| format!(", {count} {kind}"));
     let remark = format!("{source}{}", told.collect::<String>());
     let inside = brush.panel(area, "Gaze", &remark);
@@ -45,7 +45,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
 
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let Some((at, sample)) = session.gaze.last else {
-        return brush.parts(x, y, columns, &[("no sample so far", TextRole::Quiet)]);
+        return brush.parts(x, y, columns, &[("no gaze sample so far", TextRole::Quiet)]);
     };
     let sign = brush.theme.signs().gaze;
     let age_s = session.age(at, model.now).as_secs_f64();
@@ -54,7 +54,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         Some((location, distance_m)) => {
             format!("{:.0} cm from {}", distance_m * 100.0, session.kitchen.location(location).label())
         }
-        None => "display".to_string(),
+        None => "on the display".to_string(),
     };
     let age = if age_s < 0.2 { "now".to_string() } else { format!("{age_s:.1} s ago") };
     brush.parts(
@@ -81,7 +81,7 @@ fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
         (Some(hz), None) => format!("{hz:.0} Hz, conf -, {unusable:.0}% unusable"),
         (None, _) => {
             let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
-            format!("0 Hz, {}", pairing.as_deref().unwrap_or("conf -, -% unusable"))
+            pairing.unwrap_or("no samples arrive now".to_string())
         }
     };
     brush.parts(x, y, columns, &[(&text, TextRole::Quiet)]);

@@ -15,7 +15,7 @@ use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
 const COLUMNS: u16 = 76;
-/// Screen column at which the measured values begin.
+/// Column, inside the frame, at which the measured values of the gaze accuracy check begin.
 const VALUE: u16 = 15;
 
 /// Draws the present target of the gaze accuracy check in the kitchen panel.
@@ -23,11 +23,12 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
     let Some(check) = &session.calibration else { return };
     let Some(((index, _), point)) = check.shown.zip(check.target()) else { return };
     let Some((x, y)) = plan.cell(point) else { return };
-    let text = format!(" + look here: {} of {} ", index + 1, check.targets.len());
+    let text = format!(" + look here: target {} of {} ", index + 1, check.targets.len());
     let columns = super::paint::width(&text).min(panel.width);
     // The cross is on the target; the instruction stands to its right, or to its left if there is no room.
     let before = if x + columns < panel.right() { 1 } else { columns.saturating_sub(2) };
-    let text = if before == 1 { text } else { format!(" look here: {} of {} + ", index + 1, check.targets.len()) };
+    let text =
+        if before == 1 { text } else { format!(" look here: target {} of {} + ", index + 1, check.targets.len()) };
     let badge = brush.theme.badge(TextRole::Gaze);
     let (x, y) = (x.saturating_sub(before).max(panel.x), y.clamp(panel.y, panel.bottom().saturating_sub(1)));
     brush.text(x, y, columns, &text, badge);
@@ -47,9 +48,12 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let esc = KeyChord::plain(KeyCode::Esc);
     let again = format!("enter or {REPEAT}");
     let Some(found) = &outcome.found else {
-        line(brush, "accuracy", "not measured: too few usable samples at the targets", TextRole::Alarm);
-        line(brush, "fix", "look at every target; check that the tracker sends gaze", TextRole::Text);
-        let hints = [(again.as_str(), "repeat", Some(KeyChord::char(REPEAT))), ("esc", "cancel", Some(esc))];
+        line(brush, "accuracy", "not measured: too few usable gaze samples at the targets", TextRole::Alarm);
+        line(brush, "fix", "let the participant look at every target; check the tracker", TextRole::Text);
+        let hints = [
+            (again.as_str(), "repeat the gaze accuracy check", Some(KeyChord::char(REPEAT))),
+            ("esc", "cancel the check", Some(esc)),
+        ];
         brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), columns, &hints);
         return;
     };
@@ -65,16 +69,16 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     line(
         brush,
         "corrected",
-        &format!("{:.2} deg, {:.1} cm: {words}", found.corrected_deg, cm(found.corrected_deg)),
+        &format!("{:.2} deg, {:.1} cm without the offset: {words}", found.corrected_deg, cm(found.corrected_deg)),
         role,
     );
     line(brush, "precision", &format!("{:.2} deg (RMS between samples)", found.precision_deg), TextRole::Text);
     line(brush, "targets", &targets(found), TextRole::Text);
     let taken = chosen(model, Some(found));
     let rows = [
-        (CORRECTED, "accept with the offset subtracted", AccuracyCheckAction::Corrected),
-        (AS_IT_IS, "accept without correction", AccuracyCheckAction::AsItIs),
-        (REPEAT, "repeat the check", AccuracyCheckAction::Repeat),
+        (CORRECTED, "accept the gaze with its offset subtracted", AccuracyCheckAction::Corrected),
+        (AS_IT_IS, "accept the gaze without correction", AccuracyCheckAction::AsItIs),
+        (REPEAT, "repeat the gaze accuracy check", AccuracyCheckAction::Repeat),
     ];
     y += 1;
     for (key, does, is) in rows {
@@ -108,5 +112,5 @@ fn targets(found: &GazeAccuracy) -> String {
         None => "no gaze".to_string(),
     };
     let each: Vec<String> = found.targets.iter().map(one).collect();
-    format!("{} deg, centre first", each.join(", "))
+    format!("{} deg, centre target first", each.join(", "))
 }

@@ -33,7 +33,7 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
         })
         .collect();
     let rows = checks.len() + remedies.iter().map(Vec::len).sum::<usize>();
-    let inside = open(brush, screen, (columns, rows as u16 + 5), "Before the trial", "space stops the robot");
+    let inside = open(brush, screen, (columns, rows as u16 + 5), "Checks before the trial", "space stops the robot");
     let mut y = inside.y;
     for (check, remedy) in checks.iter().zip(&remedies) {
         line(brush, inside, y, check);
@@ -49,7 +49,7 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
         true => (start.map_or(String::new(), |key| key.to_string()), start, "start the trial"),
         false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "start the trial anyway"),
     };
-    let esc = ("esc", "close", Some(KeyChord::plain(KeyCode::Esc)));
+    let esc = ("esc", "close the list", Some(KeyChord::plain(KeyCode::Esc)));
     let hints = [(key.as_str(), does, chord), esc];
     let hints = if session.phase == TrialPhase::Ready { &hints[..] } else { &hints[1..] };
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
@@ -70,7 +70,7 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
 /// Draws the text input of the wizard's note.
 pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
     let says = "The trial is paused and the robot stands, so the space bar types a space here.";
-    input_line(brush, screen, text, ("Note", "the trial is paused"), says);
+    input_line(brush, screen, text, ("Note to be recorded", "the trial is paused"), says);
 }
 
 /// Draws the text input of a questionnaire answer below its item.
@@ -97,6 +97,6 @@ fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remar
         brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-    let hints = [("enter", "save", enter), ("esc", "cancel", esc)];
+    let hints = [("enter", "save the text", enter), ("esc", "cancel", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }

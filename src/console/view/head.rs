@@ -156,8 +156,8 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
             let label = format!("{state} {speed}{follows} {what} {event}/{events}");
             healths.push((label, TextRole::Strong));
             match (playback.follows, playback.running) {
-                (false, true) => healths.push(("still recording: --follow".to_string(), TextRole::Strong)),
-                (false, false) if playback.cut => healths.push(("cut".to_string(), TextRole::Alarm)),
+                (false, true) => healths.push(("recording goes on: --follow".to_string(), TextRole::Strong)),
+                (false, false) if playback.cut => healths.push(("recording cut".to_string(), TextRole::Alarm)),
                 _ => {}
             }
         }
@@ -174,7 +174,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
         healths.push((text, if is_fine { TextRole::Text } else { TextRole::Alarm }));
     }
     if let Some(RerunStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
-        healths.push((format!("RERUN {dropped} DROPPED"), TextRole::Alarm));
+        healths.push((format!("RERUN {dropped} ROWS DROPPED"), TextRole::Alarm));
     }
     let mode = session.robot.safety_mode();
     let robot = match (session.robot.stopped, session.robot.held) {

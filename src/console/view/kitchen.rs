@@ -37,14 +37,14 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     if regions.room > ScreenSize::Small {
         let remark = match model.layer {
-            KeyLayer::Wizard if model.coding.is_some() => "[key]: false belief about this place",
+            KeyLayer::Wizard if model.coding.is_some() => "[key] codes a false belief about this place",
             KeyLayer::Wizard if model.playback.is_some() => "",
-            KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
+            KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: nobody sends signals",
             KeyLayer::Wizard if session.spec.trial.condition == Condition::Assistant => {
                 "the assistant sends the signals"
             }
             KeyLayer::Wizard => "[key] sends a signal about this place",
-            KeyLayer::Participant => "[key] is the participant's button",
+            KeyLayer::Participant => "[key] presses the participant's button",
         };
         brush.panel(area, &session.kitchen.title, remark);
     }
@@ -232,8 +232,8 @@ impl<'a> Place<'a> {
         end
     }
 
-    /// Whether to mark that the participant has not seen the last change; the mark is for the wizard, not for a
-    /// participant at this keyboard.
+    /// Whether the location's box marks that the participant has not seen the last change; the mark is for the wizard,
+    /// not for a participant at this keyboard.
     fn is_unseen(&self) -> bool {
         self.model.layer == KeyLayer::Wizard && self.session.is_unseen(self.id)
     }

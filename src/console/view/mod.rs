@@ -82,7 +82,8 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
 fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let area = *brush.buffer.area();
     let (alarm, text) = (brush.style(TextRole::Alarm), brush.style(TextRole::Text));
-    let need = format!("{}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
+    let need =
+        format!("terminal {}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
     brush.text(0, 0, area.width, &need, text);
     let stop = match session.robot.stopped {
         true => session.robot.safety_mode().name(),

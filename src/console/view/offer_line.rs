@@ -119,7 +119,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if area.area() == 0 {
         return;
     }
-    // A click on the line right after the offer has closed gets a notice that it has.
+    // A click on the offer's line right after the offer has closed gets a notice that the offer has closed.
     let takes = model.layer == KeyLayer::Wizard && model.playback.is_none() && offers::are_made(session);
     if let Some(chord) = model.keys.chord_for(&KeyAction::Accept).filter(|_| takes) {
         brush.target(area, ClickAction::Key(chord));

@@ -30,7 +30,7 @@ struct Row {
     counts: bool,
 }
 
-/// A list as it is drawn.
+/// An open list (answers to a question, or all actions) as it is drawn.
 struct ListPage<'a> {
     title: String,
     cursor: &'a ListCursor,
@@ -68,7 +68,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     let rows = palette::actions(&model.keys, model.layer, cursor).iter().map(row).collect();
     let all = palette::actions(&model.keys, model.layer, &ListCursor::default());
     let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
-    let takes = if has_signals { "do it (signals: show the key)" } else { "do it" };
+    let takes = if has_signals { "run action (signal: show key)" } else { "run the action" };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
     ListPage { title, cursor, rows, all: all.len(), space, takes }.draw(brush, screen);

@@ -6,7 +6,7 @@ use super::paint::Painter;
 use super::regions::inside;
 use super::theme::TextRole;
 
-/// Clears an area of the screen.
+/// Clears an area of the screen, so that a dialog, list or card can be drawn there.
 pub(super) fn blank(brush: &mut Painter, area: Rect) {
     for y in area.y..area.bottom() {
         for x in area.x..area.right() {

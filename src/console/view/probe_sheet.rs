@@ -52,18 +52,18 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
     }
     answers(&mut page, open, session, model);
     let title = status(session, model).unwrap_or_default();
-    let left =
-        probe_left(session, model.now).map_or(String::new(), |left| format!("{:.0} s left", left.as_secs_f64().ceil()));
+    let left = probe_left(session, model.now)
+        .map_or(String::new(), |left| format!("{:.0} s left to answer", left.as_secs_f64().ceil()));
     let chord = |action| model.keys.chord_for(&action);
     let (pause, skip) = (chord(KeyAction::Advance), chord(KeyAction::Hand(ManualAction::SkipProbe)));
     let [pause_key, skip_key] = [pause, skip].map(|chord| chord.map(|chord| chord.to_string()).unwrap_or_default());
     let mut hints: Vec<KeyHint> = Vec::new();
     if question.is_some() && who == ProbeAnswerer::Console && !open.is_paused() {
-        hints.push(("0-9", "number", None));
-        hints.push(("enter", "answer", plain(KeyCode::Enter)));
+        hints.push(("0-9", "type number", None));
+        hints.push(("enter", "confirm answer", plain(KeyCode::Enter)));
     }
     if open.closed.is_none() && skip.is_some() {
-        hints.push((&skip_key, "skip the rest", skip));
+        hints.push((&skip_key, "skip the probe", skip));
     }
     if pause.is_some() {
         hints.push((&pause_key, if open.is_paused() { "resume" } else { "pause" }, pause));

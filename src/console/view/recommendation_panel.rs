@@ -61,11 +61,11 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         y += 1;
     }
     if !useless.is_empty() && y < inside.bottom() {
-        let what = match session.spec.assistant.concept {
-            ConceptName::Tom => "would not change a belief",
-            _ => "would save nothing",
+        let signals = count(useless.len() as u64, "signal", "signals");
+        let text = match session.spec.assistant.concept {
+            ConceptName::Tom => format!("{signals} would change no belief"),
+            _ => format!("{signals} would save no press"),
         };
-        let text = format!("{} {what}", count(useless.len() as u64, "signal", "signals"));
         quietly(brush, Rect { y, height: 1, ..inside }, &text);
     }
 }
@@ -77,12 +77,12 @@ fn quietly(brush: &mut Painter, area: Rect, text: &str) {
     }
 }
 
-/// Unit of the listed numbers, as the remark in the panel's title.
+/// Unit of the numbers in the list of signals, as the remark in the panel's title.
 fn remark(session: &Session) -> &'static str {
     match session.spec.assistant.concept {
-        ConceptName::TomCom => "presses",
-        ConceptName::Tom => "belief deviation",
-        ConceptName::Dev => "DEV",
+        ConceptName::TomCom => "presses saved",
+        ConceptName::Tom => "deviation of beliefs",
+        ConceptName::Dev => "concept DEV",
         ConceptName::None => "no communication concept",
     }
 }
@@ -164,7 +164,7 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
     x + GAUGE + 1
 }
 
-/// Draws the cost of a signal, and the age of the listed numbers.
+/// Draws the line with the cost of a signal and the age of the numbers in the list.
 fn cost_line(
     brush: &mut Painter,
     inside: Rect,
@@ -176,7 +176,7 @@ fn cost_line(
     let price = session.spec.assistant.price();
     let left = match session.spec.assistant.concept {
         ConceptName::Tom => format!("{price:>4.2} threshold for a signal"),
-        ConceptName::Dev => "DEV proposes presses after an error, in the line of the offer".to_string(),
+        ConceptName::Dev => "DEV proposes presses after an error: see the line of the offer".to_string(),
         ConceptName::None => String::new(),
         ConceptName::TomCom => format!("{price:>4.1} cost of a signal"),
     };
@@ -185,7 +185,7 @@ fn cost_line(
     // A recommendation that the assistant has already sent by itself is marked as sent.
     let is_sent = session.spec.trial.condition == Condition::Assistant
         && session.signalled_at.is_some_and(|sent| sent >= advice.for_ns);
-    let state = if is_sent { "sent, " } else { "" };
-    let age = format!("{state}{:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64());
+    let age_s = session.age(advice.for_ns, model.now).as_secs_f64();
+    let age = if is_sent { format!("sent, {age_s:.1} s old") } else { format!("{age_s:.1} s old") };
     brush.text_right(inside.right(), y, inside.right().saturating_sub(end + 1), &age, quiet);
 }

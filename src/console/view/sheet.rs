@@ -41,7 +41,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
 /// Label of the key that leaves the sheet: the name of the next phase.
 fn onward(session: &Session) -> String {
     match session.next_phase() {
-        Some(phase) => format!("next: {}", phase.name()),
+        Some(phase) => format!("next phase: {}", phase.name()),
         None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leave the tutorial".to_string(),
         None => "next recording".to_string(),
     }
@@ -74,7 +74,7 @@ fn draw_steps(
     if open.is_none() {
         page.focus_here();
     }
-    let on = if open.is_some() { "this step is done".to_string() } else { onward(session) };
+    let on = if open.is_some() { "tick this step as done".to_string() } else { onward(session) };
     let undo = ("bksp", "untick the last step", plain(KeyCode::Backspace));
     let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), undo];
     let has_ticks = protocol.ticks.contains(&true);
@@ -116,9 +116,9 @@ fn draw_tutorial(
     }
     let on = onward(session);
     let over = [("enter", on.as_str(), plain(KeyCode::Enter))];
-    let skip = ("0", "skips the rest", Some(KeyChord::char('0')));
+    let skip = ("0", "ends the tutorial", Some(KeyChord::char('0')));
     let (back, next) =
-        (("\u{2190}", "back", plain(KeyCode::Left)), ("\u{2192}", "turns the page", plain(KeyCode::Right)));
+        (("\u{2190}", "previous page", plain(KeyCode::Left)), ("\u{2192}", "next page", plain(KeyCode::Right)));
     let title = "Tutorial of the participant";
     let open = [next, back, skip];
     page.draw(pen, screen, title, where_, if state.is_over { &over } else { &open });
@@ -135,7 +135,7 @@ fn draw_questions(
     let items = questionnaire.items.len();
     let mut page = Page::new(screen);
     if let Some(item) = questionnaire.items.get(protocol.item) {
-        page.text(0, &format!("{} of {items}", protocol.item + 1), TextRole::Quiet);
+        page.text(0, &format!("item {} of {items}", protocol.item + 1), TextRole::Quiet);
         page.space();
         page.text(0, &item.text, TextRole::Strong);
         page.space();
@@ -156,7 +156,7 @@ fn draw_questions(
             (keys.as_str(), does, None),
             skip,
             ("enter", "next item", plain(KeyCode::Enter)),
-            ("left/right", "go between items", None),
+            ("arrows", "other item", None),
         ];
         return page.draw(pen, screen, &questionnaire.title, where_, &keys);
     }
@@ -179,10 +179,11 @@ fn draw_questions(
     page.focus_here();
     let on = match (protocol.confirmed, protocol.open_item()) {
         (true, _) => onward(session),
-        (false, Some(_)) => "to the item without an answer".to_string(),
+        (false, Some(_)) => "go to the item without an answer".to_string(),
         (false, None) => "confirm the answers".to_string(),
     };
-    let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), ("left", "back", plain(KeyCode::Left))];
+    let hints =
+        [("enter", on.as_str(), plain(KeyCode::Enter)), ("left", "back to the last item", plain(KeyCode::Left))];
     let hints = if protocol.confirmed { &hints[..1] } else { &hints };
     page.draw(pen, screen, &questionnaire.title, where_, hints);
 }
@@ -202,24 +203,24 @@ fn item_form(page: &mut Page, form: &AnswerFormat, given: Option<&AnswerValue>) 
                 let mark = if is_chosen { format!("[{}]", index + 1) } else { format!(" {} ", index + 1) };
                 page.choice(index, &mark, &option.text, if is_chosen { TextRole::Strong } else { TextRole::Text });
             }
-            (format!("1-{}", options.len()), if *several { "choose any" } else { "choose" })
+            (format!("1-{}", options.len()), if *several { "choose several" } else { "choose one" })
         }
         AnswerFormat::Number { range: [least, most], unit } => {
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-            page.text(0, &format!("{least} to {most}{unit}"), TextRole::Quiet);
+            page.text(0, &format!("a number from {least} to {most}{unit}"), TextRole::Quiet);
             typed(page, form, given);
-            ("0-9".to_string(), "type the number")
+            ("0-9".to_string(), "type number")
         }
         AnswerFormat::Text { length } => {
-            page.text(0, &format!("words, at most {length} characters"), TextRole::Quiet);
+            page.text(0, &format!("an answer in words, at most {length} characters"), TextRole::Quiet);
             typed(page, form, given);
-            ("letters".to_string(), "type the answer")
+            ("letters".to_string(), "type answer")
         }
         AnswerFormat::Slider { low, high, step } => {
             let by = if *step > 1 { format!(", in steps of {step}") } else { String::new() };
-            page.text(0, &format!("0 {low}   to   {SLIDER_END} {high}{by}"), TextRole::Quiet);
+            page.text(0, &format!("from 0 ({low}) to {SLIDER_END} ({high}){by}"), TextRole::Quiet);
             typed(page, form, given);
-            ("0-9".to_string(), "type the position")
+            ("0-9".to_string(), "type position")
         }
     }
 }
@@ -248,8 +249,12 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     let Some((step, protocol)) = session.step() else { return };
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
-    let rate = criterion.error_rate.map_or(String::new(), |rate| format!(", at most {:.0} % errors", 100.0 * rate));
-    page.text(0, &format!("Required: {} orders served{rate}.", criterion.orders), TextRole::Text);
+    let orders = criterion.orders;
+    let required = match criterion.error_rate {
+        None => format!("Required: {orders} orders served."),
+        Some(rate) => format!("Required: {orders} orders served, errors in at most {:.0} % of presses.", 100.0 * rate),
+    };
+    page.text(0, &required, TextRole::Text);
     let share = 100.0 * f64::from(practice.errors) / f64::from(practice.presses.max(1));
     let (orders, presses, errors) = (practice.orders, practice.presses, practice.errors);
     let found = format!("Reached: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
@@ -265,7 +270,7 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     let hints = [
         ("enter", if waiver.is_some() { "waive for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
         (waivers.as_str(), "choose a reason", None),
-        ("left", "deselect", plain(KeyCode::Left)),
+        ("left", "deselect the reason", plain(KeyCode::Left)),
     ];
     let hints = if waiver.is_some() { &hints } else { &hints[..2] };
     page.draw(pen, screen, "The practice criterion is not met", where_, hints);

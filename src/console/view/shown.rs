@@ -74,7 +74,8 @@ fn says(session: &Session, signal: &Signal) -> String {
     let kitchen = &session.kitchen;
     let Some(location) = signal.location(kitchen) else {
         // Of proposed presses, only those that the participant has not made yet are shown.
-        return proposals::left(session).map_or(String::new(), |left| format!("next: {}", wording::proposal(left)));
+        return proposals::left(session)
+            .map_or(String::new(), |left| format!("proposed next: {}", wording::proposal(left)));
     };
     let content = kitchen.content_label(session.state, location);
     match signal {

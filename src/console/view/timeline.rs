@@ -132,7 +132,7 @@ fn column_end(session: &Session, model: &ConsoleModel, ago: i64) -> SessionTime 
     SessionTime(from)
 }
 
-/// A sign in the timeline.
+/// A sign in the timeline, with its cell and style: a press, a signal, an order or a note.
 struct Mark {
     x: u16,
     y: u16,

@@ -222,7 +222,7 @@ impl Talk {
     async fn run(&mut self) -> Option<()> {
         let PageFeed { mut scene, mut sight, mut robot } = self.hub.told.clone();
         let (mut acting, inputs) = (self.hub.acting.subscribe(), self.hub.inputs.clone());
-        // For a newly connected page, the present content counts as new.
+        // For a newly connected page, the present content of the display counts as new.
         scene.mark_changed();
         sight.mark_changed();
         robot.mark_changed();

@@ -36,8 +36,8 @@ use crate::edge::pairing_code::pairing_code;
 /// Largest number of page inputs that wait for the session.
 const WAITING: usize = 1024;
 
-/// Server of the participant's display: its address and its inputs. Dropping it tells the pages that the program ends, and
-/// stops the server.
+/// Server of the participant's display: its address and its inputs. Dropping the value tells the pages that the program
+/// ends, and stops the server.
 pub struct DisplayServer {
     address: SocketAddr,
     code: Option<String>,

@@ -44,7 +44,7 @@ const TOLD: Duration = Duration::from_millis(5);
 /// Response to a request for the participant's page under another host name.
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
-/// Files of the participant's page: path, content type, content.
+/// Files of the participant's page: path, content type, and content of each file.
 const FILES: [(&str, &str, &str); 15] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),

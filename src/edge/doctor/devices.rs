@@ -26,7 +26,7 @@ const STREAM_S: f64 = 3.0;
 pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     let address = SocketAddr::new(spec.display.listen, spec.display.port);
     let is_used = spec.participant.kind == ParticipantKind::Display;
-    let remedy = "end what uses the port, or set another address or port under [display]";
+    let remedy = "end the program that uses the port, or set another address or port under [display]";
     match TcpListener::bind(address) {
         Ok(_) => PreflightCheck::ok("wall display", format!("{address} is free for the participant's page")),
         Err(reason) => {
@@ -62,12 +62,17 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     let (address, port) = (&tracker.address, tracker.port);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let answer = runtime.and_then(|runtime| runtime.block_on(pupil::version(address, port)));
-    let remedy = "start Capture, with Pupil Remote on; elsewhere than here, see [tracker]";
+    let remedy = "start Pupil Capture with Pupil Remote on; if it runs on another computer, set its address under \
+                  [tracker]";
     match answer {
-        Ok(version) => PreflightCheck::ok("eye tracker", format!("{version} at {address}:{port}")),
-        Err(reason) => {
-            missing(is_used, "eye tracker", format!("none at {address}:{port} ({reason})"), "--gaze pupil", remedy)
-        }
+        Ok(version) => PreflightCheck::ok("eye tracker", format!("{version} answers at {address}:{port}")),
+        Err(reason) => missing(
+            is_used,
+            "eye tracker",
+            format!("no eye tracker answers at {address}:{port} ({reason})"),
+            "--gaze pupil",
+            remedy,
+        ),
     }
 }
 
@@ -78,10 +83,11 @@ fn lines(spec: &ParticipantSpec) -> PreflightCheck {
         Ok(_) => {
             let asks_code = !spec.gaze_listen.is_loopback() && spec.gaze_from.is_empty();
             let who = if asks_code { "; other computers need the pairing code" } else { "" };
-            PreflightCheck::ok("gaze", format!("{address} is free for lines of JSON{who}"))
+            PreflightCheck::ok("gaze", format!("{address} is free for gaze as lines of JSON{who}"))
         }
         Err(reason) => {
-            let remedy = "end what uses the port, or set another gaze_port or gaze_listen under [participant]";
+            let remedy = "end the program that uses the port, or set another gaze_port or gaze_listen under \
+                          [participant]";
             PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
         }
     }
@@ -107,12 +113,18 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
         return PreflightCheck::new(
             "gaze",
             PreflightVerdict::Failed,
-            "no [lsl.gaze]",
-            "the stream's name and channels",
+            "no [lsl.gaze] in the session file",
+            "set name and channels of the stream under [lsl.gaze]",
         );
     };
     let Ok(library) = lsl::load(spec.lsl.as_ref()) else {
-        return PreflightCheck::new("gaze", PreflightVerdict::Failed, "no liblsl", "see lsl above");
+        return PreflightCheck::new(
+            "gaze",
+            PreflightVerdict::Failed,
+            "no stream of gaze, since liblsl cannot be \
+                                                                      loaded",
+            "see the check lsl above",
+        );
     };
     let streams = lsl::streams_of_numbers(library, STREAM_S);
     let there: Vec<(&DiscoveredLslStream, Vec<String>)> =
@@ -127,21 +139,27 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
         is(&wanted.name, &name) && is(&wanted.content, &content)
     };
     if let Some(one) = there.iter().find(is_wanted) {
-        let remedy = "x, y and confidence under [lsl.gaze]: labels of channels, or their numbers from 1";
+        let remedy = "set x, y and confidence under [lsl.gaze] to labels of channels, or to their numbers from 1";
         return match lsl::missing_channel(wanted, &one.1) {
             None => PreflightCheck::ok("gaze", told(one)),
             Some(missing) => {
-                let found = format!("no channel \"{missing}\"; there is {}", told(one));
+                let found = format!("the stream has no channel \"{missing}\"; it has {}", told(one));
                 PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)
             }
         };
     }
     let others: Vec<String> = there.iter().map(told).collect();
     let found = match others.is_empty() {
-        true => format!("no stream {}, and no other stream of numbers", wanted.title()),
-        false => format!("no stream {}; there is {}", wanted.title(), others.join("; ")),
+        true => format!("no LSL stream {}, and no other stream of numbers", wanted.title()),
+        false => format!("no LSL stream {}; the streams of numbers are {}", wanted.title(), others.join("; ")),
     };
-    PreflightCheck::new("gaze", PreflightVerdict::Failed, found, "start what sends it; name and type under [lsl.gaze]")
+    PreflightCheck::new(
+        "gaze",
+        PreflightVerdict::Failed,
+        found,
+        "start the program that sends the stream; its name \
+                                                                  and type are set under [lsl.gaze]",
+    )
 }
 
 /// Checks whether the session's gaze file can be replayed.
@@ -155,7 +173,7 @@ fn file(tracker: &TrackerSpec) -> PreflightCheck {
             PreflightCheck::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))
         }
         Some(Err(error)) => PreflightCheck::new("gaze", PreflightVerdict::Failed, error.to_string(), told(&error)),
-        _ => PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{path}: no sample"), remedy),
+        _ => PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{path} has no gaze sample"), remedy),
     }
 }
 

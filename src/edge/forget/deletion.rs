@@ -24,8 +24,8 @@ pub enum ParticipantDeletionError {
     #[diagnostic(transparent)]
     File(Box<FileError>),
     /// A file with data of the participant cannot be deleted or rewritten.
-    #[error("nothing was deleted: {}: cannot be deleted or written anew: {reason}", path.display())]
-    #[diagnostic(help("the right to write to its folder, on a disk with free space"))]
+    #[error("nothing was deleted: {}: cannot be deleted or written again: {reason}", path.display())]
+    #[diagnostic(help("the right to write to the file's folder, on a disk with free space"))]
     Unwritable {
         /// File or folder that cannot be deleted or rewritten.
         path: PathBuf,
@@ -83,7 +83,7 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
     let mut fails = |path: &Path, result: io::Result<()>| match result {
         Ok(()) => false,
         Err(reason) => {
-            left.push(RetainedFile::new(path, format!("it cannot be deleted or written anew: {reason}")));
+            left.push(RetainedFile::new(path, format!("the file cannot be deleted or written again: {reason}")));
             true
         }
     };
@@ -108,7 +108,7 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
     for path in files {
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
         let is_needed = path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME);
-        let kept = io::Error::other("it says whose the files beside it are, which could not be deleted");
+        let kept = io::Error::other("it says whose the files beside it are, and these files could not be deleted");
         let result = if is_needed && occupied.contains(&folder) { Err(kept) } else { fs::remove_file(&path) };
         match fails(&path, result) {
             true => occupied.push(folder),
@@ -176,7 +176,7 @@ fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<(
 
 /// Writes a wizard's training record without the forgotten participant's recordings.
 fn write_others(path: &Path, found: &ParticipantData, new: &mut File) -> io::Result<()> {
-    let record = training(path)?.ok_or_else(|| io::Error::other("it is no record of training any more"))?;
+    let record = training(path)?.ok_or_else(|| io::Error::other("the file is no record of training any more"))?;
     let record = WizardTrainingRecord { recordings: others(&record, &found.subject), ..record };
     let text = serde_json::to_string_pretty(&record).map_err(io::Error::other)? + "\n";
     new.write_all(text.as_bytes())

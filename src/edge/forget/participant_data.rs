@@ -107,8 +107,8 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         .recording_files
         .into_iter()
         .partition(|path| path.ends_with(SETTINGS_NAME) && path.parent().is_some_and(is_occupied));
-    let keeps =
-        "it says whose the folder is, as long as the other files are in there; run the command again afterwards";
+    let keeps = "it says whose recording the folder has, as long as the other files are in the folder; run the command again \
+         when they are gone";
     found.left.extend(kept.iter().map(|path| RetainedFile::new(path, keeps)));
     found.left.sort();
     (found.recordings, found.recording_files, found.folders) = (walk.recordings, deleted, walk.own_folders);
@@ -144,7 +144,8 @@ impl FolderLook<'_> {
             },
         };
         if !is_known && !self.is_own && self.found.subject.is_named_by_recording(&name) {
-            let reason = "it has the name of one of the participant's recordings, and does not say what is in it";
+            let reason = "the file has the name of one of the participant's recordings, and does not say what it \
+                          contains";
             self.found.left.push(RetainedFile::new(path, reason));
         }
         Ok(is_known)
@@ -173,7 +174,8 @@ impl FolderLook<'_> {
         if record.wizard == subject.code || (kept == 0 && !record.recordings.is_empty()) {
             self.found.files.push(path.to_path_buf());
         } else if record.recordings.iter().any(|one| whose(one) == NamedPerson::Ambiguous) {
-            let reason = "a record of training that names a recording, and recordings of several people in different folders have \
+            let reason = "a record of training that names a recording, and recordings of several people in different \
+                          folders have \
                           this name; tomcom forget --in the folder with one of them, or delete it by hand";
             self.found.left.push(RetainedFile::new(path, reason));
         } else if kept < record.recordings.len() {
@@ -189,8 +191,8 @@ impl FolderLook<'_> {
         let Some(participants) = page_head::participants(&page) else {
             let is_report = name == REPORT_NAME && (self.tables.name_participant() || subject.is_named_in(&bytes));
             if is_report {
-                let reason = "a report that does not say who made it and whom it is about, as those of earlier versions; make it \
-                              anew with tomcom study, or delete it";
+                let reason = "a report that does not say who made it and whom it is about, such as those of earlier \
+                              versions; make it again with tomcom study, or delete it";
                 self.found.left.push(RetainedFile::new(path, reason));
             }
             return Ok(is_report);
@@ -200,7 +202,7 @@ impl FolderLook<'_> {
             self.found.files.push(path.to_path_buf());
         } else if whose.contains(&NamedPerson::Ambiguous) {
             let reason =
-                "a report about somebody who has the code, or the same code after a seed; make it anew, or delete it";
+                "a report about somebody who has this code, or this code after a seed; make it again, or delete it";
             self.found.left.push(RetainedFile::new(path, reason));
         }
         Ok(true)
@@ -221,8 +223,10 @@ impl FolderLook<'_> {
                 Some(damaged) if is_study_table(&path) => {
                     let beside = damaged.file_name().unwrap_or_default().to_string_lossy();
                     let rows = count(cut.len() as u64, "row is", "rows are");
-                    let reason =
-                        format!("{rows} about the participant; it is changed together with {beside}, or not at all");
+                    let reason = format!(
+                        "{rows} about the participant; this table is changed together with {beside}, or not \
+                                 at all"
+                    );
                     self.found.left.push(RetainedFile::new(&path, reason));
                 }
                 _ => {

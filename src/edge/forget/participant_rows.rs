@@ -19,7 +19,7 @@ use crate::study::column::CsvTable;
 const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
                          tomcom forget --in the folder with one of them, or delete the rows by hand";
 /// Advice for a table that this program does not change.
-const REMEDY: &str = "make it anew with tomcom study or tomcom codes --export, or delete it";
+const REMEDY: &str = "make the table again with tomcom study or tomcom codes --export, or delete it";
 
 /// What a CSV table contains about the participant.
 #[derive(Debug)]
@@ -167,14 +167,17 @@ impl FolderTables {
         let told = count(rows, "row is", "rows are");
         Ok(match (rows, is_named) {
             (0, false) => TableMatch::Nothing,
-            (1.., _) if is_damaged => {
-                TableMatch::Unclear(format!("its header is damaged, and {told} about the participant; {REMEDY}"))
-            }
+            (1.., _) if is_damaged => TableMatch::Unclear(format!(
+                "the table's header is damaged, and {told} about the participant; \
+                                             {REMEDY}"
+            )),
             (1.., _) => TableMatch::Unclear(format!(
-                "{told} about the participant, in a table that tomcom did not write: its columns are others; delete them by hand"
+                "{told} about the participant, in a table that tomcom did not write, with other columns; delete these \
+                 rows by hand"
             )),
             (0, true) => TableMatch::Unclear(format!(
-                "it names the participant, and its columns are not those of the table of this name that tomcom writes; {REMEDY}"
+                "the table names the participant, and does not have the columns of the table of this name that tomcom \
+                 writes; {REMEDY}"
             )),
         })
     }

@@ -55,7 +55,7 @@ pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterCo
         };
         let settled = ConsensusCode { code, from };
         if let Some(remedy) = settled.fault() {
-            return Err(wrong(format!("press {press} with another cause than both raters say"), remedy));
+            return Err(wrong(format!("press {press} with another cause than the one that both raters gave"), remedy));
         }
         if into.settled.insert(press, settled).is_some() {
             return Err(wrong(format!("press {press} again"), "one line for a press"));

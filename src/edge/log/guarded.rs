@@ -65,7 +65,7 @@ impl GuardedFile {
     pub(super) fn damage(&mut self) -> Option<String> {
         let length = match self.file.metadata() {
             Ok(data) => data.len(),
-            Err(reason) => return Some(format!("cannot be looked at: {reason}")),
+            Err(reason) => return Some(format!("cannot be read to be checked: {reason}")),
         };
         if length != self.length {
             let how = if length < self.length { "was cut" } else { "was written to" };

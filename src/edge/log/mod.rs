@@ -50,7 +50,7 @@ pub enum RecordingWriteError {
     /// Another program changed the log; the saved log, if there is one, contains every acknowledged event.
     #[error("{}: the log {found}{}", path.display(), rescued(.saved))]
     #[diagnostic(help(
-        "other programs may read the log of a running session, and change nothing; as they left it, it is kept beside the \
+        "other programs may read the log of a running session, but not change it; the changed log is kept beside the \
          saved one as {LOG_NAME}.damaged"
     ))]
     Damaged {
@@ -63,7 +63,7 @@ pub enum RecordingWriteError {
     },
     /// Another program is writing this recording.
     #[error("{}: another program{} writes this recording", folder.display(), process(.pid))]
-    #[diagnostic(help("end the other one first, or watch it: tomcom replay RECORDING --follow"))]
+    #[diagnostic(help("end the other program first, or watch its session: tomcom replay RECORDING --follow"))]
     InUse {
         /// Folder of the recording.
         folder: PathBuf,
@@ -72,7 +72,7 @@ pub enum RecordingWriteError {
     },
     /// Another program is coding the errors of this recording as the same rater.
     #[error("{}: another program{} codes its errors as {raters}", folder.display(), process(.pid))]
-    #[diagnostic(help("go on there, or leave it first; every rater has a name of its own"))]
+    #[diagnostic(help("go on coding there, or quit that program first; every rater has a code of their own"))]
     Coded {
         /// Folder of the recording.
         folder: PathBuf,
@@ -83,7 +83,7 @@ pub enum RecordingWriteError {
     },
     /// The recording has already been continued.
     #[error("{}: this recording was continued already", folder.display())]
-    #[diagnostic(help("its next part: tomcom operate --continue {}, if that was cut", part.display()))]
+    #[diagnostic(help("continue its next part, if that was cut: tomcom operate --continue {}", part.display()))]
     Continued {
         /// Folder of the recording.
         folder: PathBuf,
@@ -92,7 +92,10 @@ pub enum RecordingWriteError {
     },
     /// The folder that a new recording needs already contains something else.
     #[error("{}: {what} is there already", folder.display())]
-    #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]
+    #[diagnostic(help(
+        "use another folder, or remove that recording first: only the same session replaces its \
+                       recording"
+    ))]
     Taken {
         /// Folder in which the recording was to be made.
         folder: PathBuf,
@@ -108,7 +111,7 @@ impl RecordingWriteError {
 }
 
 fn rescued(saved: &Option<PathBuf>) -> String {
-    saved.as_ref().map_or(String::new(), |saved| format!("; what was recorded until then is in {}", saved.display()))
+    saved.as_ref().map_or(String::new(), |saved| format!("; everything recorded until then is in {}", saved.display()))
 }
 
 fn process(pid: &Option<u32>) -> String {

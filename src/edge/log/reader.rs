@@ -80,8 +80,10 @@ impl LogReader {
         let mut input = BufReader::with_capacity(1 << 16, file);
         let line = first_line(&mut input).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         if ends_in_header(&line) {
-            let found = "a log that ends before the end of its header, as a power failure leaves it".to_string();
-            let remedy = "a recording with a header; tomcom simulate makes a simulated one again".to_string();
+            let found = "a log that ends before the end of its header, which happens in a power failure".to_string();
+            let remedy = "a recording with a whole header; tomcom simulate makes a simulated recording \
+                          again"
+                .to_string();
             return Err(at_line(&path, 1, &String::from_utf8_lossy(&line), line.len(), found, remedy));
         }
         let text = String::from_utf8_lossy(&line).into_owned();
@@ -120,7 +122,10 @@ impl LogReader {
             let line = before.next_line()?;
             let (found, wanted) = (before.events(), self.next_seq);
             return line.map(Some).ok_or_else(|| {
-                let found = format!("the end after {found} events, where {wanted} are continued by a later part");
+                let found = format!(
+                    "the log's end after {found} events, although a later part continues it after \
+                                     {wanted} events"
+                );
                 before.wrong("", 0, &found)
             });
         }
@@ -149,7 +154,11 @@ impl LogReader {
         let stamped: TimestampedEvent = serde_json::from_str(&text)
             .map_err(|error| self.wrong(&text, error.column().saturating_sub(1), &json_message(&error)))?;
         if stamped.seq != self.next_seq {
-            return Err(self.wrong(&text, 0, &format!("seq {} where {} comes next", stamped.seq, self.next_seq)));
+            return Err(self.wrong(
+                &text,
+                0,
+                &format!("an event with seq {}, where seq {} comes next", stamped.seq, self.next_seq),
+            ));
         }
         self.next_seq += 1;
         self.ended = stamped.event == Event::SessionEnded;
@@ -234,7 +243,11 @@ fn open_before(
         return Err(wrong(format!("continues \"{name}\""), "the name of a folder beside this one"));
     }
     if parts == 0 {
-        return Err(wrong(format!("more than {MAX_PARTS} parts"), "parts that lead to a first one"));
+        return Err(wrong(
+            format!("more than {MAX_PARTS} parts"),
+            "parts of a recording that lead back to a first \
+                                                                  part",
+        ));
     }
     // The path is resolved, so that the folder of the previous part is also found from a path like `.`.
     let log = path.canonicalize().map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
@@ -246,7 +259,12 @@ fn open_before(
     };
     let folder = beside.join(name);
     if !folder.join(LOG_NAME).exists() {
-        return Err(wrong(format!("continues {name}, which is not there"), "that recording, in a folder beside this"));
+        return Err(wrong(
+            format!("a part that continues {name}, a recording that is not there"),
+            "that recording, in \
+                                                                                                  a folder beside \
+                                                                                                  this",
+        ));
     }
     let first = LogReader::open_part(&folder, parts - 1)?;
     let same = |other: &LogHeader| {
@@ -255,7 +273,7 @@ fn open_before(
     };
     match same(&first.header) {
         true => Ok(first),
-        false => Err(wrong(format!("another session than that of {name}"), "the session that it continues")),
+        false => Err(wrong(format!("a part of another session than that of {name}"), "the session that it continues")),
     }
 }
 

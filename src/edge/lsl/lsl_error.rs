@@ -18,7 +18,7 @@ pub enum LslError {
     #[error("liblsl does not offer the stream {0}")]
     Refused(String),
     /// The sending thread cannot be started, or does not answer in time.
-    #[error("the thread for the Lab Streaming Layer does not start")]
+    #[error("the thread for the Lab Streaming Layer cannot be started")]
     NoThread,
 }
 
@@ -27,11 +27,12 @@ impl LslError {
     pub fn remedy(&self) -> &'static str {
         match self {
             LslError::Missing(_) | LslError::Unfit { .. } => {
-                "name it in the session file, under [lsl]: library = \"…/liblsl.so\". The package pylsl has one (pip install pylsl, folder \
+                "name it in the session file, under [lsl]: library = \"…/liblsl.so\". The package pylsl has one (pip \
+                 install pylsl, folder \
                  pylsl/lib); others are at github.com/sccn/liblsl/releases"
             }
             LslError::Refused(_) | LslError::NoThread => {
-                "see docs/lsl.md; without [lsl] in the session file nothing is sent"
+                "see docs/lsl.md; without [lsl] in the session file no streams are sent"
             }
         }
     }

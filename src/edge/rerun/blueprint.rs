@@ -114,7 +114,7 @@ impl ViewerLayout {
 /// Viewer layout for a single recording.
 fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
-    let wrong = StateTimelineView::new("Believed wrong")
+    let wrong = StateTimelineView::new("False beliefs")
         .with_origin(path(lane, "human/belief/wrong"))
         .with_contents([path(lane, "human/belief/wrong/**")]);
     let beliefs = beliefs(lane, "P(truth): false ones marked, circles estimate, diamonds participant", properties);

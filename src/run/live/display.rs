@@ -90,12 +90,12 @@ impl PageEvent {
     pub fn from_input(input: PageInput, session: &Session, now: SessionTime) -> PageEvent {
         let event = match input {
             PageInput::Connected { width_px, height_px } => {
-                let text = format!("the participant's display is there, {width_px}x{height_px}");
+                let text = format!("the participant's display is connected, {width_px}x{height_px} pixels");
                 let event = Event::Display(DisplayEvent::Connected { width_px, height_px });
                 return PageEvent { event: Some(event), notice: Some((NoticeLevel::Done, text)) };
             }
             PageInput::Lost => {
-                let text = "the participant's display is gone: it comes back by itself, or open it again";
+                let text = "the participant's display is disconnected: it reconnects by itself, or open its page again";
                 let event = Event::Display(DisplayEvent::Lost);
                 return PageEvent { event: Some(event), notice: Some((NoticeLevel::Alarm, text.to_string())) };
             }
@@ -138,7 +138,7 @@ fn answered(reply: ParticipantResponse, session: &Session) -> Option<Event> {
 /// time at which the button went down is recorded in addition.
 fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
-        let text = "the display told a button that the kitchen does not have".to_string();
+        let text = "the participant's page sent a press of a button that the kitchen does not have".to_string();
         return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
     }
     // A press that reaches the program after the freeze probe began is ignored.

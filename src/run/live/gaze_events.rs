@@ -44,7 +44,7 @@ impl GazeInput {
     pub fn complaint(&mut self, news: &TrackerMessage) -> Option<String> {
         let TrackerMessage::WrongTime(t) = news else { return None };
         let is_first = !std::mem::replace(&mut self.has_complained, true);
-        is_first.then(|| format!("gaze is refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
+        is_first.then(|| format!("gaze sample refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
     }
 
     /// The session's events for a tracker message; empty for messages that are only counted.

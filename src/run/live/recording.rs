@@ -87,7 +87,7 @@ impl Live {
         self.examine_display();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
-            let text = format!("the clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
+            let text = format!("the computer's clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
             self.model.say(NoticeLevel::Alarm, text);
         }
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);

@@ -56,7 +56,7 @@ impl CodedErrors {
             let error = codable.errors.partition_point(|&press| press < changed.press) + 1;
             let [one, other] = &consensus.raters;
             let stale = format!(
-                "{} changed the code of error {error} (press {}) after {one} and {other} settled it",
+                "{} changed the code of error {error} (press {}) after {one} and {other} had settled it",
                 changed.rater, changed.press
             );
             return Ok(CodedErrors { raters: own_codes()?, stale: Some(stale), ..CodedErrors::default() });
@@ -126,7 +126,8 @@ fn is_needed(follower: &SessionFollower, codable: &CodableErrors, coded: usize) 
 fn tied(log: &LogReader, raters: &[String]) -> FileError {
     let found = format!("complete codes of {} raters: {}", raters.len(), raters.join(", "));
     let remedy = format!(
-        "--raters with two of them, such as --raters {} {}; or a consensus of two of them (tomcom replay RECORDING --settle)",
+        "--raters with two of them, such as --raters {} {}; or a consensus of two of them (tomcom replay RECORDING \
+         --settle)",
         raters[0], raters[1]
     );
     FileError::from_finding(log.folder(), found, remedy)

@@ -32,15 +32,15 @@ pub fn describe(figures: &StudySummary) -> String {
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
-            "belief related: {related} ({}), in {} of {} errors each (whatever the aspect {}), recovery \
-             after {} s{}\n",
+            "belief related errors: {related} ({}), in {} of {} errors each ({} if a sequence may mix aspects), \
+             recovery after {} s{}\n",
             percent(totals.belief_related_share),
             count(sequences, "sequence", "sequences"),
             number(totals.mean_sequence_length),
             number(totals.mean_sequence_length_any_aspect),
             number(totals.mean_recovery_s),
             if totals.beliefs_from == Some(BeliefSource::Estimate) {
-                "; by the assistant's estimate alone"
+                "; beliefs by the assistant's estimate alone"
             } else {
                 ""
             },
@@ -60,7 +60,8 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     if let (Some(shared), Some(episodes)) = (&figures.shared_beliefs, totals.false_belief_episodes) {
         text += &format!(
-            "false belief episodes: {episodes}; both raters name the same false belief for {}, each another for {}, one of them alone \
+            "false belief episodes: {episodes}; both raters name the same false belief for {}, each another for {}, \
+             one of them alone \
              names one for {}\n",
             count(shared.same, "error", "errors"),
             count(shared.differing, "error", "errors"),
@@ -69,10 +70,13 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     for (raters, trials) in &figures.consensus {
         let raters = raters.replace('+', " and ");
-        text += &format!("codes: consensus of {raters} in {}\n", count(*trials, "trial", "trials"));
+        text += &format!("codes of errors: consensus of {raters} in {}\n", count(*trials, "trial", "trials"));
     }
     for one in &figures.stale_consensus {
-        text += &format!("stale consensus, not used: {}: {}; settle it again\n", one.recording, one.reason);
+        text += &format!(
+            "stale consensus of raters, not used: {}: {}; settle these errors again\n",
+            one.recording, one.reason
+        );
     }
     if figures.ended.keys().any(|reason| *reason != TrialEndReason::Presses) {
         let ended: Vec<String> =
@@ -85,7 +89,7 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     for one in &figures.conditions {
         text += &format!(
-            "  {:<14}{:>4} trials, errors {} of the human's presses, {} per sequence, {} s per order\n",
+            "  {:<14}{:>4} trials, errors in {} of the human's presses, {} errors per sequence, {} s per order\n",
             one.condition.name(),
             one.trials,
             percent(one.totals.error_rate_human),
@@ -98,7 +102,8 @@ pub fn describe(figures: &StudySummary) -> String {
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
-            "concepts, {}, false beliefs by {}: belief related errors prevented, by signals per 100 presses of the human\n{:<12}{}{:>8}\n",
+            "concepts, {}, false beliefs by {}: belief related errors prevented, by signals per 100 presses of the \
+             human\n{:<12}{}{:>8}\n",
             count(figures.roc_trials, "unassisted trial", "unassisted trials"),
             figures.roc_beliefs_from.map_or("unknown sources", BeliefSource::words),
             "",
@@ -110,7 +115,7 @@ pub fn describe(figures: &StudySummary) -> String {
         for roc in &figures.roc {
             text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), shares(&roc.at_equal_signals), number(roc.auc));
         }
-        text += "share of useless ones among these signals\n";
+        text += "share of useless signals among these signals\n";
         for roc in &figures.roc {
             text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
@@ -119,13 +124,13 @@ pub fn describe(figures: &StudySummary) -> String {
     text += &of_live(&figures.live);
     let compared = [
         ("wizard and ToM-Com", &figures.similarity),
-        ("not part of it, a wizard who saw the recommendations", &figures.similarity_with_advice),
+        ("not part of this, a wizard who saw the recommendations", &figures.similarity_with_advice),
     ];
     for (who, found) in compared {
         text += &found.as_ref().map_or(String::new(), |found| of_similarity(who, found));
     }
     for one in &figures.left_out {
-        text += &format!("left out: {}: {}\n", one.recording, one.reason);
+        text += &format!("left out of the analysis: {}: {}\n", one.recording, one.reason);
     }
     text
 }
@@ -141,7 +146,8 @@ fn of_live(arms: &[LiveStudyArm]) -> String {
     for arm in arms {
         let name = arm.arm.parameter.map_or(arm.arm.concept.to_string(), |at| format!("{} {at}", arm.arm.concept));
         text += &format!(
-            "  {name:<14}{} errors, {} per sequence, {} orders ({} a minute), {} signals ({} useless); prevented {} (offline {})\n",
+            "  {name:<14}{} errors, {} per sequence, {} orders ({} a minute), {} signals ({} useless); errors \
+             prevented {} (offline {})\n",
             number(arm.belief_related_per_100),
             number(arm.mean_sequence_length),
             arm.orders,
@@ -161,7 +167,8 @@ fn of_similarity(who: &str, found: &Similarity) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));
     format!(
-        "{who}: {} of {} signals of the wizard matched, precision {}, kappa {}\n  recall of the same signal {}, of the same kind \
+        "{who}: {} of {} signals of the wizard matched, precision {}, kappa {}\n  recall of the same signal {}, of \
+         the same kind \
          {}, of any signal then {}; the paper's 74 % is not defined further\n",
         found.matched,
         found.of_n,
@@ -215,7 +222,7 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
     for one in &found.contrasts {
         let [low, high] = one.interval;
         text += &format!(
-            "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected: {}\n",
+            "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected by Holm: {}\n",
             one.arm.name(),
             one.against.name(),
             one.ratio,
@@ -228,7 +235,7 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
     for one in &found.non_inferiority {
         let verdict = if one.holds { "not worse than" } else { "not shown to be not worse than" };
         text += &format!(
-            "  {} is {verdict} {}: upper end {:.2}, margin {:.2}\n",
+            "  {} is {verdict} {}: upper end of the ratio {:.2}, margin {:.2}\n",
             one.arm.name(),
             one.against.name(),
             one.upper,

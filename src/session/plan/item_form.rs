@@ -129,19 +129,19 @@ impl<'a> AnswerFormat<'a> {
                 unless((least..=most).contains(&number), "the number is out of the item's range")
             }
             (AnswerFormat::Text { length }, AnswerValue::Text(text)) => {
-                unless(!text.trim().is_empty(), "there are no words in it")?;
-                unless(!text.chars().any(char::is_control), "there is a sign in it that is no letter")?;
-                unless(text.chars().count() <= *length as usize, "it is longer than the item allows")
+                unless(!text.trim().is_empty(), "the answer has no words")?;
+                unless(!text.chars().any(char::is_control), "the answer has a sign that cannot be typed")?;
+                unless(text.chars().count() <= *length as usize, "the answer is longer than the item allows")
             }
             (AnswerFormat::Choice { options, several: false }, AnswerValue::Text(id)) => {
-                unless(is_option(options, id), "the item has no such option")
+                unless(is_option(options, id), "the item has no option with this name")
             }
             (AnswerFormat::Choice { options, several: true }, AnswerValue::Options(ids)) => {
-                unless(ids.iter().all(|id| is_option(options, id)), "the item has no such option")?;
+                unless(ids.iter().all(|id| is_option(options, id)), "the item has no option with this name")?;
                 let twice = |index: usize| ids[..index].contains(&ids[index]);
-                unless(!(1..ids.len()).any(twice), "an option is chosen twice")
+                unless(!(1..ids.len()).any(twice), "the answer has an option twice")
             }
-            _ => Err("the item is answered in another way"),
+            _ => Err("the item takes answers of another kind"),
         }
     }
 

@@ -60,7 +60,8 @@ pub struct TutorialStep {
     /// For the kinds `press` and `order`: the human's buttons, in the order in which the participant has to press them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
-    /// For the kind `order`, for a signal that shows a recipe, and for a text that explains orders: the ordered dish.
+    /// For the kind `order`, for a signal that shows a recipe, and for a text that explains orders: name of the ordered
+    /// dish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dish: Option<String>,
     /// For the kind `signal`: the highlighted location; without a location, the signal shows the recipe of `dish`.

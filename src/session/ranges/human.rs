@@ -9,31 +9,31 @@ const TO_65536: [f64; 2] = [1.0, 65_536.0];
 const BELOW_45: [f64; 2] = [ABOVE_0[0], 44.999_999];
 /// Range of rates of looks (how often people look at a location), per second.
 const LOOKS: [f64; 2] = [0.0, 100.0];
-const FEW_LOOKS: &str = "eyes look at a few places a second";
-const CHANCE: &str = "it is a probability";
-/// Reason for the bounds of probabilities that must be neither 0 nor 1, shown with an error.
-const UNSURE: &str = "certainty could not be corrected by any observation";
-const PRECISION: &str = "less is no belief, more a certain one";
-const DRAWS: &str = "more take seconds to minutes a press";
+const FEW_LOOKS: &str = "eyes look at a few places in a second";
+const CHANCE: &str = "the setting is a probability";
+/// Reason for the bounds of probabilities that must be neither 0 nor 1.
+const UNSURE: &str = "a certain belief could not be corrected by any observation";
+const PRECISION: &str = "with a lower precision there is no belief, with a higher one the belief is certain";
+const DRAWS: &str = "larger samples take seconds to minutes for each press";
 
 pub(super) const RANGES: [NumberRange; 38] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
-    NumberRange::real("human.prior.recipe_look_alike", [0.0, 1.0], "", "it is a share"),
+    NumberRange::real("human.prior.recipe_look_alike", [0.0, 1.0], "", "the setting is a share from 0 to 1"),
     NumberRange::real("human.prior.recipe_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real(
         "human.perception.reading_rate_hz",
         [0.01, 1_000.0],
         "per second",
-        "less reads nothing, more everything at once",
+        "at a lower rate nothing is read, at a higher one everything at once",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
         "human.perception.radius_deg",
         [0.1, 40.0],
         "degrees",
-        "from the fovea to the whole field of view",
+        "radii from the fovea to the whole field of view",
     )
     .recorded(BELOW_45),
     NumberRange::real(
@@ -45,11 +45,21 @@ pub(super) const RANGES: [NumberRange; 38] = [
     .recorded(ABOVE_0),
     NumberRange::real("human.perception.look_alike", [0.0, 1.0], "", CHANCE),
     NumberRange::real("human.perception.anything", [0.0, 1.0], "", CHANCE),
-    NumberRange::real("human.perception.min_confidence", [0.0, 1.0], "", "confidence is from 0 to 1"),
-    NumberRange::real("human.perception.history_s", [0.01, 60.0], "s", "gaze that comes later tells nothing of now")
-        .recorded(ABOVE_0),
-    NumberRange::real("human.perception.max_sample_s", [0.001, 10.0], "s", "trackers send 1 to 1000 samples a second")
-        .recorded(ABOVE_0),
+    NumberRange::real("human.perception.min_confidence", [0.0, 1.0], "", "gaze confidence is from 0 to 1"),
+    NumberRange::real(
+        "human.perception.history_s",
+        [0.01, 60.0],
+        "s",
+        "gaze older than this tells nothing about the present",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real(
+        "human.perception.max_sample_s",
+        [0.001, 10.0],
+        "s",
+        "eye trackers send 1 to 1000 samples a second",
+    )
+    .recorded(ABOVE_0),
     NumberRange::real(
         "human.perception.look_ends_s",
         [0.001, 60.0],
@@ -66,33 +76,38 @@ pub(super) const RANGES: [NumberRange; 38] = [
         "human.transition.recipe_half_life_s",
         [1.0, 1_000_000.0],
         "s",
-        "from forgotten at once to never",
+        "half-lives from forgotten at once to never forgotten",
     )
     .recorded(ABOVE_0),
-    NumberRange::real("human.transition.foresight", [0.0, 1.0], "", "it is a share"),
+    NumberRange::real("human.transition.foresight", [0.0, 1.0], "", "the setting is a share from 0 to 1"),
     NumberRange::real(
         "human.decision.tau",
         [0.01, 100.0],
         "per press",
-        "less presses anything, more only what is best",
+        "with a lower tau every button is pressed alike, with a higher tau only the best one",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
         "human.decision.lapse",
         [0.0001, 0.99],
         "",
-        "a person who never slips would make any slip impossible",
+        "for a person who never slips, any slip would be impossible",
     )
     .recorded(INSIDE_0_AND_1),
     NumberRange::real(
         "human.decision.lapse_anywhere",
         [0.001, 1.0],
         "",
-        "a share; without any, some presses would be impossible",
+        "the setting is a share of slips; with 0, some presses would be impossible",
     )
     .recorded(ABOVE_0),
-    NumberRange::real("human.decision.wait_cost", [0.0, 1_000.0], "presses", "with the most, nobody ever waits")
-        .recorded(NOT_NEGATIVE),
+    NumberRange::real(
+        "human.decision.wait_cost",
+        [0.0, 1_000.0],
+        "presses",
+        "with the largest cost of waiting, nobody ever waits",
+    )
+    .recorded(NOT_NEGATIVE),
     NumberRange::whole("human.decision.cases", [1.0, 4_096.0], "worlds", DRAWS).recorded(TO_65536),
     NumberRange::real("human.signal.noticed", [0.0, 1.0], "", CHANCE),
     NumberRange::real("human.signal.highlight_noticed", [0.0, 1.0], "", CHANCE),
@@ -100,29 +115,34 @@ pub(super) const RANGES: [NumberRange; 38] = [
         "human.signal.delay_s",
         [0.0, 60.0],
         "s",
-        "a signal is read within seconds; 0: it is believed at once",
+        "a signal is read within seconds; with 0 the signal is believed at once",
     ),
     NumberRange::real(
         "human.signal.reading_rate_hz",
         [0.01, 1_000.0],
         "per second",
-        "less reads nothing, more everything at once",
+        "at a lower rate nothing is read, at a higher one everything at once",
     ),
     NumberRange::real("human.signal.misread", [0.0, 1.0], "", CHANCE),
     NumberRange::real(
         "human.signal.noticed_precision",
         [0.0, 10_000.0],
         "signals",
-        "with the most, nothing is learned in a trial; 0: nothing at all",
+        "with the largest number nothing is learned in a trial; with 0 nothing at all",
     ),
-    NumberRange::real("human.signal.follows", [0.0, 0.999], "", "with 1, no press would have another reason"),
+    NumberRange::real(
+        "human.signal.follows",
+        [0.0, 0.999],
+        "",
+        "with 1, no press could have another reason than the proposal",
+    ),
     NumberRange::whole("human.inference.beliefs", [1.0, 2_048.0], "samples", DRAWS).recorded(TO_65536),
     NumberRange::whole("human.inference.states", [1.0, 128.0], "states", DRAWS).recorded([1.0, 256.0]),
     NumberRange::real(
         "human.inference.min_effective",
         [0.01, 2_048.0],
         "samples",
-        "no more than the samples that there are",
+        "the effective number of samples cannot be above the number of samples",
     )
     .recorded(ABOVE_0),
     NumberRange::whole("human.inference.max_beliefs", [1.0, 2_048.0], "samples", DRAWS).recorded(TO_65536),

@@ -3,19 +3,24 @@
 use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
 
 const SECONDS: &str = "s";
-const CHANCE: &str = "it is a probability";
+const CHANCE: &str = "the setting is a probability";
 const LATE: &str = "a wizard who takes longer cannot help";
 
 /// Range of a probability that differs between people: its odds are drawn for each person, so 0 and 1 are not allowed.
 const fn chance(path: &'static str) -> NumberRange {
-    let reason = "a probability; its odds are drawn, so neither 0 nor 1";
+    let reason = "the setting is a probability whose odds are drawn for each person, so neither 0 nor 1";
     NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
 }
 
 /// Range of a probability that either differs between people, or is 0 for everybody.
 const fn rare_chance(path: &'static str) -> NumberRange {
-    NumberRange::real(path, [0.0, 0.999_999], "", "a probability; its odds are drawn, so not 1; 0: nobody does")
-        .recorded([0.0, INSIDE_0_AND_1[1]])
+    NumberRange::real(
+        path,
+        [0.0, 0.999_999],
+        "",
+        "the setting is a probability whose odds are drawn for each person, so not 1; with 0 nobody does this",
+    )
+    .recorded([0.0, INSIDE_0_AND_1[1]])
 }
 
 pub(super) const RANGES: [NumberRange; 60] = [
@@ -50,13 +55,13 @@ pub(super) const RANGES: [NumberRange; 60] = [
         "participant.population.answer_s.median",
         [0.1, 60.0],
         SECONDS,
-        "a probe lasts less than a minute",
+        "an answer to a probe takes less than a minute",
     ),
     NumberRange::real(
         "participant.population.depth.median",
         [1.0, 10.0],
         "presses",
-        "drawn depths are rounded to 2 to 5",
+        "drawn planning depths are rounded to 2 to 5 presses",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
@@ -70,21 +75,21 @@ pub(super) const RANGES: [NumberRange; 60] = [
         "participant.population.watches_robot.median",
         [0.001, 1_000.0],
         "times a place of the next press",
-        "from not at all to nothing else",
+        "from a robot that is not watched at all to one that alone is watched",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
         "participant.population.fixation_s.median",
         [0.02, 10.0],
         SECONDS,
-        "eyes cannot be quicker, and do not rest longer",
+        "fixations cannot be shorter, and eyes do not rest longer",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
         "participant.population.half_life_s.median",
         [1.0, 1_000_000.0],
         SECONDS,
-        "from forgotten at once to never",
+        "half-lives from forgotten at once to never forgotten",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
@@ -94,33 +99,33 @@ pub(super) const RANGES: [NumberRange; 60] = [
         "from never to once a second",
     )
     .recorded(ABOVE_0),
-    NumberRange::real("participant.population.patience_s.median", [0.1, 3_600.0], SECONDS, "from none to endless")
+    NumberRange::real("participant.population.patience_s.median", [0.1, 3_600.0], SECONDS, "from no time to endless")
         .recorded(ABOVE_0),
-    NumberRange::real("participant.population.commitment_s.median", [0.1, 3_600.0], SECONDS, "from none to endless")
+    NumberRange::real("participant.population.commitment_s.median", [0.1, 3_600.0], SECONDS, "from no time to endless")
         .recorded(ABOVE_0),
     NumberRange::real(
         "participant.population.*.sigma",
         [0.0, 2.0],
         "",
-        "beyond, hardly anybody would be like anybody else",
+        "with a larger spread, hardly anybody would be like anybody else",
     ),
     NumberRange::real(
         "participant.population.press_jitter",
         [0.0, 2.0],
         "",
-        "beyond, presses take anything from no time to minutes",
+        "with a larger jitter, presses take anything from no time to minutes",
     ),
     NumberRange::real(
         "participant.population.novice_slowdown",
         [0.0, 2.0],
         "",
-        "with the most, first presses take three times as long",
+        "with the largest slowdown, first presses take three times as long",
     ),
     NumberRange::real(
         "participant.population.practice_presses",
         [0.01, 100_000.0],
         "presses",
-        "from practised at once to never",
+        "from people who are practised at once to people who never are",
     )
     .recorded(ABOVE_0),
     NumberRange::real("participant.population.notices_slip", [0.0, 1.0], "", CHANCE),
@@ -128,14 +133,14 @@ pub(super) const RANGES: [NumberRange; 60] = [
         "participant.population.insists",
         [0.0, 0.99],
         "",
-        "it is a probability, and with 1 nobody would ever stop",
+        "the setting is a probability, and with 1 nobody would ever stop",
     )
     .recorded([0.0, INSIDE_0_AND_1[1]]),
     NumberRange::real(
         "participant.population.confuses_look_alikes",
         [0.001, 1_000.0],
         "times another topping",
-        "from never to always",
+        "confusions from never to always",
     )
     .recorded(ABOVE_0),
     NumberRange::real(
@@ -145,26 +150,41 @@ pub(super) const RANGES: [NumberRange; 60] = [
         "a signal that is read later is no help",
     )
     .recorded(NOT_NEGATIVE),
-    NumberRange::real("participant.population.reads_signal_s", [0.0, 60.0], SECONDS, "nobody reads one for longer")
-        .recorded(NOT_NEGATIVE),
-    NumberRange::real("participant.population.resumes_after_s", [0.0, 60.0], SECONDS, "nobody thinks for longer")
-        .recorded(NOT_NEGATIVE),
+    NumberRange::real(
+        "participant.population.reads_signal_s",
+        [0.0, 60.0],
+        SECONDS,
+        "nobody reads a signal for longer",
+    )
+    .recorded(NOT_NEGATIVE),
+    NumberRange::real(
+        "participant.population.resumes_after_s",
+        [0.0, 60.0],
+        SECONDS,
+        "nobody thinks for longer before going on",
+    )
+    .recorded(NOT_NEGATIVE),
     NumberRange::real("participant.population.misreads_signal", [0.0, 1.0], "", CHANCE),
-    NumberRange::real("participant.population.recipes_gained", [0.01, 100.0], "", "odds grow by it with every trial")
-        .recorded(ABOVE_0),
-    NumberRange::real("participant.population.practice_kept", [0.0, 1.0], "", "it is a share"),
+    NumberRange::real(
+        "participant.population.recipes_gained",
+        [0.01, 100.0],
+        "",
+        "the odds of knowing a recipe grow by this factor with every trial",
+    )
+    .recorded(ABOVE_0),
+    NumberRange::real("participant.population.practice_kept", [0.0, 1.0], "", "the setting is a share from 0 to 1"),
     NumberRange::real(
         "participant.population.tracker_offset_m",
         [0.0, 2.0],
         "m",
-        "with more, gaze is not on the display",
+        "with a larger offset, gaze is not on the display",
     ),
     NumberRange::real("wizard.reaction_s", [0.0, 60.0], SECONDS, LATE),
     NumberRange::real(
         "wizard.reaction_spread",
         [0.0, 2.0],
         "",
-        "beyond, a reaction takes anything from no time to minutes",
+        "with a larger spread, a reaction takes anything from no time to minutes",
     ),
     NumberRange::real("wizard.sees_errors", [0.0, 1.0], "", CHANCE),
     NumberRange::real("wizard.sees_overlooked", [0.0, 1.0], "", CHANCE),

@@ -174,7 +174,10 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     let name = after.name();
     let agreed = settled.settled.iter().find(|(_, settled)| settled.is_agreed()).map(|(press, _)| *press);
     for (row, found) in [
-        (format!("{name},R1+R2,{},other,", agreed.expect("one")), "with another cause than both raters say"),
+        (
+            format!("{name},R1+R2,{},other,", agreed.expect("one")),
+            "with another cause than the one that both raters gave",
+        ),
         (format!("{name},R1+R3,{},other,", open[0]), "the consensus of R1 and R3"),
         (format!("{name},R1+R1,{},other,", open[0]), "the rater \"R1+R1\""),
     ] {
@@ -192,7 +195,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     let found = stale.recordings[0].consensus.clone().expect("a consensus");
     assert_eq!((found.open, found.stale.len()), (1, 1));
     assert_eq!((found.stale[0].press, found.stale[0].rater.as_str()), (open[0], "R2"));
-    assert!(describe(&stale).contains("stale: R2 changed the code of error"), "{}", describe(&stale));
+    assert!(describe(&stale).contains("stale code: R2 changed the code of error"), "{}", describe(&stale));
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     stage.at(1.0, begun);
     stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 1 }));
     check_snapshot("console", "calibration_target_120x40", stage.screen((120, 40)));
-    assert!(stage.screen((80, 24)).contains("look here: 2 of 5"));
+    assert!(stage.screen((80, 24)).contains("look here: target 2 of 5"));
     let target = |samples, accuracy_deg| TargetAccuracy { samples, accuracy_deg };
     let found = GazeAccuracy {
         accuracy_deg: 2.31,
@@ -35,7 +35,9 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     }
     stage.wait(1.0);
     // Letters choose, and only enter takes the gaze.
-    for (letter, marked) in [('u', "enter    u  accept without"), ('o', "enter    o  accept with")] {
+    for (letter, marked) in
+        [('u', "enter    u  accept the gaze without"), ('o', "enter    o  accept the gaze with its")]
+    {
         assert_eq!(stage.key(KeyCode::Char(letter)), None);
         assert!(stage.screen((80, 24)).contains(marked), "{}", stage.screen((80, 24)));
     }
@@ -65,7 +67,7 @@ fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
     stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 4 }));
     stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
     stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: None }));
-    assert!(stage.screen((120, 40)).contains("too few usable samples"));
+    assert!(stage.screen((120, 40)).contains("too few usable gaze samples"));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('o')), None);
     for key in [KeyCode::Char('r'), KeyCode::Enter] {

@@ -121,7 +121,7 @@ fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
     stage.wait(1.0);
     stage.click("switch");
     stage.click("1-5");
-    assert!(matches!(&stage.model.dialog, Some(Dialog::Palette(cursor)) if cursor.filter == "markers"));
+    assert!(matches!(&stage.model.dialog, Some(Dialog::Palette(cursor)) if cursor.filter == "notes"));
     stage.key(KeyCode::Down);
     stage.wait(1.0);
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "overlooked a change".to_string() }));

@@ -58,7 +58,8 @@ fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
     let stage = rater(codes(&[(0, ErrorCauseCode::Slip), (100, belief()), (200, ErrorCauseCode::Buttons)]));
     for size in SIZES {
         let screen = stage.screen(size);
-        for name in ["slip", "race", "other cause", "mixed up buttons", "wrong about", "h human hand", "3 of 12 coded"]
+        for name in
+            ["slip", "race", "other cause", "mixed up buttons", "wrong about", "h human hand", "3/12 errors coded"]
         {
             assert!(screen.contains(name), "{name} at {size:?}\n{screen}");
         }
@@ -106,7 +107,7 @@ fn codes_are_undone_and_redone_step_by_step() {
     assert_eq!(stage.key(KeyCode::Char('2')), Some(ConsoleCommand::Code { press }));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('c')), Some(ConsoleCommand::Code { press }));
-    assert_eq!(coding(&stage).progress(), "2 of 12 coded, 1 since opening");
+    assert_eq!(coding(&stage).progress(), "2/12 errors coded, 1 since opening");
     assert_eq!(coding(&stage).codes.0[&press], belief());
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('u')), Some(ConsoleCommand::Code { press }));
@@ -116,7 +117,7 @@ fn codes_are_undone_and_redone_step_by_step() {
     assert!(!coding(&stage).codes.0.contains_key(&press));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('u')), None);
-    assert!(stage.notice().contains("nothing to undo"), "what was there at the opening stays");
+    assert!(stage.notice().contains("no code was changed since"), "what was there at the opening stays");
     for _ in 0..2 {
         stage.wait(1.0);
         stage.control('y');
@@ -124,7 +125,7 @@ fn codes_are_undone_and_redone_step_by_step() {
     assert_eq!(coding(&stage).codes.0[&press], belief());
     stage.wait(1.0);
     stage.key(KeyCode::Delete);
-    assert_eq!(coding(&stage).progress(), "1 of 12 coded");
+    assert_eq!(coding(&stage).progress(), "1/12 errors coded");
 }
 
 #[test]
@@ -169,7 +170,7 @@ fn two_raters_settle_with_both_codes_in_view() {
     let party = CodingRaters::Pair { consensus: RaterConsensus::new("R1", "R2"), own: [one, other] };
     let mut stage = rated(party, codes(&[(0, ErrorCauseCode::Slip)]));
     stage.key(KeyCode::Char('4'));
-    assert_eq!(coding(&stage).progress(), "2 of 12 settled, 1 since opening");
+    assert_eq!(coding(&stage).progress(), "2/12 errors settled, 1 since opening");
     for size in SIZES {
         let screen = stage.screen(size);
         assert!(screen.contains("R1: slip") && screen.contains("R2: wrong about cutting board"), "{screen}");
@@ -182,7 +183,7 @@ fn the_last_code_says_what_comes_next() {
     let all = RaterCodes((0..12).map(|index| (100 * index, ErrorCauseCode::Slip)).collect());
     let mut stage = rater(all);
     for size in SIZES {
-        assert!(stage.screen(size).contains("all 12 coded; next: a second rater"), "{}", stage.screen(size));
+        assert!(stage.screen(size).contains("all 12 errors coded; next:"), "{}", stage.screen(size));
     }
     if let Some(coding) = &mut stage.model.coding {
         coding.finished.push("R0".to_string());

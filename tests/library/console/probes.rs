@@ -252,9 +252,9 @@ fn the_head_line_and_the_preflight_checks_tell_of_probes() {
         let check = all.into_iter().find(|check| check.name == "probes");
         check.map(|check| (check.verdict, check.found))
     };
-    let found = |where_: &str| format!("4 in 15 min, on the {where_}");
-    assert_eq!(probes(&probed("sushi", true, false)), Some((PreflightVerdict::Ok, found("display"))));
-    let lost = Some((PreflightVerdict::Warning, found("console: participant's page not connected")));
+    let found = |where_: &str| format!("4 freeze probes in 15 min, {where_}");
+    assert_eq!(probes(&probed("sushi", true, false)), Some((PreflightVerdict::Ok, found("answered on the display"))));
+    let lost = Some((PreflightVerdict::Warning, found("participant's page missing")));
     assert_eq!(probes(&probed("sushi", false, false)), lost);
     assert_eq!(probes(&Stage::new("sushi", ParticipantKind::Display)), None);
 }

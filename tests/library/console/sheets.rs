@@ -43,7 +43,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
         let mut stage = planned(0, false);
         stage.model.size = size;
         let screen = stage.screen(size);
-        for text in ["INSTRUCTION", "P01 familiarisation", "Ask for questions.", "this step is done"] {
+        for text in ["INSTRUCTION", "P01 familiarisation", "Ask for questions.", "tick this step as done"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
         let mut stage = planned(2, true);
@@ -52,7 +52,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
         stage.at(0.0, Event::TrialStarted);
         assert!(stage.screen(size).contains("P01 trial 2/2 wizard"), "{}", stage.screen(size));
         stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
-        assert!(stage.screen(size).contains(". next: questionnaire"), "{}", stage.screen(size));
+        assert!(stage.screen(size).contains(". next phase: questionnaire"), "{}", stage.screen(size));
         stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }));
         stage.at(
             9.0,
@@ -256,7 +256,7 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
         }
         stage.model.size = size;
         let screen = stage.screen(size);
-        for text in ["Tutorial of the participant", "wrong answers: 1", "0 skips the rest"] {
+        for text in ["Tutorial of the participant", "wrong answers: 1", "0 ends the tutorial"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
         check_snapshot("console", format!("tutorial_{}x{}", size.0, size.1), screen);

@@ -30,9 +30,9 @@ fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     };
     let long = "missed, with 2 errors: recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri; right would have been: recipe of order 1";
     let feedback = vec![
-        said(4.0, NoticeLevel::Done, "highlight plate: told already"),
+        said(4.0, NoticeLevel::Done, "highlight plate: a signal already told this"),
         said(9.0, NoticeLevel::Refused, long),
-        said(12.0, NoticeLevel::Done, "recipe of order 1: hit: believed wrong for 3.1 s"),
+        said(12.0, NoticeLevel::Done, "recipe of order 1: hit: the belief has been false for 3.1 s"),
     ];
     stage.model.lesson = Some(TrainingPanel { feedback, begun: true, ..lesson });
     for size in SIZES {

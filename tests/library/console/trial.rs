@@ -43,7 +43,7 @@ fn the_trial_is_started_paused_and_ended_by_keys() {
 fn a_trial_is_aborted_with_a_reason_and_done_again() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     assert_eq!(stage.control('n'), None);
-    assert!(stage.notice().contains("abort the trial first"), "{}", stage.notice());
+    assert!(stage.notice().contains("abort the trial before you repeat it"), "{}", stage.notice());
     assert_eq!(stage.control('x'), None);
     check_snapshot("console", "abort_80x24", stage.screen((80, 24)));
     stage.key(KeyCode::Down);
@@ -83,7 +83,7 @@ fn a_trial_starts_at_once_if_all_is_ok_and_what_was_found_is_recorded() {
     stage.at(0.0, Event::TrialStarted);
     stage.wait(1.0);
     stage.control('f');
-    assert!(stage.notice().contains("started already"), "{}", stage.notice());
+    assert!(stage.notice().contains("only before the trial starts"), "{}", stage.notice());
 }
 
 #[test]

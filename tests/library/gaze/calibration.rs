@@ -23,7 +23,7 @@ fn check_calibration(engine: &mut SessionEngine, from_s: f64, accept: GazeCheckE
     while let Some((time, event)) = engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
         let now = engine.session().time;
         let refused = input(engine, now, Event::TrialStarted);
-        assert_eq!(refused.as_deref(), Some("the calibration is being checked"));
+        assert_eq!(refused.as_deref(), Some("a gaze accuracy check is running"));
         assert_eq!(input(engine, time, Event::Calibration(event)), None);
     }
     let now = engine.session().time;
@@ -110,13 +110,16 @@ fn a_check_is_refused_where_it_cannot_be() {
         engine.input(now, event).refused.unwrap_or_default()
     };
     let calibration = Event::Calibration;
-    assert!(refused(&mut engine, calibration(GazeCheckEvent::TargetsHidden)).contains("no target is shown"));
-    assert!(refused(&mut engine, calibration(GazeCheckEvent::Accepted { corrected: true })).contains("nothing was"));
+    assert!(refused(&mut engine, calibration(GazeCheckEvent::TargetsHidden)).contains("no gaze target is shown"));
+    assert!(
+        refused(&mut engine, calibration(GazeCheckEvent::Accepted { corrected: true }))
+            .contains("no gaze accuracy was")
+    );
     assert_eq!(refused(&mut engine, Event::TrialStarted), "");
     assert!(refused(&mut engine, calibration(GazeCheckEvent::begin())).contains("pause the trial first"));
     assert_eq!(refused(&mut engine, Event::TrialPaused), "");
     assert_eq!(refused(&mut engine, calibration(GazeCheckEvent::begin())), "");
-    assert!(refused(&mut engine, Event::TrialResumed).contains("being checked"));
+    assert!(refused(&mut engine, Event::TrialResumed).contains("accuracy check is running"));
     assert_eq!(refused(&mut engine, calibration(GazeCheckEvent::Dismissed)), "");
     assert_eq!(refused(&mut engine, Event::TrialResumed), "");
 }

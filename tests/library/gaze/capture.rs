@@ -335,12 +335,15 @@ fn where_only_other_surfaces_are_seen_their_names_are_told() {
         format!("{}: {}", found.found, found.remedy.unwrap_or_default())
     };
     check(TrackerEvent::Connected { device: "Pupil Capture 3.5".to_string() });
-    assert!(check(TrackerEvent::DisplayLost).starts_with("Pupil Capture 3.5, does not see \"wall\": tags in view"));
+    assert!(
+        check(TrackerEvent::DisplayLost)
+            .starts_with("Pupil Capture 3.5, does not see \"wall\": keep the display tags in view")
+    );
     let names = ["Surface 1", "table"].map(str::to_string).to_vec();
     assert_eq!(
         check(TrackerEvent::OtherSurfaces { names }),
         "Pupil Capture 3.5, sees \"Surface 1\", not \"wall\": \
-         surface = \"Surface 1\" or \"table\" under [tracker], or name it \"wall\" in Capture"
+         set surface = \"Surface 1\" or \"table\" under [tracker], or name the surface \"wall\" in Capture"
     );
     assert!(check(TrackerEvent::DisplayFound).starts_with("Pupil Capture 3.5, sees the display"));
     // After that nothing is known of other surfaces any more.

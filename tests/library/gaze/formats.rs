@@ -285,8 +285,8 @@ fn recordings_and_downloads_of_the_trackers_are_told_from_gaze_on_the_display() 
     let exported =
         format!("the table itself: {}", export.join("surfaces/gaze_positions_on_surface_wall.csv").display());
     let [neon, player, cloud] = [
-        "open it in Neon Player with the plugin Surface Tracking and export",
-        "open it in Pupil Player with the plugin Surface Tracker and export",
+        "open the recording in Neon Player with the plugin Surface Tracking and export",
+        "open the recording in Pupil Player with the plugin Surface Tracker and export",
         "Pupil Cloud's Marker Mapper: gaze.csv of its download",
     ];
     for (path, found, remedy) in [
@@ -299,7 +299,7 @@ fn recordings_and_downloads_of_the_trackers_are_told_from_gaze_on_the_display() 
         (core, "gaze.pldata: a recording of Pupil Capture", player),
         (export, "a folder with a table of gaze on the display", &exported),
         (mapper.clone(), "a folder with a table of gaze on the display", &table),
-        (archive, "an archive", "unpack it"),
+        (archive, "an archive", "unpack the archive"),
     ] {
         let error = gaze_file::read(&path, &map(), 0.0).expect_err("no gaze on the display");
         let FileError::Unfit { remedy: told, .. } = &error else { panic!("{error}") };

@@ -90,7 +90,7 @@ fn preflight_says_whose_parameters_are_in_force() {
         let checks = preflight_checks::participant(&session, SessionTime::ZERO, "c");
         checks.into_iter().find(|check| check.name == "human model").map(|check| check.found)
     };
-    assert_eq!(told(1).as_deref(), Some("parameters of P02, from human.toml"));
+    assert_eq!(told(1).as_deref(), Some("parameters of the person P02, from human.toml"));
     assert_eq!(told(0).as_deref(), Some("parameters of the population: human.toml has none of P01"));
     let (_, without) = study_with("fitted-preflight-2", "[decision]\ntau = 4.0\n");
     let session = Session::new(kitchen.clone(), without.simulated(0, 1).0, 1);

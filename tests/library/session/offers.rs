@@ -186,7 +186,7 @@ fn enter_means_what_was_read() {
         meant.unwrap_or_else(|reason| reason)
     };
     let mut engine = advised(|_| ());
-    assert_eq!(target(&engine, 0.5), "nothing is on offer");
+    assert_eq!(target(&engine, 0.5), "no signal is on offer");
     changes(&mut engine, &[pot(1.0, 1.0)]);
     assert!(target(&engine, 1.2).contains("just appeared"), "nobody has read it");
     assert_eq!(target(&engine, 1.3), "cooking_pot");
@@ -199,7 +199,7 @@ fn enter_means_what_was_read() {
     assert_eq!(target(&engine, 5.3), "counter");
     changes(&mut engine, &[pot(7.0, -3.0), nets(7.1, &[(highlight("counter"), -3.0)])]);
     assert_eq!(target(&engine, 8.4), "counter");
-    assert_eq!(target(&engine, 8.5), "nothing is on offer", "too long ago");
+    assert_eq!(target(&engine, 8.5), "no signal is on offer", "too long ago");
 }
 
 #[test]
@@ -208,7 +208,10 @@ fn a_taken_offer_is_named_by_its_signal_and_is_not_sent_twice() {
     changes(&mut engine, &[pot(1.0, 1.0)]);
     let (seq, event) = offers::enter(engine.session(), at(1.8)).map(|(offer, event)| (offer.seq, event)).expect("one");
     assert_eq!(changes(&mut engine, &[(1.8, event.clone())]), expected(&[("taken", 1.8)]));
-    assert_eq!(offers::enter(engine.session(), at(2.5)).map(|_| ()), Err("the offer was taken already".to_string()));
+    assert_eq!(
+        offers::enter(engine.session(), at(2.5)).map(|_| ()),
+        Err("the signal on offer was sent already".to_string())
+    );
     let last = engine.session().offers.last().expect("it closed");
     assert_eq!((last.offer.seq, last.reason), (seq, OfferCloseReason::Taken));
     let again = engine.input(at(8.0), event);
@@ -216,7 +219,7 @@ fn a_taken_offer_is_named_by_its_signal_and_is_not_sent_twice() {
     let mut unknown = advised(|_| ());
     let (signal, by) = (highlight("counter"), Sender::Wizard);
     let refused = unknown.input(at(1.0), Event::SignalShown { by, signal, accepted: None, offer: Some(3) }).refused;
-    assert_eq!(refused.as_deref(), Some("that was not the last offer"));
+    assert_eq!(refused.as_deref(), Some("the event names an offer that was not the last one"));
 }
 
 #[test]

@@ -122,7 +122,7 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
     assert!(refused(&mut engine, 22.0, answer(&choice, Some(2))).contains("confidence"), "it is not asked");
     assert!(refused(&mut engine, 22.0, requested()).contains("already"));
     let corrected = Event::KitchenCorrected { location: "counter".to_string(), content: "nori".to_string() };
-    assert!(refused(&mut engine, 22.0, corrected).contains("after the probe"));
+    assert!(refused(&mut engine, 22.0, corrected).contains("after the freeze probe"));
     let unknown =
         probe(ProbeEvent::Answered { probe: 1, question: 1, answer: None, confidence: None, on: AnswerEntry::Display });
     check(&mut engine, &[(23.0, unknown)]);
@@ -137,7 +137,7 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
 fn a_pause_in_a_probe_stops_its_time_and_the_trial_goes_on_after_the_probe_only() {
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, requested())]);
-    assert!(refused(&mut engine, 21.5, Event::TrialResumed).contains("after the probe"));
+    assert!(refused(&mut engine, 21.5, Event::TrialResumed).contains("after the freeze probe"));
     check(&mut engine, &[(22.0, Event::TrialPaused)]);
     assert!(refused(&mut engine, 30.0, Event::TrialPaused).contains("no trial runs"));
     let answer = answered(&engine, 1);

@@ -76,7 +76,9 @@ fn a_skipped_press_is_given_up_and_not_decided_for_again_at_once() {
         assert_eq!(intention(&lonely), Some(only));
     }
     check(&mut lonely, &[(6.0, Event::RobotStopped)]);
-    assert!(refused(&mut lonely, 6.5, by_wizard(|by| Event::RobotSkipped { by })).contains("no press"));
+    assert!(
+        refused(&mut lonely, 6.5, by_wizard(|by| Event::RobotSkipped { by })).contains("not on its way to a press")
+    );
 }
 
 #[test]
@@ -111,11 +113,11 @@ fn a_correction_is_a_change_by_nobody() {
     check(&mut engine, &[(1.0, corrected("counter", "empty")), (1.1, corrected("human_hand", "rice raw"))]);
     assert_eq!(engine.session().presses, [0, 0]);
     let cases = [
-        ("human_hand", "rice raw", "what the program thinks"),
+        ("human_hand", "rice raw", "the program assumes this content already"),
         ("order_1", "empty", "orders"),
-        ("cellar", "nori", "no such location"),
-        ("counter", "gold", "no such content"),
-        ("rolling_mat", "salmon raw", "cannot be there"),
+        ("cellar", "nori", "no location with this name"),
+        ("counter", "gold", "no content with this name"),
+        ("rolling_mat", "salmon raw", "cannot be at this place"),
     ];
     for (location, content, reason) in cases {
         let told = refused(&mut engine, 1.2, corrected(location, content));

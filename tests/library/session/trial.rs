@@ -138,8 +138,8 @@ fn an_aborted_trial_is_over_says_why_and_can_be_excluded_and_included() {
     let aborted = || Event::TrialAborted { reason: "technical failure".to_string() };
     let excluded = || Event::TrialExcluded { reason: "interrupted".to_string() };
     let mut engine = engine(|_| ());
-    assert!(refused(&mut engine, 0.0, aborted()).contains("no trial to abort"));
-    assert!(refused(&mut engine, 0.0, excluded()).contains("no trial to exclude"));
+    assert!(refused(&mut engine, 0.0, aborted()).contains("no trial runs that could be aborted"));
+    assert!(refused(&mut engine, 0.0, excluded()).contains("no trial has begun that could be excluded"));
     check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, excluded()), (2.0, Event::TrialIncluded)]);
     let unexplained = Event::TrialEnded { reason: TrialEndReason::Aborted };
     assert!(refused(&mut engine, 2.5, unexplained).contains("needs a reason"));

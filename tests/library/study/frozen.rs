@@ -50,8 +50,8 @@ fn a_frozen_plan_is_read_as_it_was_written_and_never_written_over() {
     assert!(again.contains("a file that is there already"), "{again}");
     assert_eq!(fs::read_to_string(&file).expect("text"), text);
     for (edited, says) in [
-        (text.replacen("\"margin\": 1.25", "\"margin\": 1.35", 1), "so it was changed"),
-        (text.replacen(&digest[..8], "00000000", 1), "so it was changed"),
+        (text.replacen("\"margin\": 1.25", "\"margin\": 1.35", 1), "it was changed after"),
+        (text.replacen(&digest[..8], "00000000", 1), "it was changed after"),
         (text.replacen("tomcom frozen", "my frozen", 1), "no frozen plan"),
         (String::new(), "no frozen plan"),
     ] {

@@ -236,7 +236,11 @@ fn a_pools_file_is_read_as_it_was_written_and_damage_is_told_with_its_line() {
     for (what, edited, says) in [
         ("cut", lines[..20].join("\n"), "without all trials"),
         ("twice", [&lines[..], &lines[1..6]].concat().join("\n"), "participant 0 after 11"),
-        ("no number", text.replacen("\"errors\":", "\"errors\":\"many\",\"x\":", 1), "a line that is none of a pool"),
+        (
+            "no number",
+            text.replacen("\"errors\":", "\"errors\":\"many\",\"x\":", 1),
+            "a line that is not a line of a pool",
+        ),
         ("future", text.replacen("{\"pool\":1", "{\"pool\":9", 1), "a pool of format 9"),
         ("empty", String::new(), "an empty file"),
     ] {

@@ -298,12 +298,12 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     assert_eq!(figures.consensus, [("anna+ben".to_string(), 1)].into());
     let agreement = figures.raters.as_ref().expect("the raters' own agreement");
     assert_eq!((agreement.errors, agreement.same_cause), (errors.len() as u64, 0));
-    assert!(describe(&figures).contains("codes: consensus of anna and ben in 1 trial"));
+    assert!(describe(&figures).contains("codes of errors: consensus of anna and ben in 1 trial"));
 
     rater_codes::write(&folder, "ben", &all(ErrorCauseCode::Race)).expect("a file");
     let stale = read();
     assert_eq!(basis(&stale.trial), Some((BeliefSource::Raters, 0)));
     let figures = StudySummary::from_trials(&[stale.trial], &stale.facts, 0);
     assert!(figures.stale_consensus[0].reason.starts_with("ben changed the code of error 1"));
-    assert!(describe(&figures).contains("stale consensus, not used: hand: ben changed"));
+    assert!(describe(&figures).contains("stale consensus of raters, not used: hand: ben changed"));
 }

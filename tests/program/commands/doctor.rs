@@ -27,7 +27,7 @@ fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
     }
     let told = check(&["doctor", "--out", "/proc/nowhere"], 1);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();
-    assert!(told.contains("FAILED  recordings        /proc/nowhere is not there yet, and /proc"), "{told}");
+    assert!(told.contains("FAILED  recordings        the folder /proc/nowhere is not there yet, and /proc"), "{told}");
     assert!(!told.contains("free space"), "where there is no disk, none of it is free:\n{told}");
 }
 

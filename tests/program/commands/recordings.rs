@@ -86,13 +86,18 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert_eq!(found, expected, "with the numbers that they have among all");
     let opened = check(&["compare", recordings[0], "--with", "dev", "--open", "1"], 0);
     let opened = String::from_utf8_lossy(&opened.stdout).into_owned();
-    for told in ["not said by", "believed wrong, by the estimate", "truly: ", "on the wizard's screen: "] {
+    for told in [
+        "not sent by",
+        "false beliefs, by the estimate",
+        "true contents of the kitchen: ",
+        "panels on the wizard's screen: ",
+    ] {
         assert!(opened.contains(told), "{told} in\n{opened}");
     }
-    assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("of the list of differences"));
+    assert!(complaint(&["compare", recordings[0], "--open", "999"]).contains("the number of a difference in the list"));
     assert!(complaint(&["compare", recordings[0], "--seed", "3"]).contains("--seed, with recordings"));
-    assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session"));
-    assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session"));
+    assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session file"));
+    assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session file"));
     assert!(complaint(&["compare", "tests/golden"]).contains("a folder without recordings"));
     // What is summed up counts once, whatever path leads to it.
     let [one, same] = ["tests/golden/format-1-hand.jsonl", "tests/../tests/golden/format-1-hand.jsonl"];

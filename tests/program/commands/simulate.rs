@@ -180,7 +180,7 @@ fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
         assert!(found.get(key).is_some(), "{key} in {found}");
     }
     assert!(complaint(&["fit", &session]).contains("events.jsonl"));
-    assert!(complaint(&["fit", recording, "--probes"]).contains("no answer to a probe"));
+    assert!(complaint(&["fit", recording, "--probes"]).contains("no answer to a freeze probe"));
 }
 
 #[test]
@@ -223,5 +223,5 @@ fn fit_people_writes_population_and_persons_that_a_plan_uses() {
         assert!(header["session"].get("people").is_none());
         figures(&["replay", recording, "--verify", "--format", "json"], 0);
     }
-    assert!(complaint(&["fit", recordings[0], recordings[1], "--people"]).contains("recordings of P01 alone"));
+    assert!(complaint(&["fit", recordings[0], recordings[1], "--people"]).contains("recordings of one person, P01"));
 }

@@ -39,7 +39,7 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
         assert!(told.contains(hint), "{word}: {told}");
     }
     let told = complaint(&["operate", "--listen", "0.0.0.0:50022"]);
-    assert!(told.contains("an address without a port, as 0.0.0.0;") && told.contains("[display]"), "{told}");
+    assert!(told.contains("an address without a port, such as 0.0.0.0;") && told.contains("[display]"), "{told}");
     assert!(complaint(&["operate", "--listen", "here"]).contains("an IP address of this computer"));
 }
 

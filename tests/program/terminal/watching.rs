@@ -80,7 +80,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
         ("u", "saved: code of error 2 removed"),
         ("C-y", "saved: error 2, wrong about cooking pot"),
         ("Down", "coded, 2 since opening"),
-        ("3", "not coded: error 3 is only selected"),
+        ("3", "no code given: error 3 is only selected"),
         ("Enter", "coded, 2 since opening"),
         ("3", "saved: error 3, other cause"),
         ("DC", "saved: code of error 3 removed"),
@@ -131,7 +131,7 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     assert_eq!(terminal.log(), log, "the log stays as it is");
     let told = tmux::tomcom(&["codes", name]);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();
-    assert!(told.contains("consensus of R1 and R2: 1 agreed, 1 settled"), "{told}");
+    assert!(told.contains("consensus of R1 and R2 on errors: 1 agreed, 1 settled"), "{told}");
     terminal.run(&format!("{TOMCOM} replay {name} --settle R1 R3"));
     terminal.is_whole("2");
     terminal.see("no codes of the rater R3");

@@ -136,11 +136,11 @@ fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
     let (root, out) = (env!("CARGO_MANIFEST_DIR"), terminal.folder.display());
     terminal.run(&format!("{TOMCOM} compare {root}/sessions/default.toml --with tom --out {out}/recordings"));
     terminal.see("READY");
-    terminal.see("Wizard and assistant");
+    terminal.see("Signals of wizard and assistant compared");
     terminal.start();
     // The other sees the same lanes, and writes nothing.
     beside.run(&format!("{TOMCOM} compare {} --with tom --follow", terminal.recording().display()));
-    beside.see("Wizard and assistant");
+    beside.see("Signals of wizard and assistant compared");
     terminal.key_logs("q", "show_recipe");
     for one in [&terminal, &beside] {
         one.see("recall");
@@ -176,7 +176,7 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         terminal.see("0 hit, 0 missed, 0 wrong");
         terminal.see("A hit is the first signal");
         terminal.key(".");
-        terminal.see("it runs");
+        terminal.see("the recording plays");
         // The orders come with the trial's first moment.
         terminal.see("0:01");
         for key in ["q", "c", "p"] {

@@ -93,9 +93,7 @@ pub(super) fn write(
         ProbeAnswerer::Display => return refuse(model, "the participant answers on the display"),
         ProbeAnswerer::Console => {}
     }
-    let Some((index, question)) = open.question() else {
-        return refuse(model, "the probe asks no question now");
-    };
+    let Some((index, question)) = open.question() else { return refuse(model, "the probe asks no question now") };
     let (mut entry, choices) = (model.probe_entry.for_question(open.number, index), question.choices.len());
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
     match stroke {

@@ -17,7 +17,7 @@ use crate::kitchen::{Kitchen, KitchenChange, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::ErrorCause;
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialView};
+use crate::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs};
 use crate::measures::flags::{FlagThresholds, MOST_FALSE_FLAGS, ThresholdSource};
 use crate::mind::belief::Belief;
 use crate::mind::choice_parameters::ChoiceParameters;
@@ -50,7 +50,7 @@ impl BeliefCheck {
     /// answers to freeze probes in these trials take their place.
     pub fn from_trials(
         kitchen: &Arc<Kitchen>,
-        trials: &[TrialView],
+        trials: &[TrialBeliefs],
         thresholds: Option<FlagThresholds>,
         probes: Option<ProbeSummary>,
     ) -> BeliefCheck {
@@ -82,7 +82,7 @@ impl BeliefCheck {
 #[derive(Default)]
 pub struct PressViews {
     /// Presses of the trial so far, each with the belief estimate before the press.
-    pub trial: TrialView,
+    pub trial: TrialBeliefs,
     /// Recorded belief of the participant before the next press: probability of the true value, for each state aspect.
     held: Option<Vec<f64>>,
     before: Before,

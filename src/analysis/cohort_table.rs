@@ -12,7 +12,7 @@ use super::trial_bootstrap::interval;
 use super::trial_summary::TrialSummary;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{FalseBeliefDetection, TrialView, aspect_groups};
+use crate::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
 use crate::measures::flags::{MOST_FALSE_FLAGS, chosen_thresholds};
 use crate::mind::choice_parameters::ChoiceParameters;
 
@@ -23,9 +23,9 @@ const SEED: u64 = 1;
 #[derive(Clone, Debug, Default)]
 pub struct CohortTrials {
     /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
-    pub chosen_on: Vec<TrialView>,
+    pub chosen_on: Vec<TrialBeliefs>,
     /// The judged trials without signals: the presses of each trial, and the trial's summary.
-    pub unassisted: Vec<(TrialView, TrialSummary)>,
+    pub unassisted: Vec<(TrialBeliefs, TrialSummary)>,
     /// Summaries of the judged trials, in the same order, repeated with signals that the assistant sends by itself.
     pub assisted: Vec<TrialSummary>,
 }
@@ -82,7 +82,7 @@ impl CohortRow {
     /// Computes the robustness table's row of one cohort from the cohort's trials.
     pub fn from_trials(kitchen: &Arc<Kitchen>, name: &str, trials: &CohortTrials) -> CohortRow {
         let thresholds = chosen_thresholds(&trials.chosen_on, &aspect_groups(kitchen));
-        let (views, unassisted): (Vec<TrialView>, Vec<TrialSummary>) = trials.unassisted.iter().cloned().unzip();
+        let (views, unassisted): (Vec<TrialBeliefs>, Vec<TrialSummary>) = trials.unassisted.iter().cloned().unzip();
         let pairs: Vec<[RelatedErrors; 2]> = unassisted
             .iter()
             .zip(&trials.assisted)

@@ -13,7 +13,7 @@ use crate::measures::errors::PressJudge;
 use crate::measures::sequences::FalseBeliefTracker;
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::filter::signals_so_far::SignalOver;
+use crate::mind::filter::signals_so_far::EndedSignal;
 use crate::mind::filter::{BeliefFilter, PressEvidence};
 use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 use crate::mind::recorded_estimate::RecordedEstimate;
@@ -254,7 +254,7 @@ impl SessionFollower {
     /// samples.
     fn remember(&mut self, stamped: &TimestampedEvent) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
-        if let Some(SignalOver { location, read }) = self.filter.take_signal_over() {
+        if let Some(EndedSignal { location, read }) = self.filter.take_signal_over() {
             self.repeats.over(location, read);
         }
         match &stamped.event {
@@ -314,7 +314,7 @@ impl SessionFollower {
                 Some(ObservedEvidence::Told { location: self.session.shown.as_ref()?.location? })
             }
             Event::SignalEnded { .. } if self.session.spec.human.signal.takes_time() => {
-                Some(ObservedEvidence::SignalOver)
+                Some(ObservedEvidence::EndedSignal)
             }
             _ => None,
         }

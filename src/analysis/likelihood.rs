@@ -8,7 +8,7 @@ use super::fitting::downhill_simplex::minimise;
 use super::trial_bootstrap::interval;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
-use crate::measures::belief_detection::{BeliefsBeforePress, TrialView};
+use crate::measures::belief_detection::{BeliefsBeforePress, TrialBeliefs};
 use crate::mind::ChoiceModel;
 use crate::mind::choice_parameters::ChoiceParameters;
 
@@ -42,7 +42,7 @@ impl PressLogLikelihood {
         kitchen: &Kitchen,
         cost: &mut CostToGo,
         model: &ChoiceParameters,
-        trials: &[TrialView],
+        trials: &[TrialBeliefs],
         seed: u64,
     ) -> PressLogLikelihood {
         let presses = trials.iter().map(Vec::len).sum::<usize>() as f64;

@@ -15,7 +15,7 @@ use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
 use crate::session::probes::OpenProbe;
 use crate::session::protocol::{ProtocolEvent, StudyProtocolState};
-use crate::session::tutorial::{TutorialEvent, TutorialReader};
+use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use crate::session::{Event, Session, TrialPhase};
 
 /// Preset reasons for waiving the practice criterion.
@@ -142,7 +142,7 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
 
 /// Carries out a sheet key during the tutorial: the wizard turns the participant's page, or ends the tutorial.
 fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke: SheetKey) -> Option<ConsoleCommand> {
-    let by = TutorialReader::Wizard;
+    let by = TutorialPageTurner::Wizard;
     let Some((_, state)) = session.tutorial_step() else { return leave(model, session) };
     let to = match stroke {
         SheetKey::Forward | SheetKey::Confirm => state.step + 1,

@@ -2,14 +2,14 @@
 
 use super::displayed_item::{DisplayedAnswerForm, DisplayedQuestionnaireItem};
 use super::page_language::DisplayWords;
-use super::sight::{DisplayStage, DisplayUpdate, sight};
+use super::sight::{DisplayContent, DisplayStage, sight};
 use crate::session::Session;
 
 /// Time for which the participant holds the consent button, in seconds; long enough to rule out accidental touches.
 const HOLD_S: f64 = 3.0;
 
 /// The display's content while the participant is asked to consent to this text, before anything is recorded.
-pub fn consent_sight(session: &Session, text: &str) -> DisplayUpdate {
+pub fn consent_sight(session: &Session, text: &str) -> DisplayContent {
     let words = DisplayWords::for_display(&session.spec.display);
     let question = DisplayedQuestionnaireItem {
         title: words.of_name("consent title"),
@@ -22,5 +22,5 @@ pub fn consent_sight(session: &Session, text: &str) -> DisplayUpdate {
         before: None,
         given: Vec::new(),
     };
-    DisplayUpdate { stage: DisplayStage::Questionnaire, question: Some(question), ..sight(session) }
+    DisplayContent { stage: DisplayStage::Questionnaire, question: Some(question), ..sight(session) }
 }

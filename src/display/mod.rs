@@ -25,4 +25,4 @@ pub use robot_hand::RobotHand;
 pub use robot_pose::RobotHandPose;
 pub use scene::{DisplayScene, scene};
 pub use shown_clock::{DisplayedClock, time_left};
-pub use sight::{DisplayStage, DisplayUpdate, ShownContent, sight};
+pub use sight::{DisplayContent, DisplayStage, ShownContent, sight};

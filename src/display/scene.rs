@@ -25,7 +25,7 @@ pub struct DisplayScene {
     pub language: String,
     /// Width and height of the display in metres.
     pub display_m: [f64; 2],
-    /// Locations on the display, in the order of [`super::DisplayUpdate::contents`].
+    /// Locations on the display, in the order of [`super::DisplayContent::contents`].
     pub locations: Vec<DisplayLocation>,
     /// The storages with their areas and pictures.
     pub storages: Vec<DisplayStorage>,

@@ -16,7 +16,7 @@ use crate::session::{Session, TimelineEvent, TrialPhase, proposals};
 
 /// Everything that changes on the participant's display; each update is complete.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DisplayUpdate {
+pub struct DisplayContent {
     /// Stage of the session, which decides which page the display shows.
     pub stage: DisplayStage,
     /// Whether the trial is for practice.
@@ -137,7 +137,7 @@ pub enum DisplayedSignal {
 }
 
 /// Creates the changing part of the participant's display in a session.
-pub fn sight(session: &Session) -> DisplayUpdate {
+pub fn sight(session: &Session) -> DisplayContent {
     let kitchen = &session.kitchen;
     let practised = session.tutorial_step();
     let state = practised.map_or(session.state, |(_, tutorial)| tutorial.kitchen);
@@ -146,7 +146,7 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     let is_trial = probe.is_none() && matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
     let intention = session.robot.intention.filter(|_| session.spec.display.intention && is_trial);
     let stage = if probe.is_some() { DisplayStage::Probe } else { stage(session) };
-    DisplayUpdate {
+    DisplayContent {
         stage,
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
         contents: contents.filter(|_| probe.is_none()).collect(),

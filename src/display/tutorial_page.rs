@@ -28,7 +28,7 @@ pub struct DisplayedTutorial {
     /// Things that the page marks with a frame.
     pub frames: Vec<TutorialFrameTarget>,
     /// The button that the participant has to press now.
-    pub hint: Option<TutorialHint>,
+    pub hint: Option<RequestedTutorialButton>,
     /// Number of presses made and number of presses required, if the step has presses.
     pub presses: Option<[usize; 2]>,
     /// Whether the tutorial's page says how buttons are pressed: in the first step that requires presses.
@@ -57,7 +57,7 @@ pub enum TutorialFrameTarget {
 
 /// The button that the tutorial asks the participant to press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TutorialHint {
+pub struct RequestedTutorialButton {
     /// Name of the button.
     pub button: String,
     /// Time without the right press after which the page marks the button, in seconds.
@@ -107,7 +107,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         // After a wrong press, the page marks the required button at once.
         let is_missed = state.last.is_some_and(|last| !last.is_right);
         let after_s = if is_missed { 0.0 } else { step.hint_after_s(state.presses) };
-        TutorialHint { button: button.clone(), after_s }
+        RequestedTutorialButton { button: button.clone(), after_s }
     });
     Some(DisplayedTutorial {
         step: step.id.clone(),

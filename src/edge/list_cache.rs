@@ -31,7 +31,7 @@ const MAX_HEADER: u64 = 1 << 24;
 
 /// Numbers about a closed recording that the cache keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KeptFigures {
+pub struct CachedRecordingNumbers {
     /// Study arm of the recording's trial, as it was carried out.
     pub arm: StudyArm,
     /// Duration of the trial by its own clock, in seconds.
@@ -45,12 +45,12 @@ pub struct KeptFigures {
 struct KeptLine {
     log: String,
     #[serde(flatten)]
-    figures: KeptFigures,
+    figures: CachedRecordingNumbers,
 }
 
 /// What is known of a closed log without reading its events: its digest, and what a list needs of its header.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LogGlance {
+pub struct ClosedLogHeader {
     /// Digest of the log, by which the cache finds the recording.
     pub digest: String,
     /// The participant's code.
@@ -87,10 +87,10 @@ struct TrialGlance {
     condition: Condition,
 }
 
-impl LogGlance {
+impl ClosedLogHeader {
     /// Reads what a list needs of a recording without reading its events; `None` if the recording is not closed, has
     /// several parts, or cannot be read: then it is read in full, which shows what is wrong.
-    pub fn read(recording: &Path) -> Option<LogGlance> {
+    pub fn read(recording: &Path) -> Option<ClosedLogHeader> {
         let log = recording.join(LOG_NAME);
         let mut file = open_regular(&log).ok()?;
         let tail = Tail::read(&mut file).ok()?;
@@ -103,7 +103,7 @@ impl LogGlance {
             return None;
         }
         let SettingsGlance { participant, trial } = header.session;
-        Some(LogGlance {
+        Some(ClosedLogHeader {
             digest: tail.digest(),
             code: participant.code,
             condition: trial.condition,
@@ -146,7 +146,7 @@ impl Tail {
 #[derive(Debug, Default)]
 pub struct ListCache {
     path: Option<PathBuf>,
-    kept: BTreeMap<String, KeptFigures>,
+    kept: BTreeMap<String, CachedRecordingNumbers>,
 }
 
 impl ListCache {
@@ -167,20 +167,20 @@ impl ListCache {
     }
 
     /// The cached numbers of the recording whose log has this digest; `None` if the cache does not have them.
-    pub fn figures(&self, digest: &str) -> Option<KeptFigures> {
+    pub fn figures(&self, digest: &str) -> Option<CachedRecordingNumbers> {
         self.kept.get(digest).copied()
     }
 
     /// Adds new numbers to the cache. If there are too many, only the new ones stay. If the cache file cannot be
     /// written, the only consequence is that the next list takes longer.
-    pub fn keep(mut self, new: impl IntoIterator<Item = (String, KeptFigures)>) {
+    pub fn keep(mut self, new: impl IntoIterator<Item = (String, CachedRecordingNumbers)>) {
         let new: Vec<_> = new.into_iter().collect();
         let Some(path) = self.path.filter(|_| !new.is_empty()) else { return };
         if self.kept.len() + new.len() > MOST {
             self.kept.clear();
         }
         self.kept.extend(new);
-        let line = |(log, figures): (String, KeptFigures)| {
+        let line = |(log, figures): (String, CachedRecordingNumbers)| {
             // Writing JSON cannot fail here, since the line contains only names and finite numbers.
             serde_json::to_string(&KeptLine { log, figures }).unwrap_or_default() + "\n"
         };

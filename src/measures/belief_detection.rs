@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::detection::{Calibration, auc};
 use super::flags::{AspectGroups, FlagPerformance, FlagThresholds};
-pub use super::press_view::{BeliefsBeforePress, EstimateBeforePress, TrialView};
+pub use super::press_view::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
 use crate::kitchen::{AspectKind, Kitchen};
 
 /// Calibration uses only predicted probabilities within this range, since the beliefs about most aspects are obviously
@@ -69,7 +69,7 @@ impl FalseBeliefDetection {
     /// [`FlagPerformance`]).
     pub fn from_trials(
         kitchen: &Kitchen,
-        trials: &[TrialView],
+        trials: &[TrialBeliefs],
         thresholds: Option<FlagThresholds>,
     ) -> FalseBeliefDetection {
         let estimated = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
@@ -110,7 +110,7 @@ type Score<'a> = &'a dyn Fn(&BeliefsBeforePress, usize) -> Option<f64>;
 
 /// Scores of aspects before every press, each with whether the belief about the aspect was false; pairs are included
 /// only where score and belief are known.
-fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
+fn scored(trials: &[TrialBeliefs], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
     let one = |press: &BeliefsBeforePress, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
     presses.flat_map(|press| aspects.iter().filter_map(move |&aspect| one(press, aspect))).collect()

@@ -12,7 +12,7 @@
 
 use serde::Serialize;
 
-use super::press_view::{BeliefsBeforePress, TrialView};
+use super::press_view::{BeliefsBeforePress, TrialBeliefs};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
 pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;
@@ -102,15 +102,15 @@ impl FlagPerformance {
     /// Evaluates flags on trials, with these thresholds from other recordings, or, without given thresholds, with
     /// thresholds that are chosen by cross-fitting.
     pub fn from_trials(
-        trials: &[TrialView],
+        trials: &[TrialBeliefs],
         groups: &AspectGroups,
         thresholds: Option<FlagThresholds>,
     ) -> FlagPerformance {
-        let all: Vec<&TrialView> = trials.iter().collect();
+        let all: Vec<&TrialBeliefs> = trials.iter().collect();
         if !is_known(&all) {
             return FlagPerformance::default();
         }
-        let half = |parity: usize| -> Vec<&TrialView> { trials.iter().skip(parity).step_by(2).collect() };
+        let half = |parity: usize| -> Vec<&TrialBeliefs> { trials.iter().skip(parity).step_by(2).collect() };
         let halves = [half(0), half(1)];
         let of_all = thresholds.unwrap_or_else(|| best_thresholds(&all, groups));
         let (counts, from) = match thresholds {
@@ -136,7 +136,7 @@ impl FlagPerformance {
 }
 
 impl FlagCounts {
-    fn from_trials(trials: &[&TrialView], groups: &AspectGroups, thresholds: FlagThresholds) -> FlagCounts {
+    fn from_trials(trials: &[&TrialBeliefs], groups: &AspectGroups, thresholds: FlagThresholds) -> FlagCounts {
         let presses = trials.iter().map(|trial| trial.len()).sum();
         let mut counts = FlagCounts { presses, ..FlagCounts::default() };
         for (group, threshold) in groups.iter().zip([thresholds.locations, thresholds.recipes]) {
@@ -162,19 +162,19 @@ impl FlagCounts {
 }
 
 /// Whether beliefs and estimates are known before every press of the trials; false without presses.
-fn is_known(trials: &[&TrialView]) -> bool {
+fn is_known(trials: &[&TrialBeliefs]) -> bool {
     let mut presses = trials.iter().flat_map(|trial| trial.iter()).peekable();
     presses.peek().is_some() && presses.all(|press| press.held.is_some() && press.estimate.is_some())
 }
 
 /// The flag thresholds that are best on these trials; `None` if beliefs or estimates are not known.
-pub fn chosen_thresholds(trials: &[TrialView], groups: &AspectGroups) -> Option<FlagThresholds> {
-    let all: Vec<&TrialView> = trials.iter().collect();
+pub fn chosen_thresholds(trials: &[TrialBeliefs], groups: &AspectGroups) -> Option<FlagThresholds> {
+    let all: Vec<&TrialBeliefs> = trials.iter().collect();
     is_known(&all).then(|| best_thresholds(&all, groups))
 }
 
 /// The flag thresholds that detect most episodes within the allowed numbers of false flags.
-fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> FlagThresholds {
+fn best_thresholds(trials: &[&TrialBeliefs], groups: &AspectGroups) -> FlagThresholds {
     let presses: usize = trials.iter().map(|trial| trial.len()).sum();
     let wrongly = allowed_wrongly(trials, groups);
     let outcomes = groups.each_ref().map(|group| -> Vec<Outcome> {
@@ -202,14 +202,14 @@ fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) ->
 }
 
 /// Allowed number of flagged (press, aspect) pairs with a right belief.
-fn allowed_wrongly(trials: &[&TrialView], groups: &AspectGroups) -> usize {
+fn allowed_wrongly(trials: &[&TrialBeliefs], groups: &AspectGroups) -> usize {
     let right = groups.iter().map(|group| while_right(trials, group).count()).sum::<usize>();
     (MOST_WRONGLY_FLAGGED * right as f64) as usize
 }
 
 /// Candidates for the flag threshold, the strictest first: thresholds that flag at most `allowed` pairs with a right
 /// belief.
-fn candidates(trials: &[&TrialView], group: &[usize], allowed: usize) -> Vec<f64> {
+fn candidates(trials: &[&TrialBeliefs], group: &[usize], allowed: usize) -> Vec<f64> {
     let mut right: Vec<f64> = while_right(trials, group).collect();
     right.sort_by(|a, b| b.total_cmp(a));
     let allowed = allowed.min(right.len().saturating_sub(1));
@@ -227,7 +227,7 @@ fn p_wrong(press: &BeliefsBeforePress, aspect: usize) -> f64 {
 }
 
 /// Expected belief deviations, 1 - E[P(truth)], of all (press, aspect) pairs with a right belief.
-fn while_right<'a>(trials: &'a [&'a TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
+fn while_right<'a>(trials: &'a [&'a TrialBeliefs], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
     let is_right = |press: &BeliefsBeforePress, aspect: usize| press.is_wrong(aspect) == Some(false);
     trials.iter().flat_map(|trial| trial.iter()).flat_map(move |press| {
         group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_wrong(press, aspect))
@@ -235,7 +235,7 @@ fn while_right<'a>(trials: &'a [&'a TrialView], group: &'a [usize]) -> impl Iter
 }
 
 /// The false belief episodes of an aspect that caused enough errors to count.
-fn harmful(trials: &[&TrialView], aspect: usize) -> Vec<Episode> {
+fn harmful(trials: &[&TrialBeliefs], aspect: usize) -> Vec<Episode> {
     let mut episodes = Vec::new();
     for (trial, presses) in trials.iter().enumerate() {
         let mut at = 0;
@@ -258,7 +258,7 @@ fn harmful(trials: &[&TrialView], aspect: usize) -> Vec<Episode> {
 }
 
 impl Outcome {
-    fn from_threshold(trials: &[&TrialView], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
+    fn from_threshold(trials: &[&TrialBeliefs], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
         let is_flagged = |press: &BeliefsBeforePress, aspect: usize| p_wrong(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))

@@ -53,7 +53,7 @@ impl EstimateBeforePress {
 }
 
 /// The presses of one trial with the human's beliefs and their estimates, in order of time.
-pub type TrialView = Vec<BeliefsBeforePress>;
+pub type TrialBeliefs = Vec<BeliefsBeforePress>;
 
 impl BeliefsBeforePress {
     /// Whether the participant's belief about an aspect is false; `None` where the belief is not known.

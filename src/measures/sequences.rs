@@ -45,7 +45,7 @@ impl ErrorSequence {
 /// beliefs explain together, or for which two raters name different false beliefs, belongs to the subject of the first
 /// false belief.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ErrorSubject {
+pub enum FalseBeliefSubject {
     /// A false belief about an ordered dish: about its order or its recipe.
     Dish(DishId),
     /// A false belief about the content of a location, or about an order location that shows no order.
@@ -54,11 +54,11 @@ pub enum ErrorSubject {
 
 impl FalseBeliefTarget {
     /// The subject of a false belief about this target.
-    pub fn subject(self) -> ErrorSubject {
+    pub fn subject(self) -> FalseBeliefSubject {
         match self {
-            FalseBeliefTarget::Order(_, Some(dish)) | FalseBeliefTarget::Recipe(dish) => ErrorSubject::Dish(dish),
+            FalseBeliefTarget::Order(_, Some(dish)) | FalseBeliefTarget::Recipe(dish) => FalseBeliefSubject::Dish(dish),
             FalseBeliefTarget::Order(location, None) | FalseBeliefTarget::Place(location) => {
-                ErrorSubject::Place(location)
+                FalseBeliefSubject::Place(location)
             }
         }
     }
@@ -66,9 +66,9 @@ impl FalseBeliefTarget {
 
 /// The sequences of related errors of a trial, in order of their first errors.
 pub fn sequences(presses: &[JudgedPress]) -> Vec<ErrorSequence> {
-    let subjects: BTreeSet<ErrorSubject> =
+    let subjects: BTreeSet<FalseBeliefSubject> =
         presses.iter().filter_map(|press| Some(target_of(press)?.subject())).collect();
-    let of_subject = |subject: ErrorSubject| grouped(presses, move |target| target.subject() == subject);
+    let of_subject = |subject: FalseBeliefSubject| grouped(presses, move |target| target.subject() == subject);
     let mut all: Vec<ErrorSequence> = subjects.into_iter().flat_map(of_subject).collect();
     all.sort_by_key(|sequence| sequence.errors[0]);
     all

@@ -178,7 +178,7 @@ pub const ANSWERS_AT_RANDOM: f64 = 0.02;
 
 /// A participant's answer to a question of a freeze probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProbedValue {
+pub struct ProbeAnswerObservation {
     /// Number of the trial's observations up to and including the freeze.
     pub after: usize,
     /// The state aspect that the probe's question was about.
@@ -195,7 +195,7 @@ pub struct FitObservations {
     /// The observations of the trial for the belief filter.
     pub observations: Vec<Observation>,
     /// The answers to freeze probes; empty if the answers are not used.
-    pub answers: Vec<ProbedValue>,
+    pub answers: Vec<ProbeAnswerObservation>,
 }
 
 /// Log likelihoods of the human's presses and of the answers to freeze probes in one trial, with their numbers.

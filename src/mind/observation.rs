@@ -75,7 +75,7 @@ pub enum ObservedEvidence {
         location: LocationId,
     },
     /// The signal leaves the display. Where signals take no time to be read, this event makes no difference.
-    SignalOver,
+    EndedSignal,
     /// The display proposes presses. A proposal reveals nothing about contents and recipes; it changes what the next
     /// presses reveal about beliefs.
     Proposed(ProposedPresses),

@@ -15,7 +15,7 @@ pub struct PartSource {
 
 /// A part that is still missing for a dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PartNeed {
+pub struct MissingPart {
     /// The part in the form in which it is put on the board: an item, or a stack of several items.
     pub part: ContentId,
     /// The content that can be made into the part; `None` if the part has to come from a storage.
@@ -34,7 +34,7 @@ pub struct OrderGoal {
     /// Whether the stack on the board is the beginning of the ordered dish.
     pub has_base: bool,
     /// The parts that are still missing for the ordered dish.
-    pub needs: Vec<PartNeed>,
+    pub needs: Vec<MissingPart>,
 }
 
 /// The participant's goals for all orders that the participant believes in, the order in progress first, and the
@@ -106,14 +106,14 @@ impl Goals {
         }) {
             self.claim(source.at);
             missing.retain(|item| !kitchen.content(source.content).items.contains(item));
-            goal.needs.push(PartNeed { part: source.content, source: Some(source) });
+            goal.needs.push(MissingPart { part: source.content, source: Some(source) });
         }
         for part in missing {
             let source = self.find(prospect, state, |_, content| prospect.knowledge.steps_to(content, part));
             if let Some(source) = source {
                 self.claim(source.at);
             }
-            goal.needs.push(PartNeed { part, source });
+            goal.needs.push(MissingPart { part, source });
         }
         goal
     }

@@ -6,7 +6,7 @@
 //! down. The participant waits for what only the robot can do, and for what the robot holds. A press that undoes
 //! something for the sake of another is a detour.
 
-use super::goals::{GoalContext, Goals, OrderGoal, PartNeed, PartSource};
+use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
 use super::habits::Habits;
 use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State};
 
@@ -60,8 +60,8 @@ impl<'a> BackwardChaining<'a> {
                 propose(self.serve(goal, at));
                 continue;
             }
-            let mut needs: Vec<&PartNeed> = goal.needs.iter().collect();
-            let is_held = |need: &PartNeed| need.source.is_some_and(|source| source.at == self.hand);
+            let mut needs: Vec<&MissingPart> = goal.needs.iter().collect();
+            let is_held = |need: &MissingPart| need.source.is_some_and(|source| source.at == self.hand);
             needs.sort_by_key(|need| (!is_held(need), habits.rank(self.prospect.knowledge.ingredient(need.part))));
             needs.into_iter().for_each(|need| propose(self.advance(goal, need, habits)));
         }
@@ -86,7 +86,7 @@ impl<'a> BackwardChaining<'a> {
     }
 
     /// The next press towards a missing part of a dish.
-    fn advance(&self, goal: &OrderGoal, need: &PartNeed, habits: &Habits) -> Option<ProposedPress> {
+    fn advance(&self, goal: &OrderGoal, need: &MissingPart, habits: &Habits) -> Option<ProposedPress> {
         let kitchen = self.prospect.kitchen;
         let Some(source) = need.source else { return self.fetch(goal, need.part, habits) };
         let making = self.prospect.knowledge.next_making(source.content, need.part);

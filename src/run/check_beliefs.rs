@@ -11,7 +11,7 @@ use crate::analysis::probe_figures::ProbeSummary;
 use crate::analysis::probe_record::ProbedTrial;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
-use crate::measures::belief_detection::{EstimateBeforePress, TrialView, aspect_groups};
+use crate::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
 use crate::measures::flags::chosen_thresholds;
 use crate::session::settings::ParticipantKind;
 
@@ -48,7 +48,7 @@ pub struct BeliefCheckTrials {
     /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
     /// The trials' presses with estimates, in the order of the recordings.
-    pub trials: Vec<TrialView>,
+    pub trials: Vec<TrialBeliefs>,
     /// Freeze probes of each trial, with the participant's code; `None` for trials without probes.
     pub probes: Vec<Option<ProbedParticipant>>,
 }
@@ -71,7 +71,7 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
 }
 
 /// The presses with estimates, and the freeze probes, of one recording.
-fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedParticipant>)> {
+fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialBeliefs, Option<ProbedParticipant>)> {
     let mut replay = RecordingReplay::open(recording)?;
     let mut probes = ProbeCollector::default();
     let mut views = PressViews::default();

@@ -11,7 +11,7 @@ use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::{FitObservations, ProbedValue, TrialLikelihood, likelihood};
+use crate::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::Observation;
 use crate::session::Event;
@@ -111,7 +111,7 @@ fn read_trial(replay: &mut RecordingReplay) -> FileResult<FitObservations> {
                 trial.answers.extend(aspect.map(|aspect| {
                     let labels = &kitchen.aspects[aspect.index()].labels;
                     let value = labels.iter().position(|label| Some(label) == answer.as_ref());
-                    ProbedValue { after: frozen, aspect, value }
+                    ProbeAnswerObservation { after: frozen, aspect, value }
                 }));
             }
             _ => {}

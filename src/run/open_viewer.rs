@@ -21,7 +21,7 @@ use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, ViewerAvailability};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::scene::entity_content::slug;
-use crate::scene::{DerivedData, SessionScene};
+use crate::scene::{SceneInputs, SessionScene};
 use crate::session::TimestampedEvent;
 
 /// First network ports that are tried for the stream's server and for the web viewer.
@@ -386,7 +386,7 @@ impl Playing {
                 // The belief estimate is shown once all events of the same time have been applied.
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
-                let derived = DerivedData { judged, belief: belief.as_ref().filter(|_| is_last) };
+                let derived = SceneInputs { judged, belief: belief.as_ref().filter(|_| is_last) };
                 let moments = self.scene.see(&stamped, derived);
                 rows += moments.iter().map(|moment| writer.moment(&self.lane, moment)).sum::<u64>();
             }

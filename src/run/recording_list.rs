@@ -8,7 +8,7 @@ use super::{parallel, standing};
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::list_cache::{KeptFigures, ListCache, LogGlance};
+use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use crate::edge::log::{LogEnding, LogReader, at_line};
 use crate::edge::recordings;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -56,7 +56,7 @@ fn name(path: &Path) -> String {
 }
 
 /// Numbers about a recording that the cache does not have yet, with the digest of the recording's log.
-type NewFigures = Option<(String, KeptFigures)>;
+type NewFigures = Option<(String, CachedRecordingNumbers)>;
 
 fn read_or_tell(
     path: &Path,
@@ -75,7 +75,7 @@ fn read_or_tell(
         state: RecordingState::Unreadable,
         reason: Some(error.to_string()),
     };
-    let glance = LogGlance::read(path);
+    let glance = ClosedLogHeader::read(path);
     if let Some(glance) = &glance
         && let Some(figures) = cache.figures(&glance.digest)
     {
@@ -85,8 +85,9 @@ fn read_or_tell(
         Ok((row, at_console)) => {
             let glance = glance.filter(|_| at_console.counts());
             let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors));
-            let new =
-                new.map(|(glance, ((arm, trial_s), errors))| (glance.digest, KeptFigures { arm, trial_s, errors }));
+            let new = new.map(|(glance, ((arm, trial_s), errors))| {
+                (glance.digest, CachedRecordingNumbers { arm, trial_s, errors })
+            });
             (row, new)
         }
         Err(error) => (unreadable(error), None),
@@ -97,8 +98,8 @@ fn read_or_tell(
 fn from_figures(
     path: &Path,
     depth: RecordingListDetail,
-    glance: &LogGlance,
-    figures: KeptFigures,
+    glance: &ClosedLogHeader,
+    figures: CachedRecordingNumbers,
 ) -> FileResult<ListedRecording> {
     let standing = standing::with_ruling(ExclusionStatus::default(), path)?;
     let is_excluded = !standing.counts();

@@ -14,7 +14,7 @@ use crate::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::BatteryFiles;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{EstimateBeforePress, TrialView};
+use crate::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
 use crate::session::battery::CohortSpec;
 use crate::session::settings::{Condition, SessionSpec};
 use crate::session::{Event, Session, TimestampedEvent, apply};
@@ -105,7 +105,7 @@ fn simulate(
     spec: SessionSpec,
     trial: u64,
     cost: CostToGo,
-) -> (TrialView, TrialSummary, CostToGo) {
+) -> (TrialBeliefs, TrialSummary, CostToGo) {
     let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, cost);
     let mut events = Vec::new();
     let keep = |stamped: &TimestampedEvent| {

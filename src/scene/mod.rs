@@ -40,7 +40,7 @@ pub struct SceneUpdate {
 
 /// What the scene shows beside the session itself: judged presses and the estimate of the participant's belief.
 #[derive(Clone, Copy, Debug)]
-pub struct DerivedData<'a> {
+pub struct SceneInputs<'a> {
     /// Every press of the human so far, with its judgement.
     pub judged: &'a [JudgedPress],
     /// The belief estimate after all events so far; `None` while further events have the same time.
@@ -105,7 +105,7 @@ impl SessionScene {
 
     /// Applies the next event and returns the entity updates in the order of time. An event that is not valid in the
     /// session's state, or that the scene has already shown, gives no updates.
-    pub fn see(&mut self, stamped: &TimestampedEvent, derived: DerivedData<'_>) -> Vec<SceneUpdate> {
+    pub fn see(&mut self, stamped: &TimestampedEvent, derived: SceneInputs<'_>) -> Vec<SceneUpdate> {
         if stamped.seq < self.next {
             return Vec::new();
         }
@@ -132,7 +132,7 @@ impl SessionScene {
         &mut self,
         stamped: &TimestampedEvent,
         change: &KitchenChange,
-        derived: DerivedData<'_>,
+        derived: SceneInputs<'_>,
     ) -> Vec<EntityUpdate> {
         let session = &self.session;
         let changed = change.states().into_iter();

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
-use super::fitted_parameters::ParametersOf;
+use super::fitted_parameters::ParameterOwner;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
@@ -77,7 +77,7 @@ pub struct SessionSpec {
     /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons. Written by the
     /// program, not allowed in session files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parameters_of: Option<ParametersOf>,
+    pub parameters_of: Option<ParameterOwner>,
     /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never
     /// recorded.
     #[serde(skip)]
@@ -165,7 +165,7 @@ impl SessionSpec {
     pub fn adopt_person(&mut self) {
         let Some(people) = self.people.take() else { return };
         let is_known = people.apply(&self.participant.code, &mut self.human);
-        self.parameters_of = Some(if is_known { ParametersOf::Person } else { ParametersOf::Population });
+        self.parameters_of = Some(if is_known { ParameterOwner::Person } else { ParameterOwner::Population });
     }
 
     /// Whether the session needs the library of the Lab Streaming Layer.

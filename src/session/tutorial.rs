@@ -2,7 +2,7 @@
 
 use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use super::session_state::Session;
-pub use super::tutorial_event::{TutorialEvent, TutorialReader};
+pub use super::tutorial_event::{TutorialEvent, TutorialPageTurner};
 pub use super::tutorial_state::{TutorialPress, TutorialState};
 use crate::kitchen::Agent;
 
@@ -31,7 +31,7 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
     let (tutorial, _) = session.tutorial().ok_or("no tutorial is shown now")?;
     let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
-    let may_leave = |by: TutorialReader| by == TutorialReader::Wizard || state.is_done();
+    let may_leave = |by: TutorialPageTurner| by == TutorialPageTurner::Wizard || state.is_done();
     let is_shown = |id: &str| unless(step.id == id, "another step of the tutorial is shown");
     match event {
         TutorialEvent::Shown { step, by } => {
@@ -63,7 +63,7 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
         }
         TutorialEvent::Ended { by } => {
             let is_last = state.step + 1 == tutorial.steps.len();
-            unless(*by == TutorialReader::Wizard || (is_last && state.is_done()), "the tutorial is not at its end")
+            unless(*by == TutorialPageTurner::Wizard || (is_last && state.is_done()), "the tutorial is not at its end")
         }
     }
 }

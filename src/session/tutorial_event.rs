@@ -5,19 +5,19 @@ use serde::{Deserialize, Serialize};
 /// Who turned a page of a tutorial: participant or wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TutorialReader {
+pub enum TutorialPageTurner {
     /// The participant, who can turn the tutorial's page only when its step is done.
     Participant,
     /// The wizard, who may skip a step of the tutorial.
     Wizard,
 }
 
-impl TutorialReader {
+impl TutorialPageTurner {
     /// Name of the one who turned the tutorial's page (participant or wizard) in logs.
     pub fn name(self) -> &'static str {
         match self {
-            TutorialReader::Participant => "participant",
-            TutorialReader::Wizard => "wizard",
+            TutorialPageTurner::Participant => "participant",
+            TutorialPageTurner::Wizard => "wizard",
         }
     }
 }
@@ -32,7 +32,7 @@ pub enum TutorialEvent {
         /// Identifier of the tutorial step.
         step: String,
         /// Who turned the tutorial's page.
-        by: TutorialReader,
+        by: TutorialPageTurner,
     },
     /// The participant pressed a button in the shown step of the tutorial.
     Pressed {
@@ -54,6 +54,6 @@ pub enum TutorialEvent {
     /// The tutorial is over: the participant read its last step, or the wizard skipped the rest.
     Ended {
         /// Who ended the tutorial.
-        by: TutorialReader,
+        by: TutorialPageTurner,
     },
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use super::acting_arm::ActingStudyArm;
+use super::acting_arm::SignalSenderWithParameter;
 use super::roc::ConceptRocCurve;
 use super::trial_statistics::{TrialStatistics, mean_length};
 use crate::session::settings::ParticipantKind;
@@ -20,7 +20,7 @@ use crate::session::settings::ParticipantKind;
 pub struct LiveStudyArm {
     /// Sender of the signals, with the parameter of the sender's concept.
     #[serde(flatten)]
-    pub arm: ActingStudyArm,
+    pub arm: SignalSenderWithParameter,
     /// Number of trials that are compared.
     pub trials: u64,
     /// Errors that follow from false beliefs, per 100 presses of the human.
@@ -62,7 +62,7 @@ fn key(trial: &TrialStatistics) -> TrialKey {
 /// Results of all arms over the trials that all of the arms have; empty unless at least two arms share trials.
 pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<LiveStudyArm> {
     let simulated = |trial: &&TrialStatistics| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
-    let mut groups: Vec<(ActingStudyArm, Vec<&TrialStatistics>)> = Vec::new();
+    let mut groups: Vec<(SignalSenderWithParameter, Vec<&TrialStatistics>)> = Vec::new();
     for trial in trials.iter().copied().filter(simulated) {
         let arm = trial.acting;
         match groups.iter_mut().find(|(other, _)| *other == arm) {
@@ -93,7 +93,7 @@ pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<Li
 }
 
 impl LiveStudyArm {
-    fn from_trials(arm: ActingStudyArm, trials: &[&TrialStatistics]) -> LiveStudyArm {
+    fn from_trials(arm: SignalSenderWithParameter, trials: &[&TrialStatistics]) -> LiveStudyArm {
         let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
         let beliefs = || trials.iter().filter_map(|trial| trial.beliefs.as_ref());
         let lengths: Vec<u32> = beliefs().flat_map(|one| one.lengths.iter().copied()).collect();

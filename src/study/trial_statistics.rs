@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::acting_arm::ActingStudyArm;
+use super::acting_arm::SignalSenderWithParameter;
 use super::known_beliefs::FalseBeliefAgreement;
 use super::robot_tally::RobotEventSummary;
 use super::roc::PreventedTrialErrors;
@@ -50,7 +50,7 @@ pub struct TrialStatistics {
     /// Information that the wizard was allowed to see on the console.
     pub wizard_sees: WizardVisibility,
     /// Sender of the signals in a trial without a person as wizard.
-    pub acting: ActingStudyArm,
+    pub acting: SignalSenderWithParameter,
     /// Reason for excluding the trial from the analysis; `None` if the trial is included.
     pub left_out: Option<String>,
     /// Reason for which the trial ended; `None` if the recording is incomplete.

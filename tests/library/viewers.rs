@@ -17,7 +17,7 @@ use tomcom::edge::rrd;
 use tomcom::edge::stream::RerunStream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
-use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
+use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom::session::Event;
 use tomcom::session::settings::Condition;
 
@@ -213,7 +213,7 @@ fn two_hours_of_a_session_stay_below_200_mb() {
         let count = events.len();
         for (index, stamped) in std::mem::take(&mut events).iter().enumerate() {
             let belief = (index + 1 == count).then(|| engine.belief());
-            stream.tell(scene.see(stamped, DerivedData { judged: engine.judged(), belief }));
+            stream.tell(scene.see(stamped, SceneInputs { judged: engine.judged(), belief }));
         }
         let now_s = engine.session().time.as_secs_f64();
         thread::sleep(Duration::from_secs_f64((now_s / TIMES_REAL - began.elapsed().as_secs_f64()).max(0.0)));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::page_input::ParticipantResponse;
-use crate::display::{DisplayScene, DisplayUpdate, RobotHandPose};
+use crate::display::{DisplayContent, DisplayScene, RobotHandPose};
 use crate::session::answer_value::AnswerValue;
 
 /// Longest message of a participant page, in bytes.
@@ -181,11 +181,11 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
 
 /// The message with what the display shows now; during a probe, or with the trial's clock, also with the seconds that
 /// are left, and the time on the server's clock at which they were left.
-pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str> {
+pub(super) fn sight(sight: &DisplayContent, left: Option<(f64, f64)>) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
         kind: &'static str,
-        sight: &'a DisplayUpdate,
+        sight: &'a DisplayContent,
         #[serde(skip_serializing_if = "Option::is_none")]
         at: Option<f64>,
         #[serde(skip_serializing_if = "Option::is_none")]

@@ -29,7 +29,7 @@ use self::server_state::{PageFeed, ServerState};
 use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
 use crate::display::page_language::DisplayWords;
-use crate::display::{DisplayScene, DisplayUpdate, RobotHandPose};
+use crate::display::{DisplayContent, DisplayScene, RobotHandPose};
 use crate::edge::outer_address::reachable;
 use crate::edge::pairing_code::pairing_code;
 
@@ -128,7 +128,7 @@ impl DisplayHandle {
     }
 
     /// Sends to the pages what the display shows now, with the time in seconds that a probe or the trial still has.
-    pub fn show(&self, sight: &DisplayUpdate, left_s: Option<f64>) {
+    pub fn show(&self, sight: &DisplayContent, left_s: Option<f64>) {
         let at_ms = self.began.elapsed().as_secs_f64() * 1000.0;
         self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));
     }

@@ -19,7 +19,7 @@ use crate::mind::model::InferenceSettings;
 use super::distinct::DistinctWorlds;
 use super::evidence_model::EvidenceModel;
 use super::human_act::HumanAction;
-use super::look_news::{SampleLooks, UnseenLooks, ValueFromLook};
+use super::look_news::{SampledLooks, UnseenLooks, ValueSeenByLook};
 use super::moments::MixtureMoments;
 use super::urn::PolyaUrn;
 
@@ -74,8 +74,8 @@ pub struct BeliefSampler {
     /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
-    pub(super) looks: Vec<SampleLooks>,
-    pub(super) news: Vec<ValueFromLook>,
+    pub(super) looks: Vec<SampledLooks>,
+    pub(super) news: Vec<ValueSeenByLook>,
     /// Sums of probabilities for systematic sampling of readings: by location, and last for the signal.
     pub(super) read_sums: Vec<f64>,
 }

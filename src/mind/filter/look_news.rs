@@ -25,7 +25,7 @@ pub struct UnseenSignal {
 
 /// What a belief sample has learned from looks at times of unknown gaze.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SampleLooks {
+pub struct SampledLooks {
     /// Bit set of the state aspects whose value differs from the sample's draws.
     pub changed: u32,
     /// Range of the sample's entries in `BeliefSampler::news`.
@@ -36,7 +36,7 @@ pub struct SampleLooks {
 
 /// A value that a belief sample believes since a look at a time of unknown gaze.
 #[derive(Clone, Copy, Debug)]
-pub struct ValueFromLook {
+pub struct ValueSeenByLook {
     /// Index of the state aspect to which the value belongs.
     pub aspect: usize,
     /// Index of the value among the aspect's possible values.

@@ -44,7 +44,7 @@ use human_act::{HumanAction, PressMixture};
 use look_news::UnseenLooks;
 use perception::GazeBeliefUpdate;
 use serving::ServingUpdate;
-use signals_so_far::SignalsSoFar;
+use signals_so_far::SignalReadingHistory;
 use unknown_gaze::UnknownGazePeriod;
 
 /// How the human's press of a button changes the belief: the press involves one location, or several that jointly
@@ -88,7 +88,7 @@ pub struct BeliefFilter {
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
     /// Signals of the trial, as far as they take time to be read.
-    signals: SignalsSoFar,
+    signals: SignalReadingHistory,
     /// How often this person slips, where the model learns that.
     lapse: LapsePosterior,
     evidence: Option<PressEvidence>,
@@ -117,7 +117,7 @@ impl BeliefFilter {
             forgot: None,
             frozen: None,
             proposed: ProposedPresses::default(),
-            signals: SignalsSoFar::default(),
+            signals: SignalReadingHistory::default(),
             lapse: LapsePosterior::around(model.decision.lapse),
             evidence: None,
             kitchen,
@@ -181,7 +181,7 @@ impl BeliefFilter {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
                 self.belief.clone_from(&self.prior);
                 self.proposed = ProposedPresses::default();
-                self.signals = SignalsSoFar::default();
+                self.signals = SignalReadingHistory::default();
                 self.lapse = LapsePosterior::around(self.model.decision.lapse);
                 self.forgot = Some(now);
                 self.presence.rest(now);
@@ -209,7 +209,7 @@ impl BeliefFilter {
             }
             ObservedEvidence::Waited { longer } => self.weigh_waiting(longer, cost),
             ObservedEvidence::Told { location } => self.told(now, location),
-            ObservedEvidence::SignalOver => self.signals.end(),
+            ObservedEvidence::EndedSignal => self.signals.end(),
             ObservedEvidence::Paused => self.forgot = None,
             ObservedEvidence::Resumed => {
                 self.forgot = Some(now);

@@ -7,7 +7,7 @@ use crate::mind::signal_model::SignalModel;
 
 /// A signal on the display.
 #[derive(Clone, Debug)]
-pub struct StandingSignal {
+pub struct SignalOnDisplay {
     /// The location that the signal is about.
     pub location: LocationId,
     /// The state aspects of which the human becomes certain by reading the signal.
@@ -20,7 +20,7 @@ pub struct StandingSignal {
     pub unread: f64,
 }
 
-impl StandingSignal {
+impl SignalOnDisplay {
     /// Makes the estimate certain of the signal's aspects with the probability `share`.
     pub fn teach(
         &self,
@@ -40,7 +40,7 @@ impl StandingSignal {
 
 /// A signal that has left the display.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SignalOver {
+pub struct EndedSignal {
     /// The location that the signal was about.
     pub location: LocationId,
     /// Probability that the signal was read before it left the display.
@@ -49,17 +49,17 @@ pub struct SignalOver {
 
 /// The signals of a trial, as far as they take time to be read.
 #[derive(Clone, Debug, Default)]
-pub struct SignalsSoFar {
+pub struct SignalReadingHistory {
     /// The signal that is on the display now.
-    pub standing: Option<StandingSignal>,
+    pub standing: Option<SignalOnDisplay>,
     /// The last signal that has left the display, until the belief filter's function `take_signal_over` takes it.
-    pub over: Option<SignalOver>,
+    pub over: Option<EndedSignal>,
     /// Expected number of signals that were read, and number of signals that have left the display.
     read: f64,
     shown: f64,
 }
 
-impl SignalsSoFar {
+impl SignalReadingHistory {
     /// Moves the signal's times on by a duration for which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.standing.iter_mut().for_each(|standing| standing.since = standing.since + by);
@@ -67,9 +67,9 @@ impl SignalsSoFar {
 
     /// The signal on the display leaves the display.
     pub fn end(&mut self) {
-        if let Some(StandingSignal { location, unread, .. }) = self.standing.take() {
+        if let Some(SignalOnDisplay { location, unread, .. }) = self.standing.take() {
             (self.read, self.shown) = (self.read + 1.0 - unread, self.shown + 1.0);
-            self.over = Some(SignalOver { location, read: 1.0 - unread });
+            self.over = Some(EndedSignal { location, read: 1.0 - unread });
         }
     }
 

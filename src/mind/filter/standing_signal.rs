@@ -21,11 +21,11 @@ use crate::mind::signal_model::SignalForecast;
 use super::BeliefFilter;
 use super::look_news::UnseenSignal;
 use super::perception::NEGLIGIBLE;
-use super::signals_so_far::{SignalOver, StandingSignal};
+use super::signals_so_far::{EndedSignal, SignalOnDisplay};
 
 impl BeliefFilter {
     /// The signal that has left the display since the last call of this function; `None` if none has.
-    pub fn take_signal_over(&mut self) -> Option<SignalOver> {
+    pub fn take_signal_over(&mut self) -> Option<EndedSignal> {
         self.signals.over.take()
     }
 
@@ -61,7 +61,7 @@ impl BeliefFilter {
         }
         self.signals.end();
         let noticed = self.signals.noticed(&self.model.signal, kind);
-        let standing = StandingSignal { location, aspects, since: now, noticed, unread: 1.0 };
+        let standing = SignalOnDisplay { location, aspects, since: now, noticed, unread: 1.0 };
         if self.model.signal.takes_time() {
             self.signals.standing = Some(standing);
             return;

@@ -15,7 +15,7 @@ use rand::RngExt;
 
 use super::evidence::{BeliefSampler, UNDRAWN};
 use super::evidence_model::EvidenceModel;
-use super::look_news::{SampleLooks, UnseenLooks, UnseenSignal, ValueFromLook};
+use super::look_news::{SampledLooks, UnseenLooks, UnseenSignal, ValueSeenByLook};
 
 impl BeliefSampler {
     /// The probability that the human looks at each location before the next press, averaged over belief samples.
@@ -62,7 +62,7 @@ impl BeliefSampler {
                     let value = value_at(reading, random.random::<f64>());
                     // What the sample has learned from the signal is certain already, so a look teaches nothing more.
                     if self.news[begin..].iter().all(|news| news.aspect != location) {
-                        self.news.push(ValueFromLook { aspect: location, value, is_read: true });
+                        self.news.push(ValueSeenByLook { aspect: location, value, is_read: true });
                     }
                 }
             }
@@ -73,11 +73,11 @@ impl BeliefSampler {
             let wanted = wanted.fold(0, |all, wants| all | wants) & !told;
             for aspect in ones(wanted).filter(|aspect| self.firsts[index * aspects + aspect] == UNDRAWN) {
                 let value = self.urns[aspect].draw(random);
-                self.news.push(ValueFromLook { aspect, value, is_read: false });
+                self.news.push(ValueSeenByLook { aspect, value, is_read: false });
             }
             let news = [begin, self.news.len()];
             let changed = self.news[begin..].iter().fold(0, |changed, news| changed | 1 << news.aspect);
-            self.looks.push(SampleLooks { changed, news, read_signal });
+            self.looks.push(SampledLooks { changed, news, read_signal });
             if changed != 0 {
                 self.believe_news(model, index, news);
             }
@@ -96,7 +96,7 @@ impl BeliefSampler {
     fn hear(&mut self, signal: &UnseenSignal, random: &mut Stream) -> bool {
         let is_read = self.is_read(self.read_sums.len() - 1, signal.chance);
         for (aspect, reading) in signal.readings.iter().filter(|_| is_read) {
-            self.news.push(ValueFromLook {
+            self.news.push(ValueSeenByLook {
                 aspect: *aspect,
                 value: value_at(reading, random.random::<f64>()),
                 is_read,
@@ -124,7 +124,7 @@ impl BeliefSampler {
     }
 
     /// What a belief sample has learned from looks; nothing if no looks were drawn.
-    pub fn news_of(&self, sample: usize) -> (u32, &[ValueFromLook]) {
+    pub fn news_of(&self, sample: usize) -> (u32, &[ValueSeenByLook]) {
         let looks = self.looks.get(sample).copied().unwrap_or_default();
         (looks.changed, &self.news[looks.news[0]..looks.news[1]])
     }

@@ -190,7 +190,7 @@ impl ParticleSet {
             }
             ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
             ObservedEvidence::Told { location } => self.told(now, location, random),
-            ObservedEvidence::SignalOver => self.end_signal(),
+            ObservedEvidence::EndedSignal => self.end_signal(),
             ObservedEvidence::Paused | ObservedEvidence::Frozen => self.forgot = None,
             ObservedEvidence::Resumed => self.go_on(now),
             ObservedEvidence::Thawed { asked, teaches, .. } => {

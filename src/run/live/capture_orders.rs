@@ -14,7 +14,7 @@ const PAUSED: &str = "trial paused";
 
 /// Sends requests to Pupil Capture for one recording.
 #[derive(Debug, Default)]
-pub(super) struct CaptureOrders {
+pub(super) struct CaptureRequestSender {
     /// Channel to the program Pupil Capture; `None` if it is not the tracker.
     orders: Option<Sender<CaptureRequest>>,
     /// Name of the recording, under which Pupil Capture records, too.
@@ -28,11 +28,11 @@ pub(super) struct CaptureOrders {
     probe: Option<u32>,
 }
 
-impl CaptureOrders {
+impl CaptureRequestSender {
     /// Prepares Pupil Capture for a recording with this name; in a continued recording, Pupil Capture records the trial
     /// from now on.
-    pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureOrders {
-        let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
+    pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureRequestSender {
+        let mut capture = CaptureRequestSender { orders: tracker.orders(), name, ..CaptureRequestSender::default() };
         capture.probe = session.probes.open.as_ref().map(|open| open.number);
         capture.phase = match session.phase {
             TrialPhase::Running => Some(RUNNING),

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::base::time::SessionTime;
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
-use crate::display::{DisplayUpdate, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
+use crate::display::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
 use crate::edge::display::{DisplayHandle, DisplayServer, ParticipantResponse};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
@@ -14,7 +14,7 @@ use crate::session::admit::admit;
 use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
-use crate::session::tutorial::{TutorialEvent, TutorialReader};
+use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use crate::session::wall_display::{AnswerEntry, DisplayEvent};
 use crate::session::{Event, Session};
 
@@ -22,7 +22,7 @@ use crate::session::{Event, Session};
 pub(super) struct ParticipantDisplay {
     screen: DisplayHandle,
     /// Content that the participant's display shows at present.
-    shown: Option<DisplayUpdate>,
+    shown: Option<DisplayContent>,
     /// The robot's hand, if the display shows it, with the pose that was sent last.
     hand: Option<RobotHand>,
     told: Option<RobotHandPose>,
@@ -155,7 +155,7 @@ fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> Pa
 /// The event by which the participant turns to the next (`forward`) or previous page of the tutorial from this step.
 fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
     let (tutorial, state) = session.tutorial()?;
-    let by = TutorialReader::Participant;
+    let by = TutorialPageTurner::Participant;
     // A page that participant and wizard turned at the same time is turned only once.
     let from = tutorial.position(step).filter(|&from| from == state.step)?;
     let to = if forward { from + 1 } else { from.checked_sub(1)? };

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::capture_orders::CaptureOrders;
+use super::capture_orders::CaptureRequestSender;
 use super::display::ParticipantDisplay;
 use super::gaze_events::GazeInput;
 use super::lsl_streaming::LslStreaming;
@@ -61,7 +61,7 @@ pub(super) struct Live {
     pub(super) failed: Option<RecordingWriteError>,
     pub(super) clock: SessionClock,
     pub(super) gaze: GazeInput,
-    pub(super) capture: CaptureOrders,
+    pub(super) capture: CaptureRequestSender,
     /// Sequence number of a signal that no frame on the wizard's screen has shown yet.
     pub(super) undrawn: Option<u64>,
     /// Last recorded content of the wizard's screen.
@@ -184,7 +184,7 @@ impl Live {
             failed: None,
             clock,
             gaze: GazeInput::default(),
-            capture: CaptureOrders::default(),
+            capture: CaptureRequestSender::default(),
             undrawn: None,
             seen: None,
             judged: 0,
@@ -226,7 +226,7 @@ impl Live {
     fn greet(&mut self, tracker: &GazeTracker) {
         self.gaze = GazeInput::at(tracker, self.engine.session());
         tracker.known().for_each(|news| self.take_gaze(news));
-        self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session(), Instant::now());
+        self.capture = CaptureRequestSender::begin(tracker, self.name(), self.engine.session(), Instant::now());
     }
 
     /// Begins the first phase of a study plan's recording; the participant's consent is its first event.

@@ -10,7 +10,7 @@ use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
 use crate::edge::stream::RerunStream;
 use crate::run::engine::SessionEngine;
-use crate::scene::{DerivedData, SessionScene};
+use crate::scene::{SceneInputs, SessionScene};
 use crate::session::{LogHeader, Session, TimestampedEvent};
 
 /// Delay with which motion between events is streamed, so that no event with an earlier time can follow.
@@ -64,7 +64,7 @@ impl StreamedSession {
         let judged = engine.judged();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| engine.belief());
-            self.stream.tell(self.scene.see(stamped, DerivedData { judged, belief }));
+            self.stream.tell(self.scene.see(stamped, SceneInputs { judged, belief }));
         }
     }
 

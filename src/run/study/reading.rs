@@ -36,7 +36,7 @@ use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
-use crate::study::acting_arm::ActingStudyArm;
+use crate::study::acting_arm::SignalSenderWithParameter;
 use crate::study::belief_trace::BeliefTrace;
 use crate::study::facts::RecordingFacts;
 use crate::study::known_beliefs::{FalseBeliefAgreement, KnownFalseBeliefs};
@@ -356,7 +356,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         planned_arm: step.and_then(|step| step.arm),
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
-        acting: ActingStudyArm::from_settings(session.study_arm(), spec.assistant.parameter()),
+        acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),
         left_out,
         ended: None,
         arm: spec.robot.arm,

@@ -6,7 +6,7 @@ use tomcom::edge::files::SessionFiles;
 use tomcom::run::pool::{PoolRequest, simulate};
 use tomcom::run::simulate::SimulationShard;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::simulation_pool::{PoolParticipantPeriod, SimulationPool};
+use tomcom::study::simulation_pool::{PoolTrialPosition, SimulationPool};
 
 use super::{folder, paper, run};
 
@@ -19,7 +19,7 @@ fn pool(files: &SessionFiles, shard: SimulationShard, [arms, unassisted]: [bool;
     simulate(&request, Path::new("paper.toml"), || ()).expect("a pool")
 }
 
-fn trials(pool: &SimulationPool) -> impl Iterator<Item = &PoolParticipantPeriod> {
+fn trials(pool: &SimulationPool) -> impl Iterator<Item = &PoolTrialPosition> {
     pool.persons.iter().flat_map(|person| &person.trials)
 }
 

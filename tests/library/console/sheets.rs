@@ -13,7 +13,7 @@ use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::plan::{QuestionnaireSpec, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
-use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
+use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 
 use super::{SIZES, Stage, kitchen};
 use crate::check_snapshot;
@@ -252,7 +252,7 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
             }
             let (tutorial, _) = stage.session.tutorial().expect("a tutorial");
             let next = tutorial.steps[index + 1].id.clone();
-            give(&mut stage, TutorialEvent::Shown { step: next, by: TutorialReader::Wizard });
+            give(&mut stage, TutorialEvent::Shown { step: next, by: TutorialPageTurner::Wizard });
         }
         stage.model.size = size;
         let screen = stage.screen(size);

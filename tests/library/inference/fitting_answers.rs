@@ -8,7 +8,9 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, AspectKind};
 use tomcom::mind::dirichlet::Dirichlet;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::fitting::{FitObservations, HumanModelParameter, ProbedValue, TrialLikelihood, likelihood, p_answer};
+use tomcom::mind::fitting::{
+    FitObservations, HumanModelParameter, ProbeAnswerObservation, TrialLikelihood, likelihood, p_answer,
+};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::run::fit::{FitTrials, fit};
@@ -36,7 +38,7 @@ fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
     let frozen = filter.at(at(40.0), &mut cost);
     let aspect =
         AspectId(kitchen.aspects.iter().position(|one| matches!(one.kind, AspectKind::Recipe(_))).unwrap() as u8);
-    let answer = |value: Option<usize>| ProbedValue { after: 2, aspect, value };
+    let answer = |value: Option<usize>| ProbeAnswerObservation { after: 2, aspect, value };
     let answers = vec![answer(Some(0)), answer(None)];
     let trial = FitObservations { seed: 7, observations, answers };
     let found = likelihood(&kitchen, &model, &trial, &mut cost);
@@ -78,7 +80,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
                         let about = places + random.random_range(0..recipes);
                         let believed = &human.people.of[0].of[about];
                         let value = believed.iter().position(|p| *p >= 0.5);
-                        trial.answers.push(ProbedValue { after, aspect: AspectId(about as u8), value });
+                        trial.answers.push(ProbeAnswerObservation { after, aspect: AspectId(about as u8), value });
                     }
                     let going_on = ObservedEvidence::Thawed { by: SessionTime::ZERO, asked: 0, teaches: 0.0 };
                     trial.observations.push(pause(going_on));

@@ -79,7 +79,7 @@ fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
         let after = |seconds: f64| one.time + SessionTime::from_secs_f64(seconds);
         [
             Observation { time: after(0.1), what: ObservedEvidence::Told { location } },
-            Observation { time: after(4.1), what: ObservedEvidence::SignalOver },
+            Observation { time: after(4.1), what: ObservedEvidence::EndedSignal },
         ]
     });
     let mut all = [observations.clone(), signals.collect()].concat();

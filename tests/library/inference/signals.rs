@@ -73,7 +73,7 @@ impl SignalBench {
 
     /// Ends the signal; the probability that it was read.
     fn read(&mut self, seconds: f64) -> f64 {
-        self.observe(seconds, ObservedEvidence::SignalOver);
+        self.observe(seconds, ObservedEvidence::EndedSignal);
         let over = self.filter.take_signal_over().expect("a signal that is over");
         assert_eq!(over.location, self.kitchen.orders[0]);
         over.read
@@ -185,7 +185,7 @@ fn without_a_delay_a_signal_is_believed_at_once_and_never_counted() {
     let mut bench = SignalBench::new(looks_at_nothing());
     bench.tell(1.0);
     assert!(bench.learned() > 0.999, "{}", bench.learned());
-    bench.observe(5.0, ObservedEvidence::SignalOver);
+    bench.observe(5.0, ObservedEvidence::EndedSignal);
     assert_eq!(bench.filter.take_signal_over(), None);
     assert_eq!(bench.filter.forecast().probability(LocationKind::Order), 1.0);
 }

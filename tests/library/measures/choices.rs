@@ -8,7 +8,7 @@ use tomcom::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
 use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, WeightedWorlds, World};
-use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialView};
+use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
 use tomcom::mind::belief::Belief;
 use tomcom::mind::choice_parameters::ChoiceParameters;
 use tomcom::mind::{ChoiceModel, RecordedBelief};
@@ -173,7 +173,7 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
         errs_about: Vec::new(),
     };
     // The wise press nine times of ten.
-    let of_trial: TrialView = (0..20).map(|index| press(if index % 10 == 0 { trash } else { put }, -0.1)).collect();
+    let of_trial: TrialBeliefs = (0..20).map(|index| press(if index % 10 == 0 { trash } else { put }, -0.1)).collect();
     let trials = vec![of_trial; 5];
     let model = ChoiceParameters::default();
     let found = PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &trials, 1);

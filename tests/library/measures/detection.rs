@@ -2,7 +2,7 @@
 
 use tomcom::base::incomplete_beta::regularized_incomplete_beta;
 use tomcom::kitchen::{AspectId, ButtonId, Kitchen};
-use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialView};
+use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs};
 use tomcom::measures::detection::{Calibration, auc};
 use tomcom::measures::flags::{FlagThresholds, ThresholdSource};
 use tomcom::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
@@ -39,7 +39,7 @@ fn the_calibration_error_weighs_bins_by_their_predictions() {
 
 /// A trial about two aspects of a kitchen: letters of the location, then of the recipe, then the estimates in tenths.
 /// `.` is believed right, `w` wrong, `E` wrong and the reason of an error.
-fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) -> TrialView {
+fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) -> TrialBeliefs {
     let letters: Vec<Vec<char>> = text.iter().map(|letters| letters.chars().collect()).collect();
     let press = |index: usize| {
         let (mut held, mut p_wrong) = (vec![0.9; kitchen.aspects.len()], vec![0.0; kitchen.aspects.len()]);
@@ -149,11 +149,11 @@ fn thresholds_are_judged_on_the_other_half_of_the_trials() {
     };
     // The first trial's episode is found from 0.7 on, the second's from 0.2 on; each is judged with the other's threshold.
     let (high, low) = (one("0700"), one("0200"));
-    let flags = |trials: &[TrialView], given| FalseBeliefDetection::from_trials(&kitchen, trials, given).flags;
+    let flags = |trials: &[TrialBeliefs], given| FalseBeliefDetection::from_trials(&kitchen, trials, given).flags;
     let found = flags(&[high.clone(), low.clone()], None);
     assert_eq!(found.thresholds_from, Some(ThresholdSource::OtherHalf));
     let given = |locations| Some(FlagThresholds { locations, recipes: 1.0 });
-    let single = |trial: &TrialView| {
+    let single = |trial: &TrialBeliefs| {
         let found = flags(std::slice::from_ref(trial), None);
         assert_eq!(found.thresholds_from, Some(ThresholdSource::SameTrial));
         assert_eq!(found.flagged_before_third_error, Some(1.0), "chosen on itself");

@@ -15,12 +15,12 @@ use tomcom::run::verify::verify;
 use tomcom::session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
-use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
+use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom::session::{Event, LogHeader, Session};
 
 use super::{files, folder, study};
 
-const BY_PARTICIPANT: TutorialReader = TutorialReader::Participant;
+const BY_PARTICIPANT: TutorialPageTurner = TutorialPageTurner::Participant;
 
 /// A recording of the tutorial alone.
 struct Lesson {
@@ -63,7 +63,7 @@ impl Lesson {
         self.tell(TutorialEvent::Pressed { button: button.to_string() })
     }
 
-    fn turn(&mut self, by: TutorialReader) -> Option<String> {
+    fn turn(&mut self, by: TutorialPageTurner) -> Option<String> {
         let (tutorial, state) = self.session().tutorial().expect("a tutorial");
         let event = match tutorial.steps.get(state.step + 1) {
             Some(step) => TutorialEvent::Shown { step: step.id.clone(), by },
@@ -75,7 +75,7 @@ impl Lesson {
     /// The wizard turns pages until this step.
     fn turn_to(&mut self, id: &str) {
         while self.session().tutorial_step().expect("a step").0.id != id {
-            assert_eq!(self.turn(TutorialReader::Wizard), None);
+            assert_eq!(self.turn(TutorialPageTurner::Wizard), None);
         }
     }
 }
@@ -185,7 +185,7 @@ fn the_page_is_told_recipes_only_while_they_are_shown() {
             assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: id }), None);
             assert!(sight(lesson.session()).tutorial.expect("a page").cards.is_empty());
         }
-        assert_eq!(lesson.turn(TutorialReader::Wizard), None);
+        assert_eq!(lesson.turn(TutorialPageTurner::Wizard), None);
     }
     assert_eq!(sight(lesson.session()).tutorial, None);
 }
@@ -195,7 +195,7 @@ fn the_wizard_can_skip_the_rest() {
     let mut lesson = Lesson::new(&folder("tutorial_skipped"));
     assert!(lesson.session().phase_lacks().is_some());
     assert!(lesson.tell(TutorialEvent::Ended { by: BY_PARTICIPANT }).is_some());
-    assert_eq!(lesson.tell(TutorialEvent::Ended { by: TutorialReader::Wizard }), None);
+    assert_eq!(lesson.tell(TutorialEvent::Ended { by: TutorialPageTurner::Wizard }), None);
     assert_eq!(lesson.session().phase_lacks(), None);
     assert!(lesson.press("take rice").is_some(), "the tutorial is over");
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use tomcom::edge::list_cache::{KeptFigures, ListCache, LogGlance};
+use tomcom::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use tomcom::edge::log::LogReader;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::study_arm::StudyArm;
@@ -13,12 +13,12 @@ use super::simulated;
 fn figures_are_found_again_by_the_log_and_not_after_it_was_changed() {
     let out = simulated("default.toml", ArmKind::Timed, "list-cache", 1, 9817);
     let recording = fs::read_dir(&out).expect("a folder").next().expect("a recording").expect("an entry").path();
-    let glance = LogGlance::read(&recording).expect("a closed log");
+    let glance = ClosedLogHeader::read(&recording).expect("a closed log");
     let header = LogReader::open(&recording).expect("a log").header;
     assert_eq!((&glance.code, glance.condition), (&header.session.participant.code, header.session.trial.condition));
     assert_eq!(glance.date, header.started);
     let caches = out.join("caches");
-    let figures = KeptFigures { arm: StudyArm::None, trial_s: 0.1 + 0.2, errors: 7 };
+    let figures = CachedRecordingNumbers { arm: StudyArm::None, trial_s: 0.1 + 0.2, errors: 7 };
     assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), None);
     ListCache::in_folder(&caches).keep([(glance.digest.clone(), figures)]);
     assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), Some(figures));
@@ -35,7 +35,7 @@ fn figures_are_found_again_by_the_log_and_not_after_it_was_changed() {
     let text = fs::read_to_string(&log).expect("a log");
     let end = text.trim_end().rfind("\"t_ns\":").expect("a time") + 7;
     fs::write(&log, format!("{}1{}", &text[..end], &text[end..])).expect("written");
-    assert_ne!(LogGlance::read(&recording).expect("still closed").digest, glance.digest);
+    assert_ne!(ClosedLogHeader::read(&recording).expect("still closed").digest, glance.digest);
     fs::write(&log, &text[..text.len() - 1]).expect("written");
-    assert_eq!(LogGlance::read(&recording), None, "the last line has no end");
+    assert_eq!(ClosedLogHeader::read(&recording), None, "the last line has no end");
 }

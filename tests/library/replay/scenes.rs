@@ -9,7 +9,7 @@ use tomcom::history::probe_wording;
 use tomcom::kitchen::Agent;
 use tomcom::run::replay::RecordingReplay;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
+use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom::session::probes::ProbeEvent;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::{Event, TimestampedEvent};
@@ -24,7 +24,7 @@ fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<TimestampedEvent>) {
     let mut events = Vec::new();
     while let Some(line) = replay.step().expect("events of a session") {
         let (judged, belief) = (&replay.follower.judged[..], Some(replay.follower.filter.belief()));
-        moments.extend(scene.see(&line.stamped, DerivedData { judged, belief }));
+        moments.extend(scene.see(&line.stamped, SceneInputs { judged, belief }));
         events.push(line.stamped);
     }
     (moments, events)

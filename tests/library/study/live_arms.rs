@@ -1,7 +1,7 @@
 //! Concepts that acted by themselves on the same seeds.
 
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::acting_arm::ActingStudyArm;
+use tomcom::study::acting_arm::SignalSenderWithParameter;
 use tomcom::study::live_arms::live_arms;
 use tomcom::study::trial_statistics::TrialStatistics;
 
@@ -9,7 +9,7 @@ use super::{near, trial};
 
 /// A trial of 200 presses of the human in an arm, with this number of belief related errors and signals.
 fn acting((arm, parameter): (StudyArm, f64), participant: &str, related: u64, signals: u64) -> TrialStatistics {
-    let acting = ActingStudyArm::from_settings(arm, parameter);
+    let acting = SignalSenderWithParameter::from_settings(arm, parameter);
     let mut trial = TrialStatistics {
         acting,
         signals,
@@ -80,6 +80,6 @@ fn one_arm_or_arms_without_common_trials_are_not_compared() {
     assert!(live_arms(&[&none, &none], &[]).is_empty());
     assert!(live_arms(&[&none, &tom], &[]).is_empty());
     // DEV by the number of presses that it proposes.
-    let dev = ActingStudyArm::from_settings(StudyArm::Dev, 3.0);
+    let dev = SignalSenderWithParameter::from_settings(StudyArm::Dev, 3.0);
     assert_eq!((dev.concept, dev.parameter), ("dev", Some(3.0)));
 }

@@ -20,7 +20,7 @@ use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::acting_arm::ActingStudyArm;
+use tomcom::study::acting_arm::SignalSenderWithParameter;
 use tomcom::study::robot_tally::RobotEventSummary;
 use tomcom::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
 
@@ -50,7 +50,10 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         planned_arm: None,
         aims: None,
         wizard_sees: WizardVisibility::State,
-        acting: ActingStudyArm::from_settings(StudyArm::from_settings(condition, ConceptName::TomCom, false), 1.5),
+        acting: SignalSenderWithParameter::from_settings(
+            StudyArm::from_settings(condition, ConceptName::TomCom, false),
+            1.5,
+        ),
         left_out: None,
         ended: Some(TrialEndReason::Presses),
         arm: ArmKind::Timed,

@@ -7,7 +7,7 @@ use tomcom::edge::files::read_session;
 use tomcom::session::plan::WantedRecording;
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
-use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
+use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 use tomcom::study::column::{CsvCell, CsvRow};
 use tomcom::study::tables::tutorial_answers::{TutorialAnswer, TutorialAnswers};
@@ -36,7 +36,7 @@ fn begun() -> ProtocolEvent {
 }
 
 fn shown(step: &str) -> ProtocolEvent {
-    ProtocolEvent::Tutorial(TutorialEvent::Shown { step: step.to_string(), by: TutorialReader::Participant })
+    ProtocolEvent::Tutorial(TutorialEvent::Shown { step: step.to_string(), by: TutorialPageTurner::Participant })
 }
 
 fn answered(step: &str, choice: u8) -> ProtocolEvent {

@@ -79,7 +79,7 @@ pub struct PressEstimate {
     pub state: State,
     /// The estimate of the human's belief before the press.
     pub belief: DirichletBelief,
-    /// The evidence that the filter had received up to the press.
+    /// Likelihood of the press under the estimate before the press, and quality of the belief samples behind it.
     pub evidence: PressEvidence,
 }
 

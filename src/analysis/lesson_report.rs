@@ -31,7 +31,7 @@ pub struct WizardTrainingSummary {
     pub times: u64,
     /// Duration of all training sessions together, in minutes.
     pub minutes: f64,
-    /// Criterion of the last training session; null if there was none.
+    /// Criterion that the wizard had to meet in the last training session; null if there was none.
     pub criterion: Option<TrainingCriterion>,
     /// Whether the wizard met the criterion in the last training session; null if there was none.
     pub met: Option<bool>,

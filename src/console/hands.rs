@@ -25,7 +25,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         ManualAction::Correct => ask(model, PickerQuestion::Place),
         ManualAction::HoldRobot if session.robot.held => {
             let words = match session.robot.stopped {
-                true => "the robot is released but still stopped",
+                true => "the robot is no longer held, but still stopped",
                 false => "the robot is released and continues",
             };
             send(model, session, Event::RobotReleased { by }, NoticeLevel::Done, words)

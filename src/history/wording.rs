@@ -280,7 +280,7 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
             }
         }
         .to_string(),
-        TrackerEvent::Dropped(counts) => format!("gaze not recorded so far: {}", drops(counts)),
+        TrackerEvent::Dropped(counts) => format!("gaze input dropped so far: {}", drops(counts)),
         TrackerEvent::ClockSet { by_s, .. } => {
             format!(
                 "the eye tracker's clock was set {} by {:.3} s",

@@ -183,7 +183,8 @@ pub struct ReadingRate {
 }
 
 impl ReadingRate {
-    /// Readings per second of a location whose area is `distance_m` metres away from the point of gaze.
+    /// Times per second that a person reads the content of a location whose area is `distance_m` metres away from the
+    /// point of gaze.
     #[inline]
     pub fn at(&self, distance_m: f64, confidence: f64) -> f64 {
         self.full_hz * (-distance_m * distance_m / self.spread_m2).exp() * confidence

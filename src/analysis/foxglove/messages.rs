@@ -22,7 +22,7 @@ const WARNING: u8 = 3;
 /// A message on a channel of an MCAP file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct McapMessage {
-    /// The channel on which the message is sent.
+    /// Channel of the MCAP file to which the message is written.
     pub channel: McapChannel,
     /// Session time at which the event was recorded.
     pub logged: SessionTime,

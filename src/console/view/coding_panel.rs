@@ -133,7 +133,7 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
             }
         }
     } else {
-        lines.push(("enter goes to the first error".to_string(), TextRole::Quiet));
+        lines.push(("enter goes to the human's first error".to_string(), TextRole::Quiet));
     }
     for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height.saturating_sub(1))) {
         let style = brush.style(*role);

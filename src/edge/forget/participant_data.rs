@@ -21,7 +21,7 @@ use crate::study::report::page_head;
 /// Largest size of a report or a training record that is searched, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// Everything that a folder contains about one participant code.
+/// All data about one participant code that were found in a folder, for their deletion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParticipantData {
     /// Code of the participant whose data are to be deleted.

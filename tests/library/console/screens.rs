@@ -99,7 +99,7 @@ fn help_and_questions_and_the_ascii_fallback() {
     assert_eq!(stage.model.dialog, Some(Dialog::Help));
     check_snapshot("console", "help_80x24", stage.screen((80, 24)));
     check_snapshot("console", "help_120x40", stage.screen((120, 40)));
-    assert!(stage.screen((200, 60)).contains("shift-tab previous panel"), "keys with long names are whole");
+    assert!(stage.screen((200, 60)).contains("shift-tab show the previous panel"), "keys with long names are whole");
     stage.wait(1.0);
     stage.key(KeyCode::Down);
     assert_eq!(stage.model.dialog, None, "all of it is seen: every key closes");

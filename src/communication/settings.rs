@@ -39,7 +39,7 @@ pub struct AssistantSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShadowMode {
-    /// The assistant computes recommendations beside the wizard, who may see them.
+    /// The assistant computes recommendations in all trials; the wizard may see them.
     #[default]
     On,
     /// The assistant computes nothing in trials in which the assistant does not send signals.

@@ -38,7 +38,7 @@ pub enum SessionStart {
     Continued(PathBuf),
 }
 
-/// The recordings that a participant in a study plan still has to make.
+/// A request to make the recordings that a participant in a study plan still needs.
 #[derive(Clone, Debug)]
 pub struct RemainingTrials {
     /// Session settings that contain the study plan.

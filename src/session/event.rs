@@ -159,22 +159,22 @@ pub enum Event {
     /// The wizard holds the robot: while held, the robot starts no press and waits before the button of the ongoing
     /// press, until the wizard releases it.
     RobotHeld {
-        /// Who holds the robot back (wizard or assistant).
+        /// Who holds the robot back; only the wizard can.
         by: Sender,
     },
     /// The robot, which was held back, may continue.
     RobotReleased {
-        /// Who lets the held robot continue (wizard or assistant).
+        /// Who lets the held robot continue; only the wizard can.
         by: Sender,
     },
     /// The wizard skips the robot's ongoing press; the robot decides anew.
     RobotSkipped {
-        /// Who skips the robot's press (wizard or assistant).
+        /// Who skips the robot's press; only the wizard can.
         by: Sender,
     },
     /// The wizard chooses the robot's next press.
     RobotDriven {
-        /// Who chose the robot's next press (wizard or assistant).
+        /// Who chose the robot's next press; only the wizard can.
         by: Sender,
         /// Name of the button that the robot shall press.
         button: String,

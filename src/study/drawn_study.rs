@@ -113,7 +113,7 @@ fn papers_p(study: &[StudyArmTrial]) -> Option<f64> {
     mixed_anova(&rows?).interaction.map(|test| test.p)
 }
 
-/// Pool of participants from which studies are drawn.
+/// Draws studies from a pool of simulated participants.
 #[derive(Clone, Debug)]
 pub struct StudySampler<'a> {
     pool: &'a SimulationPool,

@@ -54,7 +54,7 @@ pub struct FalseBeliefGroundTruth {
     pub began: SessionTime,
     /// Session time at which the false belief ended; `None` if the false belief lasted until the end of the trial.
     pub ended: Option<SessionTime>,
-    /// Whether the false belief led to an error, which makes it an episode.
+    /// Whether the false belief led to an error.
     pub harmful: bool,
 }
 

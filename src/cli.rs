@@ -49,7 +49,7 @@ use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
 use crate::edge::log::{self, LogEnding, LogReader};
-use crate::run::plan::{self, StudyPlanSummary};
+use crate::run::plan::{self, StudyProgress};
 use crate::run::replay::RecordingReplay;
 use crate::run::review_console as console_over;
 use crate::run::{options, standing, timing, verify};
@@ -113,7 +113,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
         let found = "a session without a plan".to_string();
         return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
     };
-    let figures = StudyPlanSummary::from_study(&study, &args.out)?;
+    let figures = StudyProgress::from_study(&study, &args.out)?;
     let Some(file) = &args.freeze else {
         return print(args.format, &figures, || plan::describe(&figures));
     };

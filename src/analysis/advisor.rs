@@ -11,7 +11,7 @@ use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::signal_model::SignalForecast;
+use crate::mind::signal_model::SignalReadingForecast;
 use crate::session::Session;
 
 /// A request for advice: the session after an event and all its immediate consequences.
@@ -27,7 +27,7 @@ pub struct AdviceRequest {
     changed: Vec<AspectId>,
     robot: RobotIntent,
     robot_press_s: f64,
-    forecast: SignalForecast,
+    forecast: SignalReadingForecast,
     /// The signals that can be sent at the time of the request.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.

@@ -80,7 +80,7 @@ impl BeliefCheck {
 
 /// Collects, for each counted press of the human, the belief estimate before the press and the press's judgement.
 #[derive(Default)]
-pub struct PressViews {
+pub struct TrialBeliefCollector {
     /// Presses of the trial so far, each with the belief estimate before the press.
     pub trial: TrialBeliefs,
     /// Recorded belief of the participant before the next press: probability of the true value, for each state aspect.
@@ -88,7 +88,7 @@ pub struct PressViews {
     before: Before,
 }
 
-impl PressViews {
+impl TrialBeliefCollector {
     /// Adds an event that has just been applied to the session. A counted press of the human is added with its
     /// judgement and with the belief estimate before the press.
     pub fn add(

@@ -2,7 +2,7 @@
 
 use super::exclusion_status::ExclusionStatus;
 use super::offer_summary::{OfferSummary, TimedOffer};
-use super::watcher::{ComparisonFollower, ComparisonRequest};
+use super::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use super::wizard_log::{WizardLog, WizardSummary};
 use crate::history::comparison::SenderComparison;
 use crate::kitchen::Kitchen;
@@ -11,15 +11,15 @@ use crate::session::settings::Condition;
 use crate::session::{Session, TimestampedEvent};
 
 /// Compares wizard and assistants while a recording is read, event by event.
-pub struct RecordingComparer {
-    follower: ComparisonFollower,
+pub struct SenderComparer {
+    follower: SenderComparisonFollower,
     wizard: WizardLog,
 }
 
-impl RecordingComparer {
+impl SenderComparer {
     /// The comparer at the beginning of a session, before the session's first event.
-    pub fn new(session: Session, request: &ComparisonRequest) -> RecordingComparer {
-        RecordingComparer { follower: ComparisonFollower::new(session, request), wizard: WizardLog::default() }
+    pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparer {
+        SenderComparer { follower: SenderComparisonFollower::new(session, request), wizard: WizardLog::default() }
     }
 
     /// Applies the next event of the recording to the session and to the comparison.
@@ -38,23 +38,23 @@ impl RecordingComparer {
     }
 
     /// The result of the comparison, once the last event was added. `recording`: name of the recording.
-    pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> ComparedRecording {
+    pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> RecordingSenderComparison {
         self.follower.finish();
         let comparison = self.follower.comparison(true);
         let is_wizards = self.session().spec.trial.condition == Condition::Wizard;
         let wizard = is_wizards.then(|| self.wizard.figures(&self.follower.follower));
         let offers = self.session().makes_offers.then(|| TimedOffer::visible(self.session()));
         let offers = offers.map(|offers| OfferSummary::from_offers(&offers));
-        ComparedRecording { recording, follower: self.follower, standing, comparison, wizard, offers }
+        RecordingSenderComparison { recording, follower: self.follower, standing, comparison, wizard, offers }
     }
 }
 
 /// Result of comparing wizard and assistants over one recording.
-pub struct ComparedRecording {
+pub struct RecordingSenderComparison {
     /// Path of the recording, as the user gave it.
     pub recording: String,
     /// The session at the recording's end, with the assistants' recommendations.
-    pub follower: ComparisonFollower,
+    pub follower: SenderComparisonFollower,
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
     /// Comparison of the communications (signals or proposals) of wizard and assistants.
@@ -65,7 +65,7 @@ pub struct ComparedRecording {
     pub offers: Option<OfferSummary>,
 }
 
-impl ComparedRecording {
+impl RecordingSenderComparison {
     /// The kitchen in which the recording was made.
     pub fn kitchen(&self) -> &Kitchen {
         &self.follower.follower.session.kitchen

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::compared_recording::ComparedRecording;
+use super::compared_recording::RecordingSenderComparison;
 use super::exclusion_status::ExclusionStatus;
 use super::lesson_report::WizardTrainingSummary;
 use super::offer_summary::OfferSummary;
-use super::watcher::ComparisonRequest;
+use super::watcher::SenderComparisonSettings;
 use super::wizard_log::{self, WizardSummary};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
@@ -58,7 +58,7 @@ pub struct RecordingComparison {
     /// Number of the human's presses in the trial.
     pub human_actions: u64,
     /// Communications of the wizard and of each assistant in the recording.
-    pub lanes: Vec<SenderSummary>,
+    pub lanes: Vec<SenderCommunicationList>,
     /// Summary of the wizard's signals; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     /// Statistics of the offers that a wizard could see; null in recordings without offers.
@@ -69,16 +69,16 @@ pub struct RecordingComparison {
 
 /// Communications of one sender in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SenderSummary {
+pub struct SenderCommunicationList {
     /// Name of the sender: "wizard", or an assistant's concept as "tom-com".
     pub name: String,
     /// The sender's communications, in the order of time.
-    pub communications: Vec<CommunicationSummary>,
+    pub communications: Vec<ListedCommunication>,
 }
 
 /// One communication (a signal or a proposal), as `tomcom compare` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CommunicationSummary {
+pub struct ListedCommunication {
     /// Number of the human's presses before the communication.
     pub press: u32,
     /// Time of the communication on the trial's clock, in seconds.
@@ -105,17 +105,17 @@ pub struct UnmatchedCommunicationSummary {
     by_sender: bool,
     /// The communication that has no match.
     #[serde(flatten)]
-    pub spoken: CommunicationSummary,
+    pub spoken: ListedCommunication,
     /// Context of the communication; null if the assistants had not been asked for advice before the communication.
-    pub knew: Option<ContextSummary>,
+    pub knew: Option<CommunicationContextSummary>,
 }
 
 /// Context of a communication: beliefs, recommendation and the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ContextSummary {
+pub struct CommunicationContextSummary {
     /// Estimated belief about every state aspect, without the effect of signals sent within the window of the
     /// comparison.
-    pub beliefs: Vec<AspectContext>,
+    pub beliefs: Vec<ListedEstimatedBelief>,
     /// The assistant's recommendation at the time of the communication.
     pub advice: Option<Recommendation>,
     /// Content of the wizard's screen then; null before the screen was first drawn, and without a wizard.
@@ -124,7 +124,7 @@ pub struct ContextSummary {
 
 /// Estimated belief about one state aspect, beside the aspect's true value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AspectContext {
+pub struct ListedEstimatedBelief {
     /// Name of the state aspect.
     pub aspect: String,
     /// True value of the aspect.
@@ -137,8 +137,8 @@ pub struct AspectContext {
 
 impl ComparisonSummary {
     /// Summarises comparisons. If there are several recordings, the agreement leaves out excluded ones.
-    pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
-        let counting: Vec<&ComparedRecording> =
+    pub fn from_recordings(watched: &[RecordingSenderComparison]) -> ComparisonSummary {
+        let counting: Vec<&RecordingSenderComparison> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
         let mut pairs: Vec<(SenderPairSummary, MatchCounts)> = Vec::new();
         for one in counting {
@@ -182,11 +182,11 @@ impl ComparisonSummary {
 }
 
 impl RecordingComparison {
-    fn from_recording(watched: &ComparedRecording) -> RecordingComparison {
+    fn from_recording(watched: &RecordingSenderComparison) -> RecordingComparison {
         let comparison = &watched.comparison;
-        let lanes = comparison.lanes.iter().map(|lane| SenderSummary {
+        let lanes = comparison.lanes.iter().map(|lane| SenderCommunicationList {
             name: lane.name.clone(),
-            communications: lane.spoken.iter().map(CommunicationSummary::from_communication).collect(),
+            communications: lane.spoken.iter().map(ListedCommunication::from_communication).collect(),
         });
         let differences = comparison.differences.iter().enumerate();
         RecordingComparison {
@@ -203,10 +203,10 @@ impl RecordingComparison {
     }
 }
 
-impl CommunicationSummary {
-    fn from_communication(spoken: &Communication) -> CommunicationSummary {
+impl ListedCommunication {
+    fn from_communication(spoken: &Communication) -> ListedCommunication {
         let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
-        CommunicationSummary { press, clock_s, says: spoken.what.words() }
+        ListedCommunication { press, clock_s, says: spoken.what.words() }
     }
 }
 
@@ -218,7 +218,7 @@ impl UnmatchedCommunicationSummary {
     }
 
     fn from_unmatched(
-        watched: &ComparedRecording,
+        watched: &RecordingSenderComparison,
         index: usize,
         difference: &UnmatchedCommunication,
     ) -> UnmatchedCommunicationSummary {
@@ -228,14 +228,14 @@ impl UnmatchedCommunicationSummary {
             let held = |(index, held): (usize, &AspectBeliefSnapshot)| {
                 let aspect = &watched.kitchen().aspects[index];
                 let truth = watched.kitchen().true_value(known.state, AspectId(index as u8));
-                AspectContext {
+                ListedEstimatedBelief {
                     aspect: aspect.name.clone(),
                     truth: aspect.labels[truth].clone(),
                     believes: aspect.labels[usize::from(held.believes)].clone(),
                     p_truth: (f64::from(held.p_truth) * 1e4).round() / 1e4,
                 }
             };
-            ContextSummary {
+            CommunicationContextSummary {
                 beliefs: known.held.iter().enumerate().map(held).collect(),
                 advice: comparison.advice(difference).cloned(),
                 screen: known.screen.clone(),
@@ -248,14 +248,14 @@ impl UnmatchedCommunicationSummary {
             not_by: comparison.lanes[difference.not].name.clone(),
             pair: difference.lane.max(difference.not),
             by_sender: difference.lane == 0,
-            spoken: CommunicationSummary::from_communication(spoken),
+            spoken: ListedCommunication::from_communication(spoken),
             knew,
         }
     }
 }
 
 /// The comparison as text for the terminal, with the request that led to it.
-pub fn describe(figures: &ComparisonSummary, request: &ComparisonRequest) -> String {
+pub fn describe(figures: &ComparisonSummary, request: &SenderComparisonSettings) -> String {
     let mut text = format!(
         "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
         "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
@@ -287,7 +287,7 @@ pub fn describe(figures: &ComparisonSummary, request: &ComparisonRequest) -> Str
 }
 
 /// The command-line options that ask for the same comparison again.
-fn flags(request: &ComparisonRequest) -> String {
+fn flags(request: &SenderComparisonSettings) -> String {
     let mut flags = String::new();
     if !request.with.is_empty() {
         let names: Vec<&str> = request.with.iter().map(|concept| concept.name()).collect();

@@ -19,8 +19,8 @@ use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 use crate::mind::recorded_estimate::RecordedEstimate;
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
-use crate::session::gaze_awareness::GazeAwareness;
-use crate::session::probes::{OpenProbe, ProbeEvent, ProbeSubject};
+use crate::session::gaze_awareness::UnawarenessDetector;
+use crate::session::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::session::silence::USUAL_SHARE;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent, apply};
@@ -44,7 +44,7 @@ pub struct SessionFollower {
     judge: PressJudge,
     attributor: ErrorAttributor,
     /// State of the judgement by gaze of which changes the human seems unaware.
-    awareness: GazeAwareness,
+    awareness: UnawarenessDetector,
     /// Session time of the last update of the belief estimate.
     updated_at: Option<SessionTime>,
     /// Recorded belief of the participant before its next press.
@@ -54,7 +54,7 @@ pub struct SessionFollower {
     /// Whether the follower attributes errors to their causes.
     finds_causes: bool,
     /// The belief estimate before the last counted press of the human.
-    pub estimated: Option<PressEstimate>,
+    pub estimated: Option<PressBeliefEstimate>,
     /// The belief estimate at the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
 }
@@ -72,7 +72,7 @@ pub struct ProbedEstimate {
 
 /// The belief estimate before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PressEstimate {
+pub struct PressBeliefEstimate {
     /// Sequence number of the press.
     pub press: u64,
     /// True state of the kitchen before the press.
@@ -83,7 +83,7 @@ pub struct PressEstimate {
     pub evidence: PressEvidence,
 }
 
-impl PressEstimate {
+impl PressBeliefEstimate {
     /// The belief estimate before the press in the form that the log records.
     pub fn witness(&self, kitchen: &Kitchen) -> RecordedEstimate {
         RecordedEstimate::new(kitchen, self.press, &self.belief, self.state, self.evidence)
@@ -128,7 +128,7 @@ impl SessionFollower {
             cost,
             judge,
             attributor,
-            awareness: GazeAwareness::default(),
+            awareness: UnawarenessDetector::default(),
             updated_at: None,
             belief,
             told_cause,
@@ -209,7 +209,7 @@ impl SessionFollower {
         }
         let belief = self.filter.belief();
         match event {
-            Event::TrialStarted => self.awareness = GazeAwareness::default(),
+            Event::TrialStarted => self.awareness = UnawarenessDetector::default(),
             Event::Gaze(sample) if session.gaze.fault.is_none() => {
                 let (kitchen, state) = (&session.kitchen, session.state);
                 let tells = |signal: &Signal, aspect| {
@@ -246,7 +246,7 @@ impl SessionFollower {
         }
         self.remember(stamped);
         if let (Some(press), Some(belief), Some(evidence)) = (human_press, belief, self.filter.evidence()) {
-            self.estimated = Some(PressEstimate { press: stamped.seq, state: press.before, belief, evidence });
+            self.estimated = Some(PressBeliefEstimate { press: stamped.seq, state: press.before, belief, evidence });
         }
     }
 
@@ -321,7 +321,7 @@ impl SessionFollower {
     }
 
     /// The locations about which a freeze probe asked, as a bit set.
-    fn asked_about(&self, probe: &OpenProbe) -> u32 {
+    fn asked_about(&self, probe: &StartedProbe) -> u32 {
         let asked = probe.questions.iter().take(probe.shown.map_or(0, |shown| shown + 1));
         let locations = asked.filter_map(|question| match &question.about {
             ProbeSubject::Location { location } => self.session.kitchen.location_named(location),

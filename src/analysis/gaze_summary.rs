@@ -9,7 +9,7 @@ use crate::session::gaze_samples::faults;
 
 /// Gaze quality of a recording: numbers of samples, faults and losses, and measured accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GazeSummary {
+pub struct GazeQualitySummary {
     /// Number of recorded gaze samples.
     pub samples: u64,
     /// Number of recorded gaze samples outside the display or with a confidence below the threshold.
@@ -35,12 +35,12 @@ pub struct GazeSummary {
     pub precision_deg: Option<f64>,
 }
 
-impl GazeSummary {
+impl GazeQualitySummary {
     /// Gaze quality of a session up to its last event.
-    pub fn from_session(session: &Session) -> GazeSummary {
+    pub fn from_session(session: &Session) -> GazeQualitySummary {
         let (gaze, tracker) = (&session.gaze, &session.tracker);
         let calibrated = session.calibrated.as_ref();
-        GazeSummary {
+        GazeQualitySummary {
             samples: gaze.samples,
             unusable: gaze.unusable,
             faults: gaze.judge.counts,

@@ -18,22 +18,22 @@ pub struct KitchenSummary {
     /// for JSON readers.
     pub states: String,
     /// The state aspects with the number of values that each can have.
-    pub aspects: Vec<AspectSummary>,
+    pub aspects: Vec<AspectValueCount>,
     /// A shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
     /// Tags in the corners of the wall display for eye trackers; null if there is no room for tags.
-    pub tags: Option<DisplayTagsSummary>,
+    pub tags: Option<DisplayTagLayout>,
 }
 
 /// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DisplayTagsSummary {
+pub struct DisplayTagLayout {
     /// Name of the family of tags to which the tags belong.
     pub family: &'static str,
     /// Length of the edges of the tags' black squares, in metres.
     pub edge_m: f64,
     /// The tags, one in each corner of the display.
-    pub tags: Vec<DisplayTagSummary>,
+    pub tags: Vec<DisplayTagGeometry>,
     /// Corners of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
@@ -41,7 +41,7 @@ pub struct DisplayTagsSummary {
 
 /// A tag in a corner of the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DisplayTagSummary {
+pub struct DisplayTagGeometry {
     /// Number of the tag in its family.
     pub id: u16,
     /// Position and size (x, y, w, h) of the tag with its white border, in fractions of the display.
@@ -53,12 +53,12 @@ pub struct DisplayTagSummary {
     pub cells: Vec<String>,
 }
 
-impl DisplayTagsSummary {
-    fn from_tags(tags: &DisplayTags) -> DisplayTagsSummary {
+impl DisplayTagLayout {
+    fn from_tags(tags: &DisplayTags) -> DisplayTagLayout {
         let row = |row: &[bool; CELLS]| row.iter().map(|black| if *black { '#' } else { '.' }).collect();
         let tag = |tag: &DisplayTag| {
             let area = [tag.area.x, tag.area.y, tag.area.w, tag.area.h];
-            DisplayTagSummary {
+            DisplayTagGeometry {
                 id: tag.id,
                 area,
                 corners: tag.black_corners(),
@@ -66,13 +66,13 @@ impl DisplayTagsSummary {
             }
         };
         let tags_drawn = tags.corners.iter().map(tag).collect();
-        DisplayTagsSummary { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
+        DisplayTagLayout { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
     }
 }
 
 /// A state aspect with the number of its possible values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AspectSummary {
+pub struct AspectValueCount {
     /// Name of the state aspect.
     pub name: String,
     /// Number of the aspect's possible values.
@@ -95,14 +95,14 @@ impl KitchenSummary {
     pub fn from_kitchen(kitchen: &Arc<Kitchen>) -> KitchenSummary {
         let mut cost = CostToGo::new(kitchen.clone());
         let aspects = kitchen.aspects.iter();
-        let aspects = aspects.map(|aspect| AspectSummary { name: aspect.name.clone(), values: aspect.values.len() });
+        let aspects = aspects.map(|aspect| AspectValueCount { name: aspect.name.clone(), values: aspect.values.len() });
         let plans = (0..kitchen.dishes.len()).map(|index| plan(kitchen, &mut cost, DishId(index as u8)));
         KitchenSummary {
             name: kitchen.name.clone(),
             states: kitchen.state_count().to_string(),
             aspects: aspects.collect(),
             plans: plans.collect(),
-            tags: DisplayTags::place(kitchen).ok().as_ref().map(DisplayTagsSummary::from_tags),
+            tags: DisplayTags::place(kitchen).ok().as_ref().map(DisplayTagLayout::from_tags),
         }
     }
 }

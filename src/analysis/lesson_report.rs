@@ -5,13 +5,13 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::training_record::{JudgedFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
+use super::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 use crate::base::words::count;
 use crate::communication::recommendation::{aspects_told, phrase};
 use crate::communication::{Signal, signals, unavailable};
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen};
-use crate::measures::matching::{CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, WINDOW};
+use crate::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, WINDOW};
 use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use crate::mind::RecordedBelief;
 use crate::session::Session;
@@ -64,8 +64,8 @@ impl WizardTrainingSummary {
 }
 
 /// The record of a false belief episode before any signal of the wizard about that false belief was judged.
-pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedFalseBelief {
-    JudgedFalseBelief {
+pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> HarmfulFalseBelief {
+    HarmfulFalseBelief {
         aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
         began_ns: spell.began,
         corrected_ns: spell.corrected.map(|(end, _)| end),
@@ -79,7 +79,7 @@ pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedFalseBelie
 }
 
 /// Fills in the record what the participant believes now, and which signal would correct that belief.
-pub fn hear(belief: &mut JudgedFalseBelief, session: &Session, aspect: AspectId, witness: &RecordedBelief) {
+pub fn hear(belief: &mut HarmfulFalseBelief, session: &Session, aspect: AspectId, witness: &RecordedBelief) {
     let kitchen = &session.kitchen;
     let Some(told) = witness.aspects.get(aspect.index()) else { return };
     let (values, value) = (&kitchen.aspects[aspect.index()], kitchen.true_value(session.state, aspect));
@@ -101,13 +101,13 @@ pub fn hear(belief: &mut JudgedFalseBelief, session: &Session, aspect: AspectId,
 }
 
 /// A false belief in words: "recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri".
-pub fn about(belief: &JudgedFalseBelief) -> String {
+pub fn about(belief: &HarmfulFalseBelief) -> String {
     let what = belief.aspect.replace('_', " ");
     if belief.words.is_empty() { what } else { format!("{what}: {}", belief.words) }
 }
 
 /// The signal that would have corrected a false belief, in words.
-pub fn right(belief: &JudgedFalseBelief) -> String {
+pub fn right(belief: &HarmfulFalseBelief) -> String {
     belief.signal.as_ref().map_or("no signal could tell it".to_string(), |signal| {
         format!("right would have been: {}", wording::signal(signal))
     })
@@ -167,7 +167,7 @@ fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
 
 /// A false belief as two lines of text: when it was held, what was believed, which signal would have corrected the
 /// belief, and what was sent meanwhile.
-fn told(belief: &JudgedFalseBelief, signals: &[JudgedSignal]) -> [String; 2] {
+fn told(belief: &HarmfulFalseBelief, signals: &[JudgedSignal]) -> [String; 2] {
     let end = belief.corrected_ns.map_or("the end".to_string(), |end| end.to_string());
     let errors = count(belief.errors, "error", "errors");
     let head = format!("{} to {end}  {}; {errors}", belief.began_ns, about(belief));
@@ -217,7 +217,7 @@ pub fn with_oneself(kitchen: &Kitchen, one: &WatchedRecording, other: &WatchedRe
             Signal::Highlight(_) => CommunicationKind::Highlight,
             Signal::Propose(_) => CommunicationKind::Proposal,
         };
-        let content = CommunicationTarget { kind, target: signal.signal.location(kitchen) };
+        let content = ComparedContent { kind, target: signal.signal.location(kitchen) };
         CommunicationEvent { press: signal.press, clock: signal.clock_ns, content }
     };
     let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<CommunicationEvent>>());

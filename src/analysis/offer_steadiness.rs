@@ -27,7 +27,7 @@ const REOPENS_S: f64 = 5.0;
 
 /// Results of the scripted hand: how often its key `enter` meant the offer that the hand had read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct ScriptedHandSummary {
+pub struct OfferReadingCounts {
     /// Number of readings of an offer on the screen that were followed by the key while the trial ran.
     pub readings: u64,
     /// Number of readings after which the key meant the offer that the hand had read.
@@ -49,7 +49,7 @@ pub struct OfferSteadinessSummary {
     /// seconds; null without recommendations.
     pub raw_median_s: Option<f64>,
     /// How often the scripted hand's key `enter` meant the offer that the hand had read.
-    pub hand: ScriptedHandSummary,
+    pub hand: OfferReadingCounts,
     /// Number of closed offers, without those that the wizard used and those that the end of the trial closed.
     pub could_reopen: u64,
     /// Number of closed offers whose signal was offered again within 5 s.
@@ -79,7 +79,7 @@ pub struct OfferSteadinessTally {
     random: Stream,
     next_reading: Option<SessionTime>,
     readings: Vec<Reading>,
-    hand: ScriptedHandSummary,
+    hand: OfferReadingCounts,
     open_s: f64,
     at_or_below_0_s: f64,
     /// The signal that the assistant recommends at present, and the time since which the recommended signal is the
@@ -95,7 +95,7 @@ impl OfferSteadinessTally {
             random: stream(session.spec.seed, "reading hand", session.trial),
             next_reading: None,
             readings: Vec::new(),
-            hand: ScriptedHandSummary::default(),
+            hand: OfferReadingCounts::default(),
             open_s: 0.0,
             at_or_below_0_s: 0.0,
             raw: None,

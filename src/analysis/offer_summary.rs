@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
-use crate::communication::offer::{Offer, OfferCloseReason, OfferKeyUse};
+use crate::communication::offer::{Offer, OfferCloseReason, OfferKeyKind};
 use crate::measures::median;
 use crate::session::Session;
 
@@ -112,8 +112,8 @@ impl OfferSummary {
             by_reason.entry(reason).or_default().push(stood_s);
             reactions.extend(one.reaction_s);
             *match one.offer.used.map(|used| used.how) {
-                Some(OfferKeyUse::Taken) => &mut summary.taken,
-                Some(OfferKeyUse::OwnKey) => &mut summary.by_own_key,
+                Some(OfferKeyKind::Taken) => &mut summary.taken,
+                Some(OfferKeyKind::OwnKey) => &mut summary.by_own_key,
                 None => &mut summary.not_taken,
             } += 1;
         }

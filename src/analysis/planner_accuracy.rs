@@ -114,7 +114,7 @@ impl PlannerComparison {
     /// plain reference planner answers directly after the planner, so that the machine is equally fast for both.
     pub fn answer(&self, steps: &mut [ComparedAdviceRequest], reference_steps: usize, done: impl Fn()) {
         let every = (reference_steps > 0).then(|| steps.len().div_ceil(reference_steps));
-        let mut planner = BenchPlanner::default();
+        let mut planner = ThreadPlanner::default();
         for (index, step) in steps.iter_mut().enumerate() {
             let (advisor, answered) = planner.advisor(self, step.recording, 1);
             for question in &self.asked[step.recording].questions[*answered..step.question] {
@@ -133,7 +133,7 @@ impl PlannerComparison {
     }
 
     /// The step with the converged answer added. Several planners can converge steps in parallel, in any order.
-    pub fn converge(&self, planner: &mut BenchPlanner, step: &ComparedAdviceRequest) -> ComparedAdviceRequest {
+    pub fn converge(&self, planner: &mut ThreadPlanner, step: &ComparedAdviceRequest) -> ComparedAdviceRequest {
         let (advisor, _) = planner.advisor(self, step.recording, CONVERGED);
         ComparedAdviceRequest { converged: benefits(advisor, self.question(step)), ..step.clone() }
     }
@@ -171,12 +171,12 @@ fn benefits(advisor: &mut Advisor, question: &AdviceRequest) -> Vec<(Signal, f64
 
 /// The planner of one thread, made for the recording of the step that it answers.
 #[derive(Debug, Default)]
-pub struct BenchPlanner {
+pub struct ThreadPlanner {
     /// Index of the recording, its planner, and the number of the recording's requests that the planner has answered.
     advisor: Option<(usize, Advisor, usize)>,
 }
 
-impl BenchPlanner {
+impl ThreadPlanner {
     /// The planner for a recording's session, with `times` as many rollouts, and the number of requests that this
     /// planner has answered.
     fn advisor(&mut self, bench: &PlannerComparison, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {

@@ -29,7 +29,7 @@ pub enum ProbeAccuracyGrouping {
 
 /// Share of right answers in one group of probe questions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ProbeAccuracy {
+pub struct ProbeAnswerAccuracy {
     /// Property by which probe questions were grouped.
     pub by: ProbeAccuracyGrouping,
     /// Name of the group of probe questions.
@@ -100,7 +100,7 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
 
 /// Accuracy in each group of each grouping, over the probe questions of the main results; `participants` holds the
 /// trials of each participant.
-pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAccuracy> {
+pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerAccuracy> {
     let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
         .flatten()
@@ -124,7 +124,7 @@ pub fn accuracy(
     (by, group): (ProbeAccuracyGrouping, &str),
     seed: u64,
     is_in: impl Fn(&ProbedTrial, &ProbedQuestion) -> bool,
-) -> ProbeAccuracy {
+) -> ProbeAnswerAccuracy {
     let of_one = |trials: &Vec<&ProbedTrial>| -> Vec<(f64, bool)> {
         let all = trials.iter().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
         all.filter_map(|one| Some((one.weight(), !one.is_wrong()?))).collect()
@@ -145,7 +145,7 @@ pub fn accuracy(
     };
     let questions =
         || participants.iter().flatten().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
-    ProbeAccuracy {
+    ProbeAnswerAccuracy {
         by,
         group: group.to_string(),
         n: questions().filter(|one| one.is_wrong().is_some()).count() as u64,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::follower::SessionFollower;
 use super::probe_record::{
-    AspectAtFreeze, BeliefAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial,
+    AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
 use super::seen_contents::LastSeenContents;
 use crate::base::incomplete_beta::regularized_incomplete_beta;
@@ -158,7 +158,8 @@ impl ProbeCollector {
             estimate_p: labels.iter().cloned().zip(estimate.mean().iter().copied()).collect::<BTreeMap<_, _>>(),
             estimate_p_truth,
             estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
-            believed: believed.map(|own| BeliefAtFreeze { believes: own.believes.clone(), p_truth: own.p_truth }),
+            believed: believed
+                .map(|own| RecordedBeliefAtFreeze { believes: own.believes.clone(), p_truth: own.p_truth }),
             changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
             changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
             usual: of_location(location.map(|location| self.seen.usual(session, location))),

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::probe_accuracy::{
-    ProbeAccuracy, ProbeAccuracyGrouping, SituationAwarenessEffect, accuracies, accuracy, awareness_effect,
+    ProbeAccuracyGrouping, ProbeAnswerAccuracy, SituationAwarenessEffect, accuracies, accuracy, awareness_effect,
 };
 use super::probe_detection::{ProbeDetection, WeightedProbeBelief};
 use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial};
@@ -38,17 +38,17 @@ pub struct ProbeSummary {
     /// How well the answers to freeze probes are predicted by the estimate and by baselines.
     pub log_scores: ProbeLogScores,
     /// Share of right answers over all questions of the main results.
-    pub accuracy: ProbeAccuracy,
+    pub accuracy: ProbeAnswerAccuracy,
     /// Share of right answers in groups of questions: by state aspect, by change of the location, by condition.
-    pub accuracies: Vec<ProbeAccuracy>,
+    pub accuracies: Vec<ProbeAnswerAccuracy>,
     /// Effect of assistance on situation awareness; null if no participant has answers with and without assistance.
     pub assistance: Option<SituationAwarenessEffect>,
     /// Share of right answers to questions about what comes next (level 2 of situation awareness), which are not in the
     /// main results.
-    pub level_2: Vec<ProbeAccuracy>,
+    pub level_2: Vec<ProbeAnswerAccuracy>,
     /// For simulated participants, accuracy of the estimate measured by what the participants believed, at the same
     /// probe questions; null for people.
-    pub by_true_beliefs: Option<TrueBeliefComparison>,
+    pub by_true_beliefs: Option<RecordedBeliefComparison>,
 }
 
 /// Numbers of freeze probes and of their questions.
@@ -81,7 +81,7 @@ pub struct ProbeCounts {
 
 /// Comparison of probe answers with what simulated participants believed, at the questions of the main results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrueBeliefComparison {
+pub struct RecordedBeliefComparison {
     /// Number of probe questions for which the participant's belief is recorded.
     pub n: u64,
     /// Share of the questions with a recorded belief where answer and belief are both right or both wrong.
@@ -130,7 +130,7 @@ impl ProbeSummary {
             accuracies: accuracies(&participants, SEED),
             assistance: awareness_effect(&participants, SEED),
             level_2: level_2.filter(|one| one.n > 0).collect(),
-            by_true_beliefs: TrueBeliefComparison::from_beliefs(&all),
+            by_true_beliefs: RecordedBeliefComparison::from_beliefs(&all),
         })
     }
 }
@@ -180,8 +180,8 @@ impl ProbeCounts {
     }
 }
 
-impl TrueBeliefComparison {
-    fn from_beliefs(answered: &[WeightedProbeBelief]) -> Option<TrueBeliefComparison> {
+impl RecordedBeliefComparison {
+    fn from_beliefs(answered: &[WeightedProbeBelief]) -> Option<RecordedBeliefComparison> {
         let known: Vec<[WeightedProbeBelief; 2]> =
             answered.iter().filter_map(|one| Some([*one, one.by_true_belief()?])).collect();
         (!known.is_empty()).then_some(())?;
@@ -190,7 +190,7 @@ impl TrueBeliefComparison {
             let of: Vec<WeightedProbeBelief> = known.iter().map(|both| both[which]).collect();
             ProbeDetection::from_beliefs(&of)
         });
-        Some(TrueBeliefComparison {
+        Some(RecordedBeliefComparison {
             n: known.len() as u64,
             agreement: same as f64 / known.len() as f64,
             detection,

@@ -81,7 +81,7 @@ pub struct AspectAtFreeze {
     /// Estimated probability that the participant's belief is false, as in [`crate::measures::belief_detection`].
     pub estimate_p_false: f64,
     /// Recorded belief of a simulated participant; `None` for people.
-    pub believed: Option<BeliefAtFreeze>,
+    pub believed: Option<RecordedBeliefAtFreeze>,
     /// Time since the last change of the asked location, without pauses, in seconds; `None` for recipes, and for
     /// locations that have not changed in the trial.
     pub changed_s: Option<f64>,
@@ -96,14 +96,14 @@ pub struct AspectAtFreeze {
 
 /// Belief of a simulated participant about a state aspect when the trial froze.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BeliefAtFreeze {
+pub struct RecordedBeliefAtFreeze {
     /// Name of the value that the simulated participant believed most probable.
     pub believes: String,
     /// Probability that the simulated participant gave to the true value.
     pub p_truth: f64,
 }
 
-impl BeliefAtFreeze {
+impl RecordedBeliefAtFreeze {
     /// Whether the participant's belief is false: the most probable value is not the true one.
     pub fn is_wrong(&self) -> bool {
         self.p_truth < FALSE_BELOW

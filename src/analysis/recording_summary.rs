@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::exclusion_status::ExclusionStatus;
 use super::follower::SessionFollower;
-use super::gaze_summary::{self, GazeSummary};
-use super::trial_summary::{BeliefErrorSummary, TrialSummary};
+use super::gaze_summary::{self, GazeQualitySummary};
+use super::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 use crate::base::words::count;
 
 /// Summary of one recording, as `tomcom replay RECORDING` prints it.
@@ -30,7 +30,7 @@ pub struct RecordingSummary {
     pub races: u64,
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
-    pub beliefs: BeliefErrorSummary,
+    pub beliefs: FalseBeliefErrorSummary,
     /// Number of signals that were shown to the participant.
     pub signals: u64,
     /// Whether the wizard saw the assistants' recommendations beside the signals that the wizard sent.
@@ -40,7 +40,7 @@ pub struct RecordingSummary {
     /// Duration of the trial by its own clock, in seconds.
     pub trial_s: f64,
     /// Gaze quality of the recording.
-    pub gaze: GazeSummary,
+    pub gaze: GazeQualitySummary,
     /// Faults of the gaze stream in words; null without faults.
     #[serde(skip)]
     gaze_faults: Option<String>,
@@ -59,12 +59,12 @@ impl RecordingSummary {
             robot_actions: trial.robot_actions,
             errors: trial.errors,
             races: trial.races,
-            beliefs: BeliefErrorSummary::from_trials([&trial]),
+            beliefs: FalseBeliefErrorSummary::from_trials([&trial]),
             signals: trial.signals,
             unblinded: follower.session.unblinded,
             orders_served: trial.served.len() as u64,
             trial_s: trial.seconds,
-            gaze: GazeSummary::from_session(&follower.session),
+            gaze: GazeQualitySummary::from_session(&follower.session),
             gaze_faults: gaze_summary::describe(&follower.session),
         }
     }

@@ -6,7 +6,7 @@ use super::trial_summary::SimulationSummary;
 
 /// Numbers of errors and of presses of the human in a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TrialErrors {
+pub struct PressErrorCounts {
     /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Number of errors that follow from false beliefs; `None` where the participant's beliefs are not known.
@@ -50,7 +50,7 @@ pub struct ParameterSweepRow {
 }
 
 /// The same trials simulated under two combinations of setting values, in the same order.
-type PairedTrials<'a> = [&'a [TrialErrors]; 2];
+type PairedTrials<'a> = [&'a [PressErrorCounts]; 2];
 
 impl ParameterSweepRow {
     /// The row for these setting values. `paired`: the same trials without and with signals. `with_first`: the same
@@ -61,8 +61,8 @@ impl ParameterSweepRow {
         paired: Option<PairedTrials>,
         with_first: Option<PairedTrials>,
     ) -> ParameterSweepRow {
-        let errors = |trial: &TrialErrors| Some(trial.errors);
-        let related = |trial: &TrialErrors| trial.related;
+        let errors = |trial: &PressErrorCounts| Some(trial.errors);
+        let related = |trial: &PressErrorCounts| trial.related;
         let (spared_per_100, spared_error) = fewer(paired, errors);
         let (fewer_than_first, fewer_error) = fewer(with_first, errors);
         let (related_fewer_than_first, related_fewer_error) = fewer(with_first, related);
@@ -90,8 +90,11 @@ fn per_100(number: u64, presses: u64) -> f64 {
 
 /// Mean reduction of a number per 100 presses of the human between paired trials (first minus second), and its standard
 /// error.
-fn fewer(paired: Option<PairedTrials>, number: impl Fn(&TrialErrors) -> Option<u64>) -> (Option<f64>, Option<f64>) {
-    let rate = |trial: &TrialErrors| number(trial).map(|number| per_100(number, trial.human_actions));
+fn fewer(
+    paired: Option<PairedTrials>,
+    number: impl Fn(&PressErrorCounts) -> Option<u64>,
+) -> (Option<f64>, Option<f64>) {
+    let rate = |trial: &PressErrorCounts| number(trial).map(|number| per_100(number, trial.human_actions));
     let Some([before, after]) = paired else { return (None, None) };
     let each = before.iter().zip(after).map(|(before, after)| Some(rate(before)? - rate(after)?));
     let Some(each) = each.collect::<Option<Vec<f64>>>().filter(|each| !each.is_empty()) else { return (None, None) };

@@ -42,7 +42,7 @@ pub struct WatchedRecording {
     pub signals: Vec<JudgedSignal>,
     /// False beliefs that led to errors, among those that began in the part that was watched.
     #[serde(default)]
-    pub beliefs: Vec<JudgedFalseBelief>,
+    pub beliefs: Vec<HarmfulFalseBelief>,
     /// Measures of the wizard's performance: hits and wrong signals.
     pub measures: WizardMeasures,
     /// Cohen's kappa between the wizard's signals now and in the previous pass through the same recording; null without
@@ -69,7 +69,7 @@ pub struct JudgedSignal {
 /// A false belief that led to errors, and whether the wizard corrected it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JudgedFalseBelief {
+pub struct HarmfulFalseBelief {
     /// The state aspect about which the belief was false.
     pub aspect: String,
     /// Time at which the false belief began, on the trial's clock.

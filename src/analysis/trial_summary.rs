@@ -28,7 +28,7 @@ pub struct TrialSummary {
     /// Number of signals shown to the participant.
     pub signals: u64,
     /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
-    pub beliefs: Option<TrialBeliefErrors>,
+    pub beliefs: Option<TrialFalseBeliefErrors>,
     /// For each served order, its dish and the number of presses of both agents since the previously served order.
     pub served: Vec<(DishId, u32)>,
     /// Duration of the trial on its own clock, in seconds.
@@ -55,7 +55,7 @@ impl TrialSummary {
             errors: follower.errors() as u64,
             races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
             signals: signals.count() as u64,
-            beliefs: TrialBeliefErrors::from_follower(follower),
+            beliefs: TrialFalseBeliefErrors::from_follower(follower),
             served,
             seconds: session.trial_clock(session.time).as_secs_f64(),
             offers_ms: TimedOffer::all(session)
@@ -68,7 +68,7 @@ impl TrialSummary {
 
 /// Errors of one trial that follow from false beliefs.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TrialBeliefErrors {
+pub struct TrialFalseBeliefErrors {
     /// Number of errors that follow from false beliefs.
     pub related: u64,
     /// Number of errors that only a pair of false beliefs explains.
@@ -81,9 +81,9 @@ pub struct TrialBeliefErrors {
     pub episodes: u64,
 }
 
-impl TrialBeliefErrors {
+impl TrialFalseBeliefErrors {
     /// Errors from false beliefs in a session so far; `None` unless the beliefs before every press are known.
-    fn from_follower(follower: &SessionFollower) -> Option<TrialBeliefErrors> {
+    fn from_follower(follower: &SessionFollower) -> Option<TrialFalseBeliefErrors> {
         let judged = &follower.judged;
         let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
         if !is_simulated || judged.iter().any(|press| !press.belief_known) {
@@ -91,7 +91,7 @@ impl TrialBeliefErrors {
         }
         let count =
             |is: fn(ErrorCause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count();
-        Some(TrialBeliefErrors {
+        Some(TrialFalseBeliefErrors {
             related: count(|cause| matches!(cause, ErrorCause::Belief { .. })) as u64,
             related_to_pairs: count(|cause| matches!(cause, ErrorCause::Belief { with: Some(_), .. })) as u64,
             sequences: sequences(judged),
@@ -104,7 +104,7 @@ impl TrialBeliefErrors {
 /// Errors that follow from false beliefs, in one or several trials. Values are null where the participants' beliefs are
 /// not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct BeliefErrorSummary {
+pub struct FalseBeliefErrorSummary {
     /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
     /// Number of errors that only a pair of false beliefs explains.
@@ -123,9 +123,9 @@ pub struct BeliefErrorSummary {
     pub false_belief_episodes: Option<u64>,
 }
 
-impl BeliefErrorSummary {
+impl FalseBeliefErrorSummary {
     /// Sums over several trials of the errors that follow from false beliefs.
-    pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
+    pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> FalseBeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
         sums.figures()
@@ -180,7 +180,7 @@ pub struct SimulationSummary {
     pub races: u64,
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
-    pub beliefs: BeliefErrorSummary,
+    pub beliefs: FalseBeliefErrorSummary,
     /// Number of signals shown to the participants.
     pub signals: u64,
     /// Durations of offers, both of those that a wizard could see and of the others.
@@ -222,7 +222,7 @@ struct BeliefSums {
 }
 
 impl BeliefSums {
-    fn add(&mut self, trial: Option<&TrialBeliefErrors>) {
+    fn add(&mut self, trial: Option<&TrialFalseBeliefErrors>) {
         let Some(trial) = trial else {
             self.unknown = true;
             return;
@@ -239,11 +239,11 @@ impl BeliefSums {
         trial.any_aspect.iter().for_each(|sequence| self.lengths_any_aspect.add(f64::from(sequence.length())));
     }
 
-    fn figures(&self) -> BeliefErrorSummary {
+    fn figures(&self) -> FalseBeliefErrorSummary {
         if self.unknown {
-            return BeliefErrorSummary::default();
+            return FalseBeliefErrorSummary::default();
         }
-        BeliefErrorSummary {
+        FalseBeliefErrorSummary {
             belief_related_errors: Some(self.related),
             errors_of_two_beliefs: Some(self.related_to_pairs),
             sequences: Some(self.lengths.count),

@@ -36,7 +36,7 @@ use crate::session::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent
 
 /// Communication concepts to compare with the wizard, and the window within which communications match.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ComparisonRequest {
+pub struct SenderComparisonSettings {
     /// Communication concepts to compare in addition to the session's own.
     pub with: Vec<ConceptName>,
     /// Number of the human's presses within which two communications match; the estimate leaves out signals sent within
@@ -44,7 +44,7 @@ pub struct ComparisonRequest {
     pub window: u32,
 }
 
-impl ComparisonRequest {
+impl SenderComparisonSettings {
     /// All concepts to compare: the session's own (ToM-Com if it has none) and those in `with`.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
@@ -88,7 +88,7 @@ struct CounterfactualFilter {
 
 /// Follows a session event by event, and asks each communication concept for its hypothetical signals.
 #[derive(Debug)]
-pub struct ComparisonFollower {
+pub struct SenderComparisonFollower {
     /// The followed session with its belief estimate.
     pub follower: SessionFollower,
     window: u32,
@@ -107,9 +107,9 @@ pub struct ComparisonFollower {
     asked: u64,
 }
 
-impl ComparisonFollower {
+impl SenderComparisonFollower {
     /// The comparison at the beginning of a session, before the first event.
-    pub fn new(session: Session, request: &ComparisonRequest) -> ComparisonFollower {
+    pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparisonFollower {
         let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
             name,
@@ -120,7 +120,7 @@ impl ComparisonFollower {
             spoken: Vec::new(),
         };
         let voices = request.concepts(&session.spec).into_iter().map(voice).collect();
-        ComparisonFollower {
+        SenderComparisonFollower {
             follower: SessionFollower::new(session, cost),
             window: request.window,
             voices,
@@ -135,8 +135,8 @@ impl ComparisonFollower {
     }
 
     /// This comparison without attribution of errors to causes, which takes too long in a running session.
-    pub fn without_causes(self) -> ComparisonFollower {
-        ComparisonFollower { follower: self.follower.without_causes(), ..self }
+    pub fn without_causes(self) -> SenderComparisonFollower {
+        SenderComparisonFollower { follower: self.follower.without_causes(), ..self }
     }
 
     /// Applies the next event to the session and to the counterfactual filters.

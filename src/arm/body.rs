@@ -10,7 +10,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, Kitchen, State};
 use crate::robot::moment::{ArmPhase, ArmSample};
 use crate::robot::safety::SafetyMode;
-use crate::robot::{AbortReason, RobotActivity};
+use crate::robot::{AbortReason, RobotEvent};
 
 /// Interval between recorded samples of a moving robot arm: about twelve per second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
@@ -142,21 +142,21 @@ impl SimulatedArm {
         ArmCycleReport { clicked: cycle.clicked, report: cycle.report, news: self.news(now, &cycle) }
     }
 
-    fn news(&mut self, now: SessionTime, cycle: &ControlCycleResult) -> Vec<RobotActivity> {
+    fn news(&mut self, now: SessionTime, cycle: &ControlCycleResult) -> Vec<RobotEvent> {
         self.told.force_n = self.told.force_n.max(cycle.felt.human_n).max(cycle.felt.button_n);
         let (force_n, joint) = match cycle.report {
             Some(PressFailure::Contact(force_n)) => (Some(rounded(force_n, 10.0)), None),
             Some(PressFailure::Fault(joint)) => (None, Some(joint as u8 + 1)),
             _ => (None, None),
         };
-        let mut news: Vec<RobotActivity> = self.safety(force_n, joint).into_iter().collect();
+        let mut news: Vec<RobotEvent> = self.safety(force_n, joint).into_iter().collect();
         let told = &mut self.told;
         let (phase, moving) = (self.arm.phase(), self.arm.moves());
         let comes_to_rest = told.moving && !moving;
         let is_old = moving && now >= told.at + TOLD_EVERY;
         if !news.is_empty() || phase != told.phase || comes_to_rest || is_old {
             let place = self.hand.place();
-            news.push(RobotActivity::Move(ArmSample {
+            news.push(RobotEvent::Move(ArmSample {
                 phase,
                 joints: self.arm.joints().map(|angle| rounded(angle, 1e4)),
                 force_n: rounded(told.force_n, 10.0),
@@ -165,7 +165,7 @@ impl SimulatedArm {
             }));
             (told.at, told.phase, told.moving, told.force_n) = (now, phase, moving, 0.0);
         }
-        news.extend(cycle.touched_n.map(|force_n| RobotActivity::Touched { force_n: rounded(force_n, 10.0) }));
+        news.extend(cycle.touched_n.map(|force_n| RobotEvent::Touched { force_n: rounded(force_n, 10.0) }));
         news
     }
 
@@ -175,7 +175,7 @@ impl SimulatedArm {
     }
 
     /// Stops the arm at the wizard's command.
-    pub fn stop(&mut self) -> Option<RobotActivity> {
+    pub fn stop(&mut self) -> Option<RobotEvent> {
         self.arm.stop(SafetyMode::EmergencyStop);
         self.safety(None, None)
     }
@@ -192,14 +192,14 @@ impl SimulatedArm {
     }
 
     /// The change of the arm's safety mode since the last report, if there is one.
-    fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotActivity> {
+    fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotEvent> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
-        changed.then_some(RobotActivity::Safety { mode, force_n, joint })
+        changed.then_some(RobotEvent::Safety { mode, force_n, joint })
     }
 
     /// Releases the arm at the wizard's command after a stop.
-    pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
+    pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.at = self.at.max(now);
         self.arm.resume();
         self.safety(None, None)

@@ -1,7 +1,7 @@
 //! Results of a press and of a controller cycle of the simulated robot arm, as plain data without the physics.
 
 use crate::kitchen::ButtonId;
-use crate::robot::RobotActivity;
+use crate::robot::RobotEvent;
 
 /// Why the robot arm failed to press a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,5 +25,5 @@ pub struct ArmCycleReport {
     /// Why the arm failed to press; `None` if the arm did not fail.
     pub report: Option<PressFailure>,
     /// The robot activities to record, in the order of their times.
-    pub news: Vec<RobotActivity>,
+    pub news: Vec<RobotEvent>,
 }

@@ -4,7 +4,7 @@
 use super::report::ArmCycleReport;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, State};
-use crate::robot::{AbortReason, RobotActivity};
+use crate::robot::{AbortReason, RobotEvent};
 
 /// The simulated arm in a build without physics: no value of this type can be created.
 #[derive(Clone, Debug)]
@@ -53,12 +53,12 @@ impl SimulatedArm {
     }
 
     /// Stops the arm at the wizard's command.
-    pub fn stop(&mut self) -> Option<RobotActivity> {
+    pub fn stop(&mut self) -> Option<RobotEvent> {
         match *self {}
     }
 
     /// Releases the arm at the wizard's command after a stop.
-    pub fn resume(&mut self, _: SessionTime) -> Option<RobotActivity> {
+    pub fn resume(&mut self, _: SessionTime) -> Option<RobotEvent> {
         match *self {}
     }
 

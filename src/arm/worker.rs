@@ -13,7 +13,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{ButtonId, Kitchen, State};
 use crate::robot::policy::{self, PolicyDecision};
-use crate::robot::{AbortReason, IdleReason, RobotActivity};
+use crate::robot::{AbortReason, IdleReason, RobotEvent};
 
 /// Time for which a skipped press of the robot is not chosen again, in seconds.
 pub const SKIP_S: f64 = 5.0;
@@ -106,7 +106,7 @@ impl RobotTaskExecutor {
         cost: &mut CostToGo,
         now: SessionTime,
         state: State,
-    ) -> Option<RobotActivity> {
+    ) -> Option<RobotEvent> {
         if self.stopped || self.busy.is_some() {
             return None;
         }
@@ -129,36 +129,30 @@ impl RobotTaskExecutor {
                     body.has_nothing_to_do();
                 }
                 let said = self.idle.replace((reason, state)).map(|(said, _)| said);
-                (said != Some(reason)).then_some(RobotActivity::Idle(reason))
+                (said != Some(reason)).then_some(RobotEvent::Idle(reason))
             }
         }
     }
 
-    fn set_out(&mut self, now: SessionTime, button: ButtonId, driven: bool) -> RobotActivity {
+    fn set_out(&mut self, now: SessionTime, button: ButtonId, driven: bool) -> RobotEvent {
         let takes_s = match &mut self.body {
             None => self.duration_s.sample(&mut self.random),
             Some(body) => match body.set_out(now, button) {
                 Ok(takes_s) => takes_s,
                 Err(why) => {
                     self.leave_out(now, button);
-                    return RobotActivity::Abort(button, why);
+                    return RobotEvent::Abort(button, why);
                 }
             },
         };
         let until = now + SessionTime::from_secs_f64(takes_s);
         self.busy = Some(OngoingPress { button, until, driven });
         self.idle = None;
-        RobotActivity::Intend { button, until }
+        RobotEvent::Intend { button, until }
     }
 
     /// Carries out the robot's action that is due: a touch of the timed arm, or a cycle of the simulated arm.
-    pub fn act(
-        &mut self,
-        kitchen: &Kitchen,
-        cost: &mut CostToGo,
-        now: SessionTime,
-        state: State,
-    ) -> Vec<RobotActivity> {
+    pub fn act(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, now: SessionTime, state: State) -> Vec<RobotEvent> {
         let may_press = !self.waits();
         let Some(body) = &mut self.body else { return self.touch(kitchen, cost, state).into_iter().collect() };
         let mut deeds = Vec::new();
@@ -172,7 +166,7 @@ impl RobotTaskExecutor {
                 false => {
                     body.give_up();
                     self.busy = None;
-                    deeds.push(RobotActivity::Abort(errand.button, AbortReason::NoLongerUseful));
+                    deeds.push(RobotEvent::Abort(errand.button, AbortReason::NoLongerUseful));
                 }
             }
         }
@@ -180,14 +174,14 @@ impl RobotTaskExecutor {
         deeds.extend(cycle.news);
         if let Some(button) = cycle.clicked {
             self.busy = None;
-            deeds.push(RobotActivity::Press(button));
+            deeds.push(RobotEvent::Press(button));
         }
         deeds.extend(cycle.report.and_then(|report| self.follow(now, report)));
         deeds
     }
 
     /// Handles a failed press, and returns the robot activity to record, if there is one.
-    fn follow(&mut self, now: SessionTime, report: PressFailure) -> Option<RobotActivity> {
+    fn follow(&mut self, now: SessionTime, report: PressFailure) -> Option<RobotEvent> {
         let (button, reason) = match report {
             PressFailure::Contact(_) => return self.halt(AbortReason::Contact),
             PressFailure::Fault(_) => return self.halt(AbortReason::Fault),
@@ -198,13 +192,13 @@ impl RobotTaskExecutor {
     }
 
     /// Abandons a failed press, which the robot then does not choose again for a while.
-    fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotActivity> {
+    fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotEvent> {
         self.leave_out(now, button);
         self.give_up(reason)
     }
 
     /// Stops the robot until the wizard releases it; the present press is abandoned.
-    fn halt(&mut self, reason: AbortReason) -> Option<RobotActivity> {
+    fn halt(&mut self, reason: AbortReason) -> Option<RobotEvent> {
         self.stopped = true;
         self.idle = None;
         self.driven = None;
@@ -219,16 +213,16 @@ impl RobotTaskExecutor {
 
     /// Lets the timed arm touch the button. The arm presses if the press is still among the best presses or the wizard
     /// chose the press; otherwise the arm abandons the press.
-    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
+    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotEvent> {
         let errand = self.busy.take()?;
         match is_useful(kitchen, cost, state, errand) {
-            true => Some(RobotActivity::Press(errand.button)),
-            false => Some(RobotActivity::Abort(errand.button, AbortReason::NoLongerUseful)),
+            true => Some(RobotEvent::Press(errand.button)),
+            false => Some(RobotEvent::Abort(errand.button, AbortReason::NoLongerUseful)),
         }
     }
 
     /// Reacts to a change of the state without a press: a press that is no longer useful is abandoned at once.
-    pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
+    pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotEvent> {
         let errand = self.busy?;
         match is_useful(kitchen, cost, state, errand) {
             true => None,
@@ -236,16 +230,16 @@ impl RobotTaskExecutor {
         }
     }
 
-    fn give_up(&mut self, reason: AbortReason) -> Option<RobotActivity> {
+    fn give_up(&mut self, reason: AbortReason) -> Option<RobotEvent> {
         let errand = self.busy.take()?;
         if let Some(body) = &mut self.body {
             body.give_up();
         }
-        Some(RobotActivity::Abort(errand.button, reason))
+        Some(RobotEvent::Abort(errand.button, reason))
     }
 
     /// Stops the robot at the wizard's command; the present press is abandoned.
-    pub fn stop(&mut self) -> Vec<RobotActivity> {
+    pub fn stop(&mut self) -> Vec<RobotEvent> {
         let safety = self.body.as_mut().and_then(|body| body.stop());
         let given_up = self.halt(AbortReason::Stopped);
         safety.into_iter().chain(given_up).collect()
@@ -259,7 +253,7 @@ impl RobotTaskExecutor {
 
     /// Skips the present press at the wizard's command. The robot does not choose the skipped press again for a while;
     /// an earlier skipped press becomes available again.
-    pub fn skip(&mut self, now: SessionTime) -> Option<RobotActivity> {
+    pub fn skip(&mut self, now: SessionTime) -> Option<RobotEvent> {
         let errand = self.busy?;
         self.skipped.clear();
         self.leave_out(now, errand.button);
@@ -267,13 +261,13 @@ impl RobotTaskExecutor {
     }
 
     /// Lets the robot next press the button that the wizard chose; the present press is abandoned.
-    pub fn drive(&mut self, button: ButtonId) -> Option<RobotActivity> {
+    pub fn drive(&mut self, button: ButtonId) -> Option<RobotEvent> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)
     }
 
     /// Releases a stopped robot at the wizard's command.
-    pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
+    pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.stopped = false;
         self.body.as_mut()?.resume(now)
     }

@@ -12,7 +12,7 @@ use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::code_exchange;
-use crate::run::codes::{self, CodedRecording, RaterCodesSummary};
+use crate::run::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
 use crate::session::participant_code;
 use crate::session::settings::is_code;
@@ -52,7 +52,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     if let Some(file) = &args.export {
         code_exchange::export(&recordings, file)?;
     }
-    let figures = RaterCodesSummary::from_recordings(&recordings);
+    let figures = InterRaterSummary::from_recordings(&recordings);
     print(args.format, &figures, || codes::describe(&figures))
 }
 

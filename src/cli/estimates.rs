@@ -9,7 +9,7 @@ use crate::analysis::fitting::people_summary;
 use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
 use crate::mind::fitted_people::HumanModelFile;
-use crate::run::accuracy::PlannerAccuracySample;
+use crate::run::accuracy::AccuracyStepCounts;
 use crate::run::{accuracy, check_beliefs, fit, fit_people, steadiness};
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
@@ -22,7 +22,7 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Runs the command `tomcom replay RECORDING... --accuracy`.
 pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
-    let extent = PlannerAccuracySample {
+    let extent = AccuracyStepCounts {
         steps: args.steps as usize,
         reference_steps: args.reference_steps.min(args.steps) as usize,
     };

@@ -8,11 +8,11 @@ use clap::Args;
 use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
 use super::failure::{Failure, wrong_setting};
 use super::output::{put, put_aside};
-use crate::analysis::watcher::ComparisonRequest;
+use crate::analysis::watcher::SenderComparisonSettings;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileError;
-use crate::run::options::{self, RemainingTrials, SessionStart, SettingOverrides};
+use crate::run::options::{self, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
@@ -89,7 +89,7 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
 pub(super) fn new_session(
     session: Option<&Path>,
     flags: &OperateFlags,
-    compare: Option<ComparisonRequest>,
+    compare: Option<SenderComparisonSettings>,
 ) -> Result<SeriesOutcome, Failure> {
     if flags.rerun_listen.is_some() {
         Feature::Rerun.require()?;
@@ -121,7 +121,7 @@ pub(super) fn new_session(
         Some(plan) => {
             let participant = options::participant_of_plan(plan, flags.code.as_deref());
             let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(RemainingTrials { files, participant, out, compare })?)
+            Ok(series::operate_series(SeriesRequest { files, participant, out, compare })?)
         }
     }
 }

@@ -9,7 +9,7 @@ use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::file_error::FileError;
-use crate::edge::files::{SessionFiles, read_session};
+use crate::edge::files::{SessionSetup, read_session};
 use crate::edge::{pool_file, power_files};
 use crate::run::pool::{self, PoolRequest};
 use crate::run::power_measurement::{self, PowerRequest};
@@ -150,7 +150,7 @@ impl PoolArgs {
     }
 
     /// Reads the pool from the files of `--from`, which must have been simulated for this plan.
-    fn read(&self, mut files: SessionFiles) -> Result<SimulationPool, Failure> {
+    fn read(&self, mut files: SessionSetup) -> Result<SimulationPool, Failure> {
         let pool = pool_file::read_pool(&self.from)?;
         files.spec.seed = pool.header.seed;
         let (participants, shard) = (pool.header.participants, SimulationShard::WHOLE);

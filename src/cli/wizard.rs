@@ -11,14 +11,14 @@ use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
 use crate::analysis::lesson_report::{self, WizardTrainingSummary};
-use crate::analysis::watcher::ComparisonRequest;
+use crate::analysis::watcher::SenderComparisonSettings;
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
 use crate::edge::training;
 use crate::measures::matching::WINDOW;
 use crate::measures::wizard_performance::TrainingCriterion;
 use crate::run::similarity;
-use crate::run::train::{self, TrainingRequest};
+use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
 use crate::session::settings::is_code;
 
@@ -99,7 +99,7 @@ pub(super) struct TrainArgs {
 
 pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let with: Vec<ConceptName> = args.with.iter().chain(&args.only).map(|&concept| concept.into()).collect();
-    let request = |window: u32| ComparisonRequest { with: with.clone(), window };
+    let request = |window: u32| SenderComparisonSettings { with: with.clone(), window };
     let session = match &args.paths[..] {
         [] => Some(None),
         [path] => Some(Some(path.as_path())).filter(|_| path.extension().is_some_and(|extension| extension == "toml")),
@@ -185,7 +185,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
         [] => simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?,
         given => each_chosen(given)?,
     };
-    let lesson = TrainingRequest {
+    let lesson = WizardTrainingRequest {
         recordings,
         wizard: code_of(&args.wizard)?,
         out: args.out.clone(),

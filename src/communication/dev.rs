@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use super::concept::{Concept, DecisionPoint};
-use super::recommendation::{PressProposal, Recommendation};
+use super::recommendation::{HumanPressProposal, Recommendation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 
@@ -63,7 +63,7 @@ impl Concept for DevConcept {
         let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
         let proposal = moment.error.map(|error| {
             let presses = self.good(cost, moment.situation.state).into_iter().map(name).collect();
-            PressProposal { error, presses }
+            HumanPressProposal { error, presses }
         });
         let proposal = proposal.filter(|proposal| !proposal.presses.is_empty());
         Recommendation { proposal, ..Recommendation::silent(moment.seq, moment.time) }

@@ -65,7 +65,7 @@ pub struct OfferedAdvice {
 
 /// By which kind of key the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OfferKeyUse {
+pub enum OfferKeyKind {
     /// The wizard sent the signal by the key `enter`, which takes the present offer.
     Taken,
     /// The wizard sent the signal by the signal's own key.
@@ -74,9 +74,9 @@ pub enum OfferKeyUse {
 
 /// When and how the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct UsedOffer {
+pub struct OfferUse {
     /// The kind of key with which the wizard sent the signal.
-    pub how: OfferKeyUse,
+    pub how: OfferKeyKind,
     /// Session time at which the wizard sent the signal.
     pub at: SessionTime,
 }
@@ -89,7 +89,7 @@ pub struct Offer {
     /// Session time at which the offer opened.
     pub opened: SessionTime,
     /// How and when the wizard sent the offer's signal while the offer could be taken; `None` if the wizard did not.
-    pub used: Option<UsedOffer>,
+    pub used: Option<OfferUse>,
     /// The content of the offer: what is offered, and the reason.
     pub advice: OfferedAdvice,
 }
@@ -214,7 +214,7 @@ impl OfferHistory {
 
     /// Records that the wizard sent a signal. The sending counts for the open offer and, if `with_last`, for the last
     /// closed offer, if that offered the same signal.
-    pub fn sends(&mut self, signal: &Signal, used: UsedOffer, with_last: bool) {
+    pub fn sends(&mut self, signal: &Signal, used: OfferUse, with_last: bool) {
         let last = self.closed.last_mut().filter(|_| with_last).map(|last| &mut last.offer);
         for offer in self.present.iter_mut().chain(last).filter(|offer| offer.signal() == Some(signal)) {
             offer.used.get_or_insert(used);
@@ -224,25 +224,25 @@ impl OfferHistory {
 
 /// Thresholds of net benefit at which offers close, in the unit of the concept's net benefit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OfferThresholds {
+pub struct OfferCloseThresholds {
     /// An offer closes when the net benefit of its signal is below this.
     pub closes_below: f64,
     /// An offer closes when another signal's net benefit exceeds that of its signal by at least this.
     pub better_by: f64,
 }
 
-impl OfferThresholds {
+impl OfferCloseThresholds {
     /// The thresholds of offers for a concept; offers of all concepts open above a net benefit of 0.
     ///
     /// ToM-Com: half a press, which is a third of the cost of communication and several standard errors of the benefit.
     /// ToM: 0.1 of probability; one look at a place changes the belief about that place by more. DEV: its proposals
     /// have no net benefit.
-    pub fn for_concept(name: ConceptName) -> OfferThresholds {
+    pub fn for_concept(name: ConceptName) -> OfferCloseThresholds {
         match name {
             ConceptName::TomCom | ConceptName::Dev | ConceptName::None => {
-                OfferThresholds { closes_below: -0.5, better_by: 0.5 }
+                OfferCloseThresholds { closes_below: -0.5, better_by: 0.5 }
             }
-            ConceptName::Tom => OfferThresholds { closes_below: -0.1, better_by: 0.1 },
+            ConceptName::Tom => OfferCloseThresholds { closes_below: -0.1, better_by: 0.1 },
         }
     }
 }

@@ -26,12 +26,12 @@ pub struct Recommendation {
     pub reason: Option<SignalReason>,
     /// Proposed presses of the human; only the concept DEV proposes any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub proposal: Option<PressProposal>,
+    pub proposal: Option<HumanPressProposal>,
 }
 
 /// Good presses that the DEV concept proposes after an error.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PressProposal {
+pub struct HumanPressProposal {
     /// Sequence number of the erroneous press after which DEV proposes.
     pub error: u64,
     /// Proposed next presses of the human, by the names of their buttons.

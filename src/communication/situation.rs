@@ -2,7 +2,7 @@
 
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::signal_model::SignalForecast;
+use crate::mind::signal_model::SignalReadingForecast;
 
 /// A situation of a trial as the assistant knows it.
 #[derive(Clone, Copy, Debug)]
@@ -18,14 +18,14 @@ pub struct Situation<'a> {
     /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
     /// Forecast of how a signal that is shown now will be read.
-    pub forecast: SignalForecast,
+    pub forecast: SignalReadingForecast,
 }
 
 impl<'a> Situation<'a> {
     /// A situation in which nothing has just changed, the robot follows its policy, with a press every 2.4 s, and
     /// signals are believed at once.
     pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
-        let forecast = SignalForecast::default();
+        let forecast = SignalReadingForecast::default();
         Situation { state, belief, changed: &[], robot: RobotIntent::Free, robot_press_s: 2.4, forecast }
     }
 }

@@ -15,14 +15,14 @@ pub enum ComparisonAction {
 
 /// Comparison of wizard and assistants at the console, with the selected difference.
 #[derive(Clone, Debug, Default)]
-pub struct ComparisonView {
+pub struct SenderComparisonView {
     /// Newest comparison; `None` until the trial's first press or order.
     pub seen: Option<SenderComparison>,
     /// Selected communication that has no match; `None` selects the newest one.
     chosen: Option<UnmatchedCommunication>,
 }
 
-impl ComparisonView {
+impl SenderComparisonView {
     /// Takes over the newest comparison; the selected difference stays selected if it is still one.
     pub fn show(&mut self, newest: SenderComparison) {
         self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));

@@ -6,7 +6,7 @@ use crossterm::event::KeyCode;
 
 use super::chord::KeyChord;
 use super::click::SendConfirmation;
-use super::compared::ComparisonView;
+use super::compared::SenderComparisonView;
 use super::display_status::ParticipantDisplayHealth;
 use super::gaze_advice::AccuracyCheckAction;
 use super::gaze_pairing::GazePairing;
@@ -183,7 +183,7 @@ pub struct ConsoleModel {
     /// State aspect whose estimated belief is shown over time.
     pub belief_focus: Option<AspectId>,
     /// Comparison of wizard and assistants, if it is shown.
-    pub comparison: Option<ComparisonView>,
+    pub comparison: Option<SenderComparisonView>,
     /// Training panel, in a wizard training.
     pub lesson: Option<TrainingPanel>,
     /// The rater's codes, while the errors of a recording are coded.

@@ -13,7 +13,7 @@ use super::sending::send;
 use super::sheet_key::SheetKey;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
-use crate::session::probes::OpenProbe;
+use crate::session::probes::StartedProbe;
 use crate::session::protocol::{ProtocolEvent, StudyProtocolState};
 use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use crate::session::{Event, Session, TrialPhase};
@@ -30,7 +30,7 @@ pub const WAIVERS: [&str; 4] = [
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FormContent<'a> {
     /// Questions of a freeze probe, while the trial stands still.
-    Probe(&'a OpenProbe),
+    Probe(&'a StartedProbe),
     /// Steps of a phase of the study plan, to be ticked in order.
     Steps {
         /// Heading of the sheet with steps.

@@ -135,7 +135,7 @@ pub enum RaterAction {
 
 /// A table of a key file, the TOML file that assigns keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeySection {
+pub enum KeyFileTable {
     /// Keys of the console in a live session.
     Console,
     /// Keys of the console in a replay.
@@ -147,13 +147,13 @@ pub enum KeySection {
 }
 
 /// Writes the name of the table as it stands in key files.
-impl fmt::Display for KeySection {
+impl fmt::Display for KeyFileTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            KeySection::Console => "console",
-            KeySection::Replay => "replay",
-            KeySection::Signals => "signals",
-            KeySection::Buttons => "buttons",
+            KeyFileTable::Console => "console",
+            KeyFileTable::Replay => "replay",
+            KeyFileTable::Signals => "signals",
+            KeyFileTable::Buttons => "buttons",
         })
     }
 }
@@ -162,7 +162,7 @@ impl fmt::Display for KeySection {
 #[derive(Clone, Debug)]
 pub struct KeyBinding {
     /// Table of the key file that contains the action.
-    pub section: KeySection,
+    pub section: KeyFileTable,
     /// Name of the action in that table of the key file.
     pub name: String,
     /// Keys of the action; the first one is shown on the screen.

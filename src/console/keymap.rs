@@ -10,7 +10,7 @@ use toml::Spanned;
 
 use super::chord::KeyChord;
 use super::key_action::ManualAction;
-use super::key_action::{KeyAction, KeyBinding, KeyError, KeyErrorSource, KeySection};
+use super::key_action::{KeyAction, KeyBinding, KeyError, KeyErrorSource, KeyFileTable};
 
 /// A parsed key file: for each table, action names with their keys. Actions that are not in the file keep their keys.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -55,12 +55,12 @@ impl<'de> Deserialize<'de> for Names {
 }
 
 impl KeyFileBindings {
-    fn table(&self, section: KeySection) -> &Table {
+    fn table(&self, section: KeyFileTable) -> &Table {
         match section {
-            KeySection::Console => &self.console,
-            KeySection::Replay => &self.replay,
-            KeySection::Signals => &self.signals,
-            KeySection::Buttons => &self.buttons,
+            KeyFileTable::Console => &self.console,
+            KeyFileTable::Replay => &self.replay,
+            KeyFileTable::Signals => &self.signals,
+            KeyFileTable::Buttons => &self.buttons,
         }
     }
 
@@ -75,7 +75,7 @@ impl KeyFileBindings {
 
     /// Applies the key file to the key tables of the live console and of the replay.
     pub(super) fn apply(&self, live: &mut [KeyBinding], replay: &mut [KeyBinding]) -> Result<(), KeyError> {
-        for section in [KeySection::Console, KeySection::Replay, KeySection::Signals, KeySection::Buttons] {
+        for section in [KeyFileTable::Console, KeyFileTable::Replay, KeyFileTable::Signals, KeyFileTable::Buttons] {
             let known = || live.iter().chain(replay.iter()).filter(move |line| line.section == section);
             for name in self.table(section).keys() {
                 if !known().any(|line| line.name == *name.get_ref()) {
@@ -161,10 +161,10 @@ pub fn write(lines: &[KeyBinding]) -> String {
          # Several keys for one thing: [\"f1\", \"?\"]; none: []. What is left out stays as it is.\n",
     );
     let tables = [
-        (KeySection::Console, "the console of a live session; \"space\" belongs to stop_robot alone"),
-        (KeySection::Replay, "the console over a recording"),
-        (KeySection::Signals, "the wizard's signals, by location; what is left out is as the layout says"),
-        (KeySection::Buttons, "the participant's buttons, for a person at the keyboard; else as the layout says"),
+        (KeyFileTable::Console, "the console of a live session; \"space\" belongs to stop_robot alone"),
+        (KeyFileTable::Replay, "the console over a recording"),
+        (KeyFileTable::Signals, "the wizard's signals, by location; what is left out is as the layout says"),
+        (KeyFileTable::Buttons, "the participant's buttons, for a person at the keyboard; else as the layout says"),
     ];
     for (section, about) in tables {
         let own: Vec<&KeyBinding> = lines.iter().filter(|line| line.section == section).collect();

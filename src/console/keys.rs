@@ -5,7 +5,7 @@
 
 use super::chord::KeyChord;
 use super::key_action::{
-    KeyAction, KeyBinding, KeyError, KeyErrorSource, KeyLayer, KeySection, ManualAction, RaterAction,
+    KeyAction, KeyBinding, KeyError, KeyErrorSource, KeyFileTable, KeyLayer, ManualAction, RaterAction,
 };
 use super::keymap::KeyFileBindings;
 use super::playback::ReplayAction;
@@ -34,7 +34,7 @@ impl KeyBindings {
     /// A key has two meanings, or an entry of the key file is invalid.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, mut bindings, .. } =
-            Consoles::from_bindings(lines(kitchen, map)?, KeySection::Console);
+            Consoles::from_bindings(lines(kitchen, map)?, KeyFileTable::Console);
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
         bindings.retain(|line| match &line.action {
@@ -45,7 +45,7 @@ impl KeyBindings {
             KeyAction::Move(_) => false,
             KeyAction::Note(index) => *index < spec.console.notes.len(),
             KeyAction::Hand(ManualAction::AskProbe | ManualAction::SkipProbe) => spec.probes.is_some(),
-            _ => line.section != KeySection::Replay,
+            _ => line.section != KeyFileTable::Replay,
         });
         bindings.retain(|line| !line.chords.is_empty());
         for line in &mut bindings {
@@ -82,9 +82,9 @@ impl KeyBindings {
     /// The errors of [`KeyBindings::live`]: a key with two meanings, or an invalid entry of the key file.
     pub fn replay(kitchen: &Kitchen, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, coding, mut bindings } =
-            Consoles::from_bindings(lines(kitchen, map)?, KeySection::Replay);
+            Consoles::from_bindings(lines(kitchen, map)?, KeyFileTable::Replay);
         let marks = marks(kitchen, &bindings);
-        bindings.retain(|line| line.section == KeySection::Replay && !line.chords.is_empty());
+        bindings.retain(|line| line.section == KeyFileTable::Replay && !line.chords.is_empty());
         Ok(KeyBindings { bindings, marks, comparing, coding })
     }
 
@@ -161,7 +161,7 @@ struct Consoles {
 }
 
 impl Consoles {
-    fn from_bindings(lines: Vec<KeyBinding>, section: KeySection) -> Consoles {
+    fn from_bindings(lines: Vec<KeyBinding>, section: KeyFileTable) -> Consoles {
         let (mut comparing, others): (Vec<KeyBinding>, Vec<KeyBinding>) =
             lines.into_iter().partition(|line| matches!(line.action, KeyAction::Differ(_)));
         let (mut coding, bindings): (Vec<KeyBinding>, Vec<KeyBinding>) =
@@ -185,7 +185,7 @@ pub fn lines(kitchen: &Kitchen, map: &KeyFileBindings) -> Result<Vec<KeyBinding>
     for lines in [&live, &replay] {
         // The keys of the layout file are checked last, so that an error message about a conflict names the layout.
         let (ours, letters): (Vec<&KeyBinding>, Vec<&KeyBinding>) =
-            lines.iter().partition(|line| matches!(line.section, KeySection::Console | KeySection::Replay));
+            lines.iter().partition(|line| matches!(line.section, KeyFileTable::Console | KeyFileTable::Replay));
         let ordered: Vec<&KeyBinding> = ours.into_iter().chain(letters).collect();
         for (index, line) in ordered.iter().enumerate() {
             for earlier in ordered[..index].iter().filter(|earlier| earlier.meets(line)) {

@@ -7,9 +7,9 @@ use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
 use super::sending::send;
 use super::sheet_key::SheetKey;
-use crate::session::probes::{OpenProbe, ProbeEvent, ProbeOrigin};
+use crate::session::probes::{ProbeEvent, ProbeOrigin, StartedProbe};
 use crate::session::settings::ParticipantKind;
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 use crate::session::{Event, Session, TrialPhase};
 
 /// Who enters the answers to a freeze probe's questions.
@@ -78,7 +78,7 @@ pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
-    open: &OpenProbe,
+    open: &StartedProbe,
     stroke: SheetKey,
 ) -> Option<ConsoleCommand> {
     if stroke == SheetKey::Leave {
@@ -127,7 +127,7 @@ pub(super) fn write(
             }
             Some(number) => {
                 let answer = number.checked_sub(1).and_then(|index| question.choices.get(index)).cloned();
-                let (probe, question, on) = (open.number, index as u32 + 1, AnswerEntry::Console);
+                let (probe, question, on) = (open.number, index as u32 + 1, AnswerDevice::Console);
                 let event = ProbeEvent::Answered { probe, question, answer, confidence: entry.sure, on };
                 entry.is_typed = false;
                 model.probe_entry = entry;

@@ -9,7 +9,7 @@ use super::compared::ComparisonAction;
 use super::key_action::ManualAction;
 use super::key_action::RaterAction;
 use super::key_action::ViewAction;
-use super::key_action::{KeyAction, KeyBinding, KeyLayer, KeySection};
+use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer};
 use super::playback::ReplayAction;
 use crate::communication::{self, Signal};
 use crate::history::landmark::ReplayLandmark;
@@ -49,7 +49,7 @@ fn line(
     footer: Option<&'static str>,
 ) -> KeyBinding {
     let (name, help) = (name.to_string(), help.to_string());
-    KeyBinding { section: KeySection::Console, name, chords: keys.to_vec(), action, group, help, footer, layer: None }
+    KeyBinding { section: KeyFileTable::Console, name, chords: keys.to_vec(), action, group, help, footer, layer: None }
 }
 
 /// An entry of the key table for a manual intervention. The hint line shows such an entry only where it is the next
@@ -220,7 +220,7 @@ pub fn replay() -> Vec<KeyBinding> {
     lines.extend(differences());
     lines.extend(codes());
     lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
-    lines.into_iter().map(|line| KeyBinding { section: KeySection::Replay, ..line }).collect()
+    lines.into_iter().map(|line| KeyBinding { section: KeyFileTable::Replay, ..line }).collect()
 }
 
 /// Key bindings of a rater's codes, active only while errors are coded.
@@ -341,7 +341,7 @@ fn signals(kitchen: &Kitchen) -> impl Iterator<Item = KeyBinding> {
         };
         let keys: Vec<KeyChord> = location.signal_key.map(KeyChord::of_letter).into_iter().collect();
         let bound = line(&location.name, &keys, KeyAction::Signal(id, signal), SIGNALS, &help, None);
-        KeyBinding { section: KeySection::Signals, layer: Some(KeyLayer::Wizard), ..bound }
+        KeyBinding { section: KeyFileTable::Signals, layer: Some(KeyLayer::Wizard), ..bound }
     })
 }
 
@@ -350,6 +350,6 @@ fn buttons(kitchen: &Kitchen) -> impl Iterator<Item = KeyBinding> {
         let keys: Vec<KeyChord> = button.key.map(KeyChord::of_letter).into_iter().collect();
         let help = button.name.replace('_', " ");
         let bound = line(&button.name, &keys, KeyAction::Press(ButtonId(index as u8)), BUTTONS, &help, None);
-        KeyBinding { section: KeySection::Buttons, layer: Some(KeyLayer::Participant), ..bound }
+        KeyBinding { section: KeyFileTable::Buttons, layer: Some(KeyLayer::Participant), ..bound }
     })
 }

@@ -7,7 +7,7 @@ use crate::kitchen::{Agent, ButtonAction, Kitchen};
 /// A location or a storage on the participant's display, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DisplayPlace {
+pub enum SceneElement {
     /// A location, by its index in the scene.
     Location(usize),
     /// A storage, by its index in the scene.
@@ -15,17 +15,17 @@ pub enum DisplayPlace {
 }
 
 /// The location or storage where a press of an agent happens.
-pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> DisplayPlace {
+pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> SceneElement {
     let hand = kitchen.hands[agent.index()];
     let location = match action {
         ButtonAction::Take(item) => {
             let is_it = |storage: &crate::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
-            return DisplayPlace::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
+            return SceneElement::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
         }
         ButtonAction::Use(location) => location,
         ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
         ButtonAction::Trash => hand,
         ButtonAction::Serve(order) => order,
     };
-    DisplayPlace::Location(location.index())
+    SceneElement::Location(location.index())
 }

@@ -6,7 +6,7 @@ use super::page_language::DisplayWords;
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, ItemOption};
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 
 /// A questionnaire item as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -113,7 +113,7 @@ impl From<AnswerFormat<'_>> for DisplayedAnswerForm {
 /// The item that the participant has to answer on the display now; `None` also where the wizard reads the items to the
 /// participant.
 pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> {
-    if session.spec.display.questionnaire == AnswerEntry::Console {
+    if session.spec.display.questionnaire == AnswerDevice::Console {
         return None;
     }
     let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);

@@ -24,5 +24,5 @@ pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
 pub use robot_hand::RobotHand;
 pub use robot_pose::RobotHandPose;
 pub use scene::{DisplayScene, scene};
-pub use shown_clock::{DisplayedClock, time_left};
+pub use shown_clock::{TrialClockState, time_left};
 pub use sight::{DisplayContent, DisplayStage, ShownContent, sight};

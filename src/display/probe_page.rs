@@ -3,11 +3,11 @@
 
 use serde::Serialize;
 
-use super::display_place::{DisplayPlace, spot};
+use super::display_place::{SceneElement, spot};
 use super::page_language::DisplayWords;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
-use crate::session::probes::{OpenProbe, ProbeQuestion, ProbeSubject};
+use crate::session::probes::{ProbeQuestion, ProbeSubject, StartedProbe};
 use crate::session::{Session, TrialPhase};
 
 /// Largest number of contents that are shown as a list; with more, the participant composes a stack from its items.
@@ -106,12 +106,12 @@ pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
 }
 
 /// The open freeze probe, unless the wizard pauses the probe.
-fn shown_probe(session: &Session) -> Option<&OpenProbe> {
+fn shown_probe(session: &Session) -> Option<&StartedProbe> {
     session.probes.open.as_ref().filter(|open| session.phase == TrialPhase::Paused && !open.is_paused())
 }
 
 /// The freeze probe question that the display shows now, with its index.
-fn asked(open: &OpenProbe) -> Option<(usize, &ProbeQuestion)> {
+fn asked(open: &StartedProbe) -> Option<(usize, &ProbeQuestion)> {
     let index = open.shown.filter(|_| open.closed.is_none())?;
     Some((index, open.questions.get(index)?))
 }
@@ -232,8 +232,8 @@ fn press(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option
     let Some(button) = kitchen.button_named(Agent::Robot, name) else { return (words.of_name(name), None) };
     let action = kitchen.button(Agent::Robot, button).action;
     let picture = match spot(kitchen, Agent::Robot, action) {
-        DisplayPlace::Storage(storage) => ProbePicture::Storage(storage),
-        DisplayPlace::Location(location) => place_picture(kitchen, LocationId(location as u8)),
+        SceneElement::Storage(storage) => ProbePicture::Storage(storage),
+        SceneElement::Location(location) => place_picture(kitchen, LocationId(location as u8)),
     };
     let location = |id| words.of_name(&kitchen.location(id).name);
     let said = match action {

@@ -13,7 +13,7 @@ use super::robot_pose::RobotHandPose;
 use super::sight::button_place;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonId};
-use crate::session::wall_display::DisplayedArm;
+use crate::session::wall_display::RobotDepiction;
 use crate::session::{Session, TrialPhase};
 
 /// Share of the timed arm's motion after which the hand is above its target and begins to go down.
@@ -52,7 +52,7 @@ pub struct RobotHand {
 impl RobotHand {
     /// Creates the hand at its resting position; `None` if the session does not show the hand.
     pub fn new(session: &Session) -> Option<RobotHand> {
-        session.spec.display.arm.filter(|arm| *arm != DisplayedArm::None)?;
+        session.spec.display.arm.filter(|arm| *arm != RobotDepiction::None)?;
         let kitchen = &session.kitchen;
         let [x, y] = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
         Some(RobotHand {

@@ -9,7 +9,7 @@ use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 use crate::session::settings::GazeSource;
-use crate::session::wall_display::{DisplayedArm, DisplayedNames};
+use crate::session::wall_display::{DisplayedNames, RobotDepiction};
 use crate::session::{Session, SessionSpec};
 
 /// Area on the display: left, top, width and height in fractions of the display's size, with the origin at the top
@@ -159,7 +159,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         words: words.of_page(),
         names: spec.display.names,
         keys: spec.display.keys,
-        arm: spec.display.arm.unwrap_or(DisplayedArm::None).name(),
+        arm: spec.display.arm.unwrap_or(RobotDepiction::None).name(),
         flash: spec.display.flash,
         clock: spec.display.clock,
         served: spec.display.shows_served(),

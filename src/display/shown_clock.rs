@@ -10,7 +10,7 @@ use crate::session::Session;
 /// Whether the trial's clock on the display goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DisplayedClock {
+pub enum TrialClockState {
     /// The trial's clock goes.
     Goes,
     /// The trial's clock stands still: before the trial, in a pause, and at the end.

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::display_place::{DisplayPlace, spot};
+use super::display_place::{SceneElement, spot};
 use super::displayed_item::{DisplayedQuestionnaireItem, question};
 use super::probe_page::{DisplayedProbe, probe};
-use super::shown_clock::DisplayedClock;
+use super::shown_clock::TrialClockState;
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffectReason;
@@ -27,11 +27,11 @@ pub struct DisplayContent {
     pub served: Option<usize>,
     /// Whether the trial's clock goes, if the session shows the clock. The message to the page has the time that is
     /// left.
-    pub clock: Option<DisplayedClock>,
+    pub clock: Option<TrialClockState>,
     /// Last press of the human and last press of the robot, by [`Agent::index`].
     pub presses: [Option<DisplayedPress>; 2],
     /// Location or storage where the robot is about to press, if the session shows the robot's intention.
-    pub intention: Option<DisplayPlace>,
+    pub intention: Option<SceneElement>,
     /// The signal that the display shows, if any.
     pub signal: Option<DisplayedSignal>,
     /// Number of the newest event that is marked by a flash.
@@ -99,7 +99,7 @@ pub struct DisplayedPress {
     /// Number of presses that the agent has made so far.
     pub number: u32,
     /// Location or storage of the pressed button.
-    pub at: DisplayPlace,
+    pub at: SceneElement,
     /// Whether the press changed the kitchen.
     pub effective: bool,
     /// Why the human's press had no effect, if the session shows reasons.
@@ -175,13 +175,13 @@ pub fn sight(session: &Session) -> DisplayContent {
 
 /// The trial's clock, if the session shows the clock and there is a trial (a tutorial is none). During a probe, the
 /// display shows the time that the probe still has instead.
-fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
+fn clock(session: &Session, stage: DisplayStage) -> Option<TrialClockState> {
     if !session.spec.display.clock || session.tutorial().is_some() {
         return None;
     }
     match stage {
-        DisplayStage::Running => Some(DisplayedClock::Goes),
-        DisplayStage::Ready | DisplayStage::Paused | DisplayStage::Over => Some(DisplayedClock::Stands),
+        DisplayStage::Running => Some(TrialClockState::Goes),
+        DisplayStage::Ready | DisplayStage::Paused | DisplayStage::Over => Some(TrialClockState::Stands),
         _ => None,
     }
 }
@@ -271,8 +271,8 @@ fn explained(kitchen: &Kitchen, state: State, step: &TutorialStep) -> Option<Dis
 pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     let kitchen = &session.kitchen;
     match spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action) {
-        DisplayPlace::Location(index) => kitchen.locations[index].display.centre(),
-        DisplayPlace::Storage(index) => kitchen.storages[index].display.centre(),
+        SceneElement::Location(index) => kitchen.locations[index].display.centre(),
+        SceneElement::Storage(index) => kitchen.storages[index].display.centre(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::display_place::{DisplayPlace, spot};
+use super::display_place::{SceneElement, spot};
 use crate::kitchen::{Agent, DishId, Kitchen};
 use crate::session::Session;
 use crate::session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
@@ -50,7 +50,7 @@ pub enum TutorialFrameTarget {
     /// The locations and storages of an agent.
     Area(Agent),
     /// A location or storage of the kitchen.
-    Place(DisplayPlace),
+    Place(SceneElement),
     /// A button of the human, by its name.
     Button(String),
 }
@@ -131,12 +131,12 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
 fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrameTarget {
     match target {
         TutorialTarget::Area(agent) => TutorialFrameTarget::Area(agent),
-        TutorialTarget::Location(location) => TutorialFrameTarget::Place(DisplayPlace::Location(location.index())),
+        TutorialTarget::Location(location) => TutorialFrameTarget::Place(SceneElement::Location(location.index())),
         TutorialTarget::Button(button) => {
             let button = kitchen.button(Agent::Human, button);
             match spot(kitchen, Agent::Human, button.action) {
-                place @ DisplayPlace::Storage(_) => TutorialFrameTarget::Place(place),
-                DisplayPlace::Location(_) => TutorialFrameTarget::Button(button.name.clone()),
+                place @ SceneElement::Storage(_) => TutorialFrameTarget::Place(place),
+                SceneElement::Location(_) => TutorialFrameTarget::Button(button.name.clone()),
             }
         }
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::file_error::{FileError, FileResult, missing, read_text};
-use super::files::{SessionFiles, read_session};
+use super::files::{SessionSetup, read_session};
 use super::parse::parse;
 use super::place::place_of;
 use crate::session::battery::{BatterySpec, CohortSpec};
@@ -12,9 +12,9 @@ use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingEr
 
 /// A battery: cohorts of simulated participants, with the session settings that the cohorts share.
 #[derive(Clone, Debug)]
-pub struct BatteryFiles {
+pub struct CohortBattery {
     /// Session settings that all cohorts share, with their files.
-    pub session: SessionFiles,
+    pub session: SessionSetup,
     /// Cohorts of simulated participants, in the order of the battery file.
     pub cohorts: Vec<CohortSpec>,
 }
@@ -23,7 +23,7 @@ pub struct BatteryFiles {
 ///
 /// # Errors
 /// A file cannot be read, the session's participant or gaze is not simulated, or a cohort has an invalid setting.
-pub fn read_battery(path: &Path) -> FileResult<BatteryFiles> {
+pub fn read_battery(path: &Path) -> FileResult<CohortBattery> {
     let text = read_text(path)?;
     let spec: BatterySpec = parse(path, &text)?;
     let file = spec.session.get_ref();
@@ -59,7 +59,7 @@ pub fn read_battery(path: &Path) -> FileResult<BatteryFiles> {
     if spec.cohorts.is_empty() {
         return wrong(0..0, "a battery without cohorts".to_string(), "at least one [[cohort]] with a name");
     }
-    Ok(BatteryFiles { session, cohorts: spec.cohorts })
+    Ok(CohortBattery { session, cohorts: spec.cohorts })
 }
 
 fn is_simulated(gaze: GazeSource) -> bool {

@@ -22,16 +22,16 @@ use crate::session::header::RecordedFile;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
 use crate::session::settings::{SettingError, is_code};
-use crate::session::wall_display::DisplayedArm;
+use crate::session::wall_display::RobotDepiction;
 use crate::wizard::settings::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
-pub struct SessionFiles {
+pub struct SessionSetup {
     /// Settings of the session, from the session file.
     pub spec: SessionSpec,
     /// Kitchen of the session, with its layout and recipe files.
-    pub kitchen: KitchenFiles,
+    pub kitchen: KitchenWithSources,
     /// Key file (key bindings of the console); `None` if the settings name none.
     pub keys: Option<RecordedFile>,
     /// Questionnaires that the study plan names, in the plan's order.
@@ -40,7 +40,7 @@ pub struct SessionFiles {
     pub tutorial: Option<Tutorial>,
 }
 
-impl SessionFiles {
+impl SessionSetup {
     /// The study that these settings plan; `None` if the settings contain no study plan.
     pub fn study(&self) -> Option<Study> {
         let kitchen = [&*self.kitchen.layout.text, &*self.kitchen.recipes.text];
@@ -49,12 +49,12 @@ impl SessionFiles {
 }
 
 /// Reads a session file, the layout and the key file that it names, and the recipes that the layout names.
-pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
+pub fn read_session(path: &Path) -> FileResult<SessionSetup> {
     read_session_in(path, None)
 }
 
 /// Reads a session file as [`read_session`] does, but with the texts of the participant's display in this language.
-pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<SessionFiles> {
+pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<SessionSetup> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
     if let Some(language) = language {
@@ -84,7 +84,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     read_words(path, &text, &mut spec)?;
     spec.display.reasons.get_or_insert(true);
     spec.display.served.get_or_insert(false);
-    spec.display.arm.get_or_insert(DisplayedArm::Hand);
+    spec.display.arm.get_or_insert(RobotDepiction::Hand);
     // In a study plan, the condition of a trial decides whether the wizard sees offers.
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
@@ -116,7 +116,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         probes.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
     }
     let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
-    Ok(SessionFiles { spec, kitchen, keys, questionnaires, tutorial })
+    Ok(SessionSetup { spec, kitchen, keys, questionnaires, tutorial })
 }
 
 /// Reads the key file that the session file names; `None` if the session file names no key file.
@@ -243,17 +243,17 @@ pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> s
 ///
 /// # Errors
 /// Occurs only if the program was built from invalid files.
-pub fn built_in_session() -> FileResult<SessionFiles> {
+pub fn built_in_session() -> FileResult<SessionSetup> {
     let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../sessions/default.toml"))?;
     let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
     let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../recipes/sushi.toml").to_string());
     let kitchen = compile_kitchen(layout, recipes)?;
-    Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
+    Ok(SessionSetup { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
 }
 
 /// A compiled kitchen with its source texts, which go into the header of every recording.
 #[derive(Clone, Debug)]
-pub struct KitchenFiles {
+pub struct KitchenWithSources {
     /// Kitchen, compiled from its layout and recipe files.
     pub kitchen: Kitchen,
     /// Layout file of the kitchen.
@@ -263,11 +263,11 @@ pub struct KitchenFiles {
 }
 
 /// Reads a layout file and the recipe file that it names, and checks them with the console's default keys.
-pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
+pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenWithSources> {
     read_kitchen_with(layout_path, None)
 }
 
-fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileResult<KitchenFiles> {
+fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileResult<KitchenWithSources> {
     let layout_text = read_text(layout_path)?;
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
@@ -292,14 +292,14 @@ fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
 
 /// Compiles a kitchen from texts without checking the ranges of its numbers, since it may be the kitchen of an old
 /// recording. The paths serve error messages only.
-pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenFiles> {
+pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {
             let layout_text = RecordedFile { path: layout.0.display().to_string(), text: layout.1 };
             let recipes_text = RecordedFile { path: layout_spec.recipes.into_inner(), text: recipes.1 };
-            Ok(KitchenFiles { kitchen, layout: layout_text, recipes: recipes_text })
+            Ok(KitchenWithSources { kitchen, layout: layout_text, recipes: recipes_text })
         }
         Err(KitchenFileError { file, span, found, remedy }) => {
             let (path, text) = match file {

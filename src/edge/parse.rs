@@ -20,7 +20,7 @@ pub enum FileKind {
     Session,
     /// A layout file of a kitchen: places, buttons and the display.
     Layout,
-    /// A key file, which changes key bindings of the console.
+    /// A recipe file of a kitchen: dishes and their ingredients.
     Recipes,
     /// A parameter file of the human model (beliefs and choices of simulated people).
     HumanModel,

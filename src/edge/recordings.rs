@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::file_error::{FileError, FileResult, open_regular};
 use super::log::{LOG_NAME, ruling};
 use crate::session::header::PreviousPart;
-use crate::session::plan::{PlanRecording, RecordingOutcome, StepSpec};
+use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, LogHeader, TimestampedEvent};
 
@@ -98,7 +98,7 @@ struct PartHeaderGlance {
 #[derive(Debug)]
 struct Part {
     code: String,
-    step: StepSpec,
+    step: PlanPosition,
     continues: Option<String>,
     consent: bool,
     instructed: bool,

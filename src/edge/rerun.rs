@@ -23,12 +23,12 @@ use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, 
 use re_sdk_types::datatypes::Quaternion;
 
 use self::blueprint::{APPLICATION, ViewerLayout, ViewerStart};
-pub use self::blueprint::{StreamLane, TRIAL_TIME};
+pub use self::blueprint::{ShownRecording, TRIAL_TIME};
 use self::viewer_server::ViewerServer;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::printable::{printable, printable_lines};
 use crate::base::time::SessionTime;
-use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SceneSeries};
+use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SeriesStyle};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// Version of Rerun with which streams are written; viewers of the same version can read the streams.
@@ -99,7 +99,11 @@ impl RerunWriter {
     ///
     /// # Errors
     /// The file cannot be created, or the address does not belong to this machine.
-    pub fn open(identity: &StreamIdentity, outlets: &StreamOutlets, lanes: &[StreamLane]) -> io::Result<RerunWriter> {
+    pub fn open(
+        identity: &StreamIdentity,
+        outlets: &StreamOutlets,
+        lanes: &[ShownRecording],
+    ) -> io::Result<RerunWriter> {
         let mut streams = Vec::new();
         if let Some(path) = &outlets.file {
             let stream = stream(identity, Duration::MAX)?;
@@ -123,7 +127,7 @@ impl RerunWriter {
     }
 
     /// Writes rows that hold for the whole stream, without a time.
-    pub fn fixed(&self, lane: &StreamLane, rows: &[EntityUpdate]) {
+    pub fn fixed(&self, lane: &ShownRecording, rows: &[EntityUpdate]) {
         for row in rows {
             let (entity, components) = written(lane, row);
             self.streams.iter().for_each(|one| one.log(&entity, true, &components));
@@ -131,7 +135,7 @@ impl RerunWriter {
     }
 
     /// Writes the rows of a scene update to the stream; returns the number of rows.
-    pub fn moment(&mut self, lane: &StreamLane, moment: &SceneUpdate) -> u64 {
+    pub fn moment(&mut self, lane: &ShownRecording, moment: &SceneUpdate) -> u64 {
         self.streams.iter_mut().for_each(|one| one.go_to(moment));
         for row in &moment.rows {
             let (entity, components) = written(lane, row);
@@ -187,7 +191,7 @@ impl OpenStream {
 }
 
 /// Name and components of a row's entity, as Rerun writes them.
-fn written(lane: &StreamLane, row: &EntityUpdate) -> (String, Vec<SerializedComponentBatch>) {
+fn written(lane: &ShownRecording, row: &EntityUpdate) -> (String, Vec<SerializedComponentBatch>) {
     let entity = match lane.root.as_str() {
         "" => row.entity.clone(),
         root => format!("{root}/{}", row.entity),
@@ -257,15 +261,15 @@ fn parts(shown: &EntityData) -> Vec<Part> {
         EntityData::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
         EntityData::Place(place) => vec![Box::new(transform(place))],
         EntityData::Value(value) => vec![Box::new(archetypes::Scalars::single(*value))],
-        EntityData::Line(SceneSeries { name, colour }) => {
+        EntityData::Line(SeriesStyle { name, colour }) => {
             let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
         }
-        EntityData::QuietLine(SceneSeries { name, colour }) => {
+        EntityData::QuietLine(SeriesStyle { name, colour }) => {
             let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([1.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
         }
-        EntityData::Marks(SceneSeries { name, colour }, shape) => {
+        EntityData::Marks(SeriesStyle { name, colour }, shape) => {
             let shape = match shape {
                 MarkShape::Cross => MarkerShape::Cross,
                 MarkShape::Circle => MarkerShape::Circle,

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::time::Duration;
 
-use super::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets};
+use super::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets};
 use crate::scene::{EntityUpdate, SceneUpdate};
 
 /// Number of packets of scene updates that may wait to be written: the packets of 20 seconds at 200 gaze samples per
@@ -66,7 +66,7 @@ impl RerunStream {
             server: server.map(|address| (address, false)),
             at: None,
         };
-        let lane = StreamLane::default();
+        let lane = ShownRecording::default();
         let mut writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);
         let (end, done) = channel();

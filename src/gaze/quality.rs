@@ -103,18 +103,18 @@ impl GazeFaultDetector {
 
 /// Limits the rate of gaze samples to what a tracker can send.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RateLimit {
+pub struct GazeRateLimiter {
     left: f64,
     at: SessionTime,
 }
 
-impl Default for RateLimit {
-    fn default() -> RateLimit {
-        RateLimit { left: BURST, at: SessionTime::ZERO }
+impl Default for GazeRateLimiter {
+    fn default() -> GazeRateLimiter {
+        GazeRateLimiter { left: BURST, at: SessionTime::ZERO }
     }
 }
 
-impl RateLimit {
+impl GazeRateLimiter {
     /// Whether a gaze sample that arrives now is within the rate limit.
     pub fn admits(&mut self, now: SessionTime) -> bool {
         self.left = (self.left + now.secs_since(self.at) * MAX_HZ).min(BURST);

@@ -12,7 +12,7 @@ use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::measures::matching::{
-    CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, MatchCriterion, Similarity, matched,
+    CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
 };
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::wizard_screen::WizardScreenContent;
@@ -54,7 +54,7 @@ impl CommunicationContent {
     }
 
     /// Content of the communication in the form that the matching of communications compares.
-    pub fn content(&self, kitchen: &Kitchen) -> CommunicationTarget {
+    pub fn content(&self, kitchen: &Kitchen) -> ComparedContent {
         let kind = match self {
             CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
             CommunicationContent::Signal(Signal::Highlight(_)) => CommunicationKind::Highlight,
@@ -62,7 +62,7 @@ impl CommunicationContent {
                 CommunicationKind::Proposal
             }
         };
-        CommunicationTarget { kind, target: self.target(kitchen) }
+        ComparedContent { kind, target: self.target(kitchen) }
     }
 
     fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
@@ -125,7 +125,7 @@ pub struct UnmatchedCommunication {
 
 /// Comparison of the first lane, which holds the signals that the participant saw, with an assistant's lane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SenderPair {
+pub struct SenderMatches {
     /// Strict matches, as pairs of indices into the first and the other lane.
     pub matched: Vec<(usize, usize)>,
     /// Similarity of the two lanes' communications: how many of them match.
@@ -140,7 +140,7 @@ pub struct SenderComparison {
     /// The lanes, one for each sender; the first holds the signals that the participant saw.
     pub lanes: Vec<SenderCommunications>,
     /// Comparisons of the first lane with each assistant's lane.
-    pub pairs: Vec<SenderPair>,
+    pub pairs: Vec<SenderMatches>,
     /// Communications without a match, in order of time; a communication that a later one can still match is left out.
     pub differences: Vec<UnmatchedCommunication>,
 }
@@ -154,9 +154,9 @@ impl SenderComparison {
             let mut tally = MatchCounts::default();
             tally.add(&said[0], with, presses, window);
             let matched = matched(&said[0], with, window, MatchCriterion::Signal);
-            SenderPair { matched, similarity: tally.similarity() }
+            SenderMatches { matched, similarity: tally.similarity() }
         };
-        let pairs: Vec<SenderPair> = said.iter().skip(1).map(pair).collect();
+        let pairs: Vec<SenderMatches> = said.iter().skip(1).map(pair).collect();
         let mut differences = Vec::new();
         for (not, pair) in pairs.iter().enumerate() {
             let other = not + 1;

@@ -20,7 +20,7 @@ use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::tutorial::TutorialEvent;
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 use crate::session::{Session, TimelineEvent, TrialPhase};
 
 /// A button's label in words: "cutting board", "take rice".
@@ -150,7 +150,7 @@ pub fn phase(phase: TrialPhase) -> &'static str {
 /// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
-        ProtocolEvent::ConsentGiven { on: Some(AnswerEntry::Display), .. } => {
+        ProtocolEvent::ConsentGiven { on: Some(AnswerDevice::Display), .. } => {
             "the participant agrees to be recorded, on the display".to_string()
         }
         ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),

@@ -117,7 +117,7 @@ pub struct DeviationSpec {
     /// The deviation applies to dishes with at least one of these items.
     pub dishes_with: Vec<Spanned<String>>,
     /// How deviations in several slots may be combined.
-    pub combine: DeviationCombination,
+    pub combine: DeviationCombinationRule,
     /// The slots of a dish that people can misremember.
     pub slots: Vec<DeviationSlotSpec>,
 }
@@ -134,7 +134,7 @@ pub struct DeviationSlotSpec {
 
 /// How deviations of a remembered recipe in several slots may be combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum DeviationCombination {
+pub enum DeviationCombinationRule {
     /// At most one slot deviates from the true recipe.
     #[serde(rename = "one at a time")]
     OneAtATime,

@@ -10,7 +10,7 @@ use crate::kitchen::{AspectId, Kitchen};
 
 /// Numbers of belief related errors by kind of aspect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CauseKindCounts {
+pub struct BeliefErrorCounts {
     /// Number of errors from a false belief about an order.
     pub orders: u64,
     /// Number of errors from a false belief about a recipe.
@@ -22,15 +22,15 @@ pub struct CauseKindCounts {
     pub places: u64,
 }
 
-impl CauseKindCounts {
+impl BeliefErrorCounts {
     /// Counts the belief related errors among these presses. `episodes` tells whether the belief about an order or
     /// about its recipe was false at the time of an error.
     pub fn from_presses(
         kitchen: &Kitchen,
         presses: &[JudgedPress],
         episodes: &[FalseBeliefEpisode],
-    ) -> CauseKindCounts {
-        let mut counts = CauseKindCounts::default();
+    ) -> BeliefErrorCounts {
+        let mut counts = BeliefErrorCounts::default();
         for press in presses {
             let Some(ErrorCause::Belief { target, .. }) = press.cause else { continue };
             let is_false = |aspect: AspectId| {
@@ -57,8 +57,8 @@ impl CauseKindCounts {
     }
 
     /// Adds two counts of belief related errors.
-    pub fn plus(self, other: CauseKindCounts) -> CauseKindCounts {
-        CauseKindCounts {
+    pub fn plus(self, other: BeliefErrorCounts) -> BeliefErrorCounts {
+        BeliefErrorCounts {
             orders: self.orders + other.orders,
             recipes: self.recipes + other.recipes,
             order_or_recipe: self.order_or_recipe + other.order_or_recipe,

@@ -26,7 +26,7 @@ pub struct RaterConsensus {
 
 /// A rater's own code that changed after the consensus on the error was reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChangedCode {
+pub struct PostConsensusChange {
     /// Log number of the erroneous press.
     pub press: u64,
     /// The name of the rater whose code changed.
@@ -66,12 +66,12 @@ impl RaterConsensus {
 
     /// The raters' own codes that changed since the consensus; each changed code makes the consensus on its error
     /// stale.
-    pub fn changed(&self, codes: [&RaterCodes; 2]) -> Vec<ChangedCode> {
+    pub fn changed(&self, codes: [&RaterCodes; 2]) -> Vec<PostConsensusChange> {
         let mut changed = Vec::new();
         for (press, settled) in &self.settled {
             for (index, rater) in self.raters.iter().enumerate() {
                 if codes[index].0.get(press) != settled.from[index].as_ref() {
-                    changed.push(ChangedCode { press: *press, rater: rater.clone() });
+                    changed.push(PostConsensusChange { press: *press, rater: rater.clone() });
                 }
             }
         }
@@ -147,7 +147,7 @@ mod tests {
             .with_decided(&codes(&[(5, ErrorCauseCode::Race)]), [&one, &other]);
         assert_eq!(settled.changed([&one, &other]), []);
         let later = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Other)]);
-        assert_eq!(settled.changed([&one, &later]), [ChangedCode { press: 5, rater: "R2".to_string() }]);
+        assert_eq!(settled.changed([&one, &later]), [PostConsensusChange { press: 5, rater: "R2".to_string() }]);
         assert_eq!(settled.current([&one, &later]), codes(&[(3, ErrorCauseCode::Slip)]));
     }
 

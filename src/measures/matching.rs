@@ -36,7 +36,7 @@ pub enum CommunicationKind {
 
 /// Content of a communication, as far as the matching compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct CommunicationTarget {
+pub struct ComparedContent {
     /// The kind of the communication.
     pub kind: CommunicationKind,
     /// Location that the communication is about; `None` for a communication without a location.
@@ -51,7 +51,7 @@ pub struct CommunicationEvent {
     /// Time of the communication on the trial's clock.
     pub clock: SessionTime,
     /// The content of the communication.
-    pub content: CommunicationTarget,
+    pub content: ComparedContent,
 }
 
 /// Which part of the content of two communications must agree for a match.
@@ -70,10 +70,10 @@ impl MatchCriterion {
     pub const ALL: [MatchCriterion; 3] = [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any];
 
     /// Equivalence class of a communication's content under this match criterion.
-    fn class(self, content: CommunicationTarget) -> Option<CommunicationTarget> {
+    fn class(self, content: ComparedContent) -> Option<ComparedContent> {
         match self {
             MatchCriterion::Signal => Some(content),
-            MatchCriterion::Kind => Some(CommunicationTarget { target: None, ..content }),
+            MatchCriterion::Kind => Some(ComparedContent { target: None, ..content }),
             MatchCriterion::Any => None,
         }
     }
@@ -87,7 +87,7 @@ pub fn matched(
     window: u32,
     likeness: MatchCriterion,
 ) -> Vec<(usize, usize)> {
-    let mut classes: BTreeMap<Option<CommunicationTarget>, [Vec<usize>; 2]> = BTreeMap::new();
+    let mut classes: BTreeMap<Option<ComparedContent>, [Vec<usize>; 2]> = BTreeMap::new();
     for (lane, said) in [of, with].into_iter().enumerate() {
         for (index, said) in said.iter().enumerate() {
             classes.entry(likeness.class(said.content)).or_default()[lane].push(index);
@@ -146,7 +146,7 @@ pub struct MatchCounts {
     /// Time from the second list's communication to the first list's communication, in seconds, by matched pair.
     leads_s: Vec<f64>,
     /// Contingency table of communication contents per press, first list by second list.
-    units: BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>,
+    units: BTreeMap<(Option<ComparedContent>, Option<ComparedContent>), u64>,
 }
 
 impl MatchCounts {
@@ -253,7 +253,7 @@ fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, 
     (count > 0).then(|| sums.map(|sum| sum as f64 / f64::from(count)))
 }
 
-type Units = BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>;
+type Units = BTreeMap<(Option<ComparedContent>, Option<ComparedContent>), u64>;
 
 /// Contingency table of both lists per press of the human; several communications at one press give several units.
 fn units(of: &[CommunicationEvent], with: &[CommunicationEvent], pairs: &[(usize, usize)], presses: u32) -> Units {

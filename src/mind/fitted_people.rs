@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::choice_parameters::ChoiceParameters;
 use super::fitting::HumanModelParameter;
 use super::model::{
-    AdaptModel, HumanModel, InferenceSettings, LookingModel, PerceptionModel, PriorModel, TransitionModel,
+    AdaptationSettings, HumanModel, InferenceSettings, LookingModel, PerceptionModel, PriorModel, TransitionModel,
 };
 use super::signal_model::SignalModel;
 
@@ -44,8 +44,8 @@ pub struct HumanModelFile {
     transition: TransitionModel,
     decision: ChoiceParameters,
     signal: SignalModel,
-    #[serde(skip_serializing_if = "AdaptModel::is_off")]
-    adapt: AdaptModel,
+    #[serde(skip_serializing_if = "AdaptationSettings::is_off")]
+    adapt: AdaptationSettings,
     inference: InferenceSettings,
     /// Parameters of single persons; `None` if the file has none.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -12,7 +12,7 @@ use crate::mind::model::HumanModel;
 
 /// The time that a gaze sample covers, and the gap before that time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GazeSampleCoverage {
+pub struct GazeSampleSpan {
     /// Time of unknown gaze before the gaze sample, in seconds.
     pub unknown_before_s: f64,
     /// Time that the gaze sample covers, in seconds.
@@ -23,7 +23,7 @@ pub struct GazeSampleCoverage {
 
 /// Accounts for the time in which the gaze is known or unknown.
 #[derive(Clone, Debug)]
-pub struct GazeAvailability {
+pub struct UnknownGazeTimer {
     blink_s: f64,
     max_sample_s: f64,
     /// Session time at which the last gaze sample was taken, whether it was usable or not.
@@ -40,10 +40,10 @@ pub struct GazeAvailability {
     pub display_in_view: bool,
 }
 
-impl GazeAvailability {
+impl UnknownGazeTimer {
     /// The state of the account before the start of a trial.
-    pub fn new(model: &HumanModel) -> GazeAvailability {
-        GazeAvailability {
+    pub fn new(model: &HumanModel) -> UnknownGazeTimer {
+        UnknownGazeTimer {
             blink_s: model.looking.blink_s,
             max_sample_s: model.perception.max_sample_s,
             last: None,
@@ -90,11 +90,11 @@ impl GazeAvailability {
     }
 
     /// Accounts for a gaze sample taken at session time `taken`; the share `known` of its time counts as known gaze.
-    pub fn sample(&mut self, sample: &GazeSample, known: f64, taken: SessionTime) -> GazeSampleCoverage {
+    pub fn sample(&mut self, sample: &GazeSample, known: f64, taken: SessionTime) -> GazeSampleSpan {
         let covers_s = self.last.map_or(self.max_sample_s, |last| taken.secs_since(last)).min(self.max_sample_s);
         self.last = Some(self.last.map_or(taken, |last| last.max(taken)));
         if known <= 0.0 || !(sample.x.is_finite() && sample.y.is_finite()) {
-            return GazeSampleCoverage { unknown_before_s: self.pass(taken), covers_s, known: 0.0 };
+            return GazeSampleSpan { unknown_before_s: self.pass(taken), covers_s, known: 0.0 };
         }
         let begin = taken - SessionTime::from_secs_f64(covers_s);
         let unknown_before_s = self.pass(begin);
@@ -107,6 +107,6 @@ impl GazeAvailability {
         self.allowance_s = (left_s + known * covers_s).min(self.blink_s);
         self.dark_since = self.dark_since.max(taken);
         self.unknown = 1.0 - known;
-        GazeSampleCoverage { unknown_before_s, covers_s, known }
+        GazeSampleSpan { unknown_before_s, covers_s, known }
     }
 }

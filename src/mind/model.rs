@@ -26,8 +26,8 @@ pub struct HumanModel {
     /// How the human notices and reads signals.
     pub signal: SignalModel,
     /// What the estimate learns about the person in a trial.
-    #[serde(skip_serializing_if = "AdaptModel::is_off")]
-    pub adapt: AdaptModel,
+    #[serde(skip_serializing_if = "AdaptationSettings::is_off")]
+    pub adapt: AdaptationSettings,
     /// Settings of the computation that infers the belief, which are no properties of people.
     pub inference: InferenceSettings,
 }
@@ -35,15 +35,15 @@ pub struct HumanModel {
 /// Which parameters the estimate adapts to the person in a trial, press by press.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct AdaptModel {
+pub struct AdaptationSettings {
     /// Whether the estimate learns how often the person slips.
     pub lapse: bool,
 }
 
-impl AdaptModel {
+impl AdaptationSettings {
     /// Whether nothing is adapted to the person, in which case files and headers leave this table out.
     pub(super) fn is_off(&self) -> bool {
-        *self == AdaptModel::default()
+        *self == AdaptationSettings::default()
     }
 }
 
@@ -135,13 +135,13 @@ impl PerceptionModel {
     }
 
     /// The rate of reading a location as a function of distance and confidence.
-    pub fn reading_rate(&self) -> ReadingRate {
+    pub fn reading_rate(&self) -> LocationReadingRate {
         self.rate_of(self.reading_rate_hz)
     }
 
     /// The rate of reading something that is read `full_hz` times a second at distance 0.
-    pub fn rate_of(&self, full_hz: f64) -> ReadingRate {
-        ReadingRate { full_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
+    pub fn rate_of(&self, full_hz: f64) -> LocationReadingRate {
+        LocationReadingRate { full_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
 
@@ -175,14 +175,14 @@ impl Default for LookingModel {
 
 /// The rate of reading a location, with precomputed constants, because every gaze sample needs the rate.
 #[derive(Clone, Copy, Debug)]
-pub struct ReadingRate {
+pub struct LocationReadingRate {
     /// Readings per second at distance 0 and with full confidence.
     full_hz: f64,
     /// 2 r^2 with the reading radius r, in square metres.
     spread_m2: f64,
 }
 
-impl ReadingRate {
+impl LocationReadingRate {
     /// Times per second that a person reads the content of a location whose area is `distance_m` metres away from the
     /// point of gaze.
     #[inline]

@@ -112,7 +112,7 @@ impl SignalModel {
 
 /// Forecast of how a signal that is shown now will be read, which the planner assumes in its rollouts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SignalForecast {
+pub struct SignalReadingForecast {
     /// Probability that a recipe shown now is read and understood.
     pub recipe: f64,
     /// Probability that a highlight shown now is read and understood.
@@ -121,14 +121,14 @@ pub struct SignalForecast {
     pub delay_s: f64,
 }
 
-impl Default for SignalForecast {
+impl Default for SignalReadingForecast {
     /// By default everybody believes a signal at once.
     fn default() -> Self {
-        SignalForecast { recipe: 1.0, highlight: 1.0, delay_s: 0.0 }
+        SignalReadingForecast { recipe: 1.0, highlight: 1.0, delay_s: 0.0 }
     }
 }
 
-impl SignalForecast {
+impl SignalReadingForecast {
     /// Probability that a signal about a location of this kind is read and understood.
     pub fn probability(&self, kind: LocationKind) -> f64 {
         match kind {

@@ -60,7 +60,7 @@ pub enum Impatience {
 
 /// The data for a decision on the participant's next presses, except for the world in which the decision is made.
 #[derive(Clone, Debug)]
-pub struct Decision<'a> {
+pub struct DecisionContext<'a> {
     /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
     /// What the participant knows of the kitchen's buttons and processing steps.
@@ -100,7 +100,7 @@ struct Foreseen {
     is_detour: bool,
 }
 
-impl Decision<'_> {
+impl DecisionContext<'_> {
     /// Decides on the participant's next presses in a world that the participant believes to be true.
     pub fn resolve(&self, world: &World) -> DecisionResult {
         let presses = |button: ButtonId| self.kitchen.press(world.state, &world.recipes, Agent::Human, button);

@@ -1,7 +1,7 @@
 //! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and its decisions
 //! on next presses.
 
-use super::decision::{Decision, Impatience};
+use super::decision::{DecisionContext, Impatience};
 use super::habits::Lapses;
 use super::learning;
 use super::population::chance;
@@ -137,8 +137,8 @@ impl SimulatedParticipant {
     }
 
     /// The data of the participant's decision that is due, without the world that the participant believes.
-    pub(super) fn decision(&self, urgency: Impatience) -> Decision<'_> {
-        Decision {
+    pub(super) fn decision(&self, urgency: Impatience) -> DecisionContext<'_> {
+        DecisionContext {
             kitchen: &self.kitchen,
             knowledge: &self.knowledge,
             habits: &self.habits,

@@ -4,7 +4,7 @@
 //! the plan; if the press changes, it came from a false belief, namely the smallest replacement by the truth that
 //! changes the press. An order and the recipe of its dish are replaced together.
 
-use super::decision::Decision;
+use super::decision::DecisionContext;
 use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State, World};
 use crate::mind::{AspectBelief, PressOrigin, RecordedBelief, WORTH_TELLING};
@@ -69,7 +69,7 @@ impl PressReason {
     }
 
     /// The reason of a press that was decided in the world `believed`, while the world `truth` is the true one.
-    pub fn decided(decision: &Decision, believed: &World, truth: &World, button: ButtonId) -> PressReason {
+    pub fn decided(decision: &DecisionContext, believed: &World, truth: &World, button: ButtonId) -> PressReason {
         let kitchen = decision.kitchen;
         let presses = |world: &World| decision.resolve(world).plan.front().copied();
         let informed = presses(truth);

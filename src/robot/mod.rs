@@ -93,7 +93,7 @@ pub enum IdleReason {
 
 /// An activity of the robot, as it is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RobotActivity {
+pub enum RobotEvent {
     /// The robot begins a press: its arm starts to move to the button.
     Intend {
         /// The button that the robot is going to press.

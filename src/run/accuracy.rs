@@ -7,13 +7,13 @@ use super::parallel;
 use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
 use super::timing::monotonic_ns;
 use crate::analysis::planner_accuracy::{
-    BenchPlanner, ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests,
+    ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests, ThreadPlanner,
 };
 use crate::edge::file_error::FileResult;
 
 /// Numbers of steps at which the planner's accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PlannerAccuracySample {
+pub struct AccuracyStepCounts {
     /// Number of steps answered by the converged planner.
     pub steps: usize,
     /// Number of steps answered by the plain reference planner, a subset of `steps`.
@@ -26,7 +26,7 @@ pub struct PlannerAccuracySample {
 /// A recording cannot be read or replayed, or the recordings are of different kitchens.
 pub fn measure(
     recordings: &[PathBuf],
-    extent: PlannerAccuracySample,
+    extent: AccuracyStepCounts,
     done: impl Fn() + Sync,
 ) -> FileResult<PlannerAccuracySummary> {
     each_once(recordings)?;
@@ -39,8 +39,8 @@ pub fn measure(
     let bench = PlannerComparison::new(one_kitchen.kitchen()?, asked, monotonic_ns);
     let mut steps = bench.spread(extent.steps);
     bench.answer(&mut steps, extent.reference_steps, &done);
-    let converge = |planner: &mut BenchPlanner, step: &ComparedAdviceRequest| bench.converge(planner, step);
-    let steps = parallel::each_with(&steps, BenchPlanner::default, converge, done);
+    let converge = |planner: &mut ThreadPlanner, step: &ComparedAdviceRequest| bench.converge(planner, step);
+    let steps = parallel::each_with(&steps, ThreadPlanner::default, converge, done);
     Ok(bench.summary(&steps))
 }
 

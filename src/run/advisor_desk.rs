@@ -10,7 +10,7 @@ use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
     /// Starts the assistant's thread, which ends when the returned connection is dropped.
-    pub fn on_thread(mut self) -> LiveAdvisor {
+    pub fn on_thread(mut self) -> AdvisorThreadHandle {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
@@ -24,7 +24,7 @@ impl Advisor {
                 next = self.until_asked(&newest, &questions);
             }
         });
-        LiveAdvisor { ask, answers }
+        AdvisorThreadHandle { ask, answers }
     }
 
     /// Waits for the next request for advice, and works ahead meanwhile if the session's settings say so; `None` once
@@ -49,13 +49,13 @@ impl Advisor {
 
 /// A live session's connection to the assistant's thread.
 #[derive(Debug)]
-pub struct LiveAdvisor {
+pub struct AdvisorThreadHandle {
     ask: Sender<AdviceRequest>,
     /// Recommendations of the assistant, in the order of the requests.
     pub answers: UnboundedReceiver<Recommendation>,
 }
 
-impl LiveAdvisor {
+impl AdvisorThreadHandle {
     /// Sends a request for advice to the assistant, which replaces an earlier request that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
         // If the assistant's thread has ended, the session continues without recommendations.
@@ -64,7 +64,7 @@ impl LiveAdvisor {
 }
 
 /// Waits for the assistant's next recommendation; waits forever if the session has no assistant.
-pub async fn next_advice(advisor: &mut Option<LiveAdvisor>) -> Option<Recommendation> {
+pub async fn next_advice(advisor: &mut Option<AdvisorThreadHandle>) -> Option<Recommendation> {
     match advisor {
         Some(desk) => desk.answers.recv().await,
         None => std::future::pending().await,

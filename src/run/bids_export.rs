@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::{consents, standing};
 use crate::analysis::bids::{
-    BidsFile, BidsLabels, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
+    BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
     RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
 use crate::base::words::count;
@@ -68,7 +68,7 @@ type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
     let named = recordings.iter().map(|path| Ok((path.clone(), header(path)?))).collect::<FileResult<Vec<_>>>()?;
     let whole = without_parts(named);
-    let labels = BidsLabels::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
+    let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
     let (mut cost, mut phenotypes) = (None, QuestionnairePhenotypes::default());
@@ -128,7 +128,7 @@ fn without_parts(named: Vec<(PathBuf, LogHeader)>) -> Vec<(PathBuf, LogHeader)> 
 }
 
 /// Places of the recordings in the data set: by the participant's label, then by plan, date and name of the recording.
-fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabels) -> Vec<Planned> {
+fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabelMap) -> Vec<Planned> {
     all.sort_by_cached_key(|(path, header)| {
         let step = header.session.step.as_ref().map(|step| (step.plan.clone(), step.period, step.attempt));
         (header.session.participant.code.clone(), step, header.started.clone(), path.clone())

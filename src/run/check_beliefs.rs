@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::parallel;
 use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
-use crate::analysis::belief_check::{BeliefCheck, PressViews};
+use crate::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_figures::ProbeSummary;
 use crate::analysis::probe_record::ProbedTrial;
@@ -74,7 +74,7 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
 fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialBeliefs, Option<ProbedParticipant>)> {
     let mut replay = RecordingReplay::open(recording)?;
     let mut probes = ProbeCollector::default();
-    let mut views = PressViews::default();
+    let mut views = TrialBeliefCollector::default();
     while let Some(replayed) = replay.step()? {
         let (follower, seq) = (&replay.follower, replayed.stamped.seq);
         let judged = follower.judged.last().filter(|press| press.seq == seq);

@@ -121,7 +121,7 @@ impl CodedRecording {
 
 /// Raters' codes, agreement and disagreements: the output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RaterCodesSummary {
+pub struct InterRaterSummary {
     /// The coded recordings, with the number of errors that each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
     /// Agreement of each pair of raters who coded common errors. A consensus does not count as a rater.
@@ -217,9 +217,9 @@ pub struct RaterPairSummary {
     pub agreement: RaterAgreement,
 }
 
-impl RaterCodesSummary {
+impl InterRaterSummary {
     /// Summary of raters' codes, agreement and disagreements in these recordings.
-    pub fn from_recordings(recordings: &[CodedRecording]) -> RaterCodesSummary {
+    pub fn from_recordings(recordings: &[CodedRecording]) -> InterRaterSummary {
         let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<RaterDisagreement>)> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
         for one in recordings {
@@ -250,7 +250,7 @@ impl RaterCodesSummary {
             agreements.push(pair(raters, table));
             disagreements.extend(differ);
         }
-        RaterCodesSummary {
+        InterRaterSummary {
             recordings: recordings.iter().map(recording).collect(),
             agreements,
             known: known.into_iter().map(|(of, table)| pair((of, "simulation".to_string()), table)).collect(),
@@ -260,7 +260,7 @@ impl RaterCodesSummary {
 }
 
 /// The summary of raters' codes as text for the terminal.
-pub fn describe(figures: &RaterCodesSummary) -> String {
+pub fn describe(figures: &InterRaterSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();

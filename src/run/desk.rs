@@ -19,7 +19,7 @@ use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::gaze_json;
-use crate::edge::lsl::{self, InletThreadEnd, LslError};
+use crate::edge::lsl::{self, InletThreadGuard, LslError};
 use crate::edge::pupil::{self, CaptureConfiguration, CaptureRequest};
 use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::gaze::surface::SurfaceHomography;
@@ -70,7 +70,7 @@ pub(super) struct GazeTracker {
     /// Channel for requests to the program Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
     /// End of the thread that reads gaze from the Lab Streaming Layer; the desk waits for it once `news` is dropped.
-    _inlet: Option<InletThreadEnd>,
+    _inlet: Option<InletThreadGuard>,
     file: Option<Arc<GazeFile>>,
     /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
     pairing: Option<GazePairing>,

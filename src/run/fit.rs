@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::parallel::WorkerPool;
 use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
-use crate::analysis::fitting::fitted_answers::IntervalShrinkage;
+use crate::analysis::fitting::fitted_answers::IntervalNarrowing;
 use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
@@ -128,7 +128,7 @@ pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSumma
         let alone = fit_once(&trials.without_answers(), plan, &tried);
         let both = plan.parameters.iter().zip(alone.parameters.iter().zip(&found.parameters));
         let shrinkage = both.map(|(parameter, (alone, with))| {
-            IntervalShrinkage::between(*parameter, alone.value, alone.interval, with.interval)
+            IntervalNarrowing::between(*parameter, alone.value, alone.interval, with.interval)
         });
         answers.shrinkage = shrinkage.collect();
     }

@@ -8,8 +8,10 @@ use super::fit::FitTrials;
 use super::parallel::WorkerPool;
 use crate::analysis::fitting::FitSettings;
 use crate::analysis::fitting::people_fit::fit_people;
-use crate::analysis::fitting::people_search::{PersonTry, ROUNDS, TrialPart};
-use crate::analysis::fitting::people_summary::{FittedPerson, HeldOut, HeldOutGain, HeldOutPerson, PeopleSummary};
+use crate::analysis::fitting::people_search::{PersonTry, ROUNDS, TrialSelection};
+use crate::analysis::fitting::people_summary::{
+    HeldOut, HeldOutGain, HeldOutPerson, PeopleSummary, PersonRecordingCount,
+};
 use crate::analysis::fitting::response_surface::points;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::cost_to_go::CostToGo;
@@ -49,9 +51,9 @@ pub fn most_replays(trials: &FitTrials, plan: &FitSettings) -> u64 {
 pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn() + Sync) -> PeopleSummary {
     let kitchen = &trials.kitchen;
     let by_person = by_person(trials);
-    let fitted: Vec<FittedPerson> = by_person
+    let fitted: Vec<PersonRecordingCount> = by_person
         .iter()
-        .map(|(code, own)| FittedPerson { code: (*code).to_string(), recordings: own.len() as u64 })
+        .map(|(code, own)| PersonRecordingCount { code: (*code).to_string(), recordings: own.len() as u64 })
         .collect();
     let own: Vec<&Vec<&FitObservations>> = by_person.values().collect();
     let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
@@ -91,14 +93,14 @@ pub fn by_person(trials: &FitTrials) -> BTreeMap<&str, Vec<&FitObservations>> {
 }
 
 /// The part of a person's trials that the search uses.
-fn of_part<'a, 'b>(own: &'b [&'a FitObservations], part: TrialPart) -> &'b [&'a FitObservations] {
+fn of_part<'a, 'b>(own: &'b [&'a FitObservations], part: TrialSelection) -> &'b [&'a FitObservations] {
     let before_last = own.len().saturating_sub(1);
     match part {
-        TrialPart::All => own,
-        TrialPart::Training if own.len() > 1 => &own[..before_last],
-        TrialPart::Training => own,
-        TrialPart::HeldOut if own.len() > 1 => &own[before_last..],
-        TrialPart::HeldOut => &[],
+        TrialSelection::All => own,
+        TrialSelection::Training if own.len() > 1 => &own[..before_last],
+        TrialSelection::Training => own,
+        TrialSelection::HeldOut if own.len() > 1 => &own[before_last..],
+        TrialSelection::HeldOut => &[],
     }
 }
 

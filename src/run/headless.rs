@@ -10,11 +10,11 @@ const LOOKS_S: f64 = 3.0;
 
 /// Stands in for a wizard in simulations: resumes an arm that has stopped by itself.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SimulatedAttendant {
+pub struct SimulatedRobotOperator {
     stopped: Option<SessionTime>,
 }
 
-impl SimulatedAttendant {
+impl SimulatedRobotOperator {
     /// Raises the next internal event of a running session, and resumes the arm if it has been stopped for a while.
     pub fn step(&mut self, engine: &mut SessionEngine) -> Vec<TimestampedEvent> {
         let now = engine.next_due().unwrap_or(engine.session().time);
@@ -38,7 +38,7 @@ pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEve
         engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
-    let mut attendant = SimulatedAttendant::default();
+    let mut attendant = SimulatedRobotOperator::default();
     // Until the trial ends, a next event is always pending, since the end of the trial's time is one.
     while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         for question in engine.take_questions() {

@@ -21,7 +21,7 @@ pub enum LeavingReason {
 
 /// How far the participant came in a tutorial that the recording ended with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TutorialCompletion {
+pub struct TutorialProgress {
     /// Number of steps that the participant did.
     pub done: u64,
     /// Number of steps in the tutorial.
@@ -32,11 +32,11 @@ pub struct TutorialCompletion {
     pub wrong_answers: u64,
 }
 
-impl TutorialCompletion {
+impl TutorialProgress {
     /// How far the participant came in the session's tutorial; `None` in a session that is in another phase.
-    pub fn from_session(session: &Session) -> Option<TutorialCompletion> {
+    pub fn from_session(session: &Session) -> Option<TutorialProgress> {
         let (tutorial, state) = session.tutorial()?;
-        Some(TutorialCompletion {
+        Some(TutorialProgress {
             done: state.done.iter().filter(|is_done| **is_done).count() as u64,
             steps: tutorial.steps.len() as u64,
             presses: u64::from(state.pressed),
@@ -45,7 +45,7 @@ impl TutorialCompletion {
     }
 
     fn describe(self) -> String {
-        let TutorialCompletion { done, steps, presses, wrong_answers } = self;
+        let TutorialProgress { done, steps, presses, wrong_answers } = self;
         let presses = count(presses, "press", "presses");
         format!(
             "tutorial: {done} of {steps} steps done, {presses}, {}",
@@ -64,7 +64,7 @@ pub struct LiveOutcome {
     /// Summary of the session's trial.
     pub figures: TrialSummary,
     /// How far the participant came, if the session was left in a tutorial.
-    pub tutorial: Option<TutorialCompletion>,
+    pub tutorial: Option<TutorialProgress>,
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
     /// What the repetition of the trial starts from, if the wizard asked for one.
@@ -79,7 +79,7 @@ impl LiveOutcome {
         let signals = count(self.figures.signals, "signal", "signals");
         let served = count(self.figures.served.len() as u64, "order", "orders");
         let trial = || format!("{presses} of human and robot, {signals}, {served} served");
-        let reached = self.tutorial.map_or_else(trial, TutorialCompletion::describe);
+        let reached = self.tutorial.map_or_else(trial, TutorialProgress::describe);
         let standing = if self.standing.counts() {
             String::new()
         } else {

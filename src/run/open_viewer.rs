@@ -12,7 +12,7 @@ use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
 use crate::edge::overwrite;
-use crate::edge::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets, WebViewer, uri};
+use crate::edge::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
 use crate::edge::stream::{PORTS, is_free};
 use crate::edge::stream_head;
@@ -328,7 +328,7 @@ fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
         let name = name(recording);
         let session = playing.replay.session();
         let title = format!("{} {} ({name})", session.spec.participant.code, session.study_arm().title());
-        Ok(Playing { lane: StreamLane { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
+        Ok(Playing { lane: ShownRecording { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
@@ -340,7 +340,7 @@ fn write(
     recordings: &[PathBuf],
     outlets: &StreamOutlets,
 ) -> Result<io::Result<RerunWriter>, RerunViewerError> {
-    let lanes: Vec<StreamLane> = playing.iter().map(|one| one.lane.clone()).collect();
+    let lanes: Vec<ShownRecording> = playing.iter().map(|one| one.lane.clone()).collect();
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     let began: Vec<String> = playing.iter().map(Playing::began).collect();
     let id = format!("{} {} {}", names.join(" "), began.join(" "), rrd::mark());
@@ -359,14 +359,14 @@ fn write(
 struct Playing {
     replay: RecordingReplay,
     scene: SessionScene,
-    lane: StreamLane,
+    lane: ShownRecording,
 }
 
 impl Playing {
     fn open(recording: &Path) -> FileResult<Playing> {
         let replay = RecordingReplay::open(recording)?.without_causes();
         let scene = SessionScene::new(replay.session(), 0);
-        Ok(Playing { replay, scene, lane: StreamLane::default() })
+        Ok(Playing { replay, scene, lane: ShownRecording::default() })
     }
 
     /// Text that tells recordings of the same name apart: the time at which the recording began.

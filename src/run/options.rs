@@ -4,10 +4,10 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::analysis::watcher::ComparisonRequest;
+use crate::analysis::watcher::SenderComparisonSettings;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
-use crate::edge::files::{self, SessionFiles};
+use crate::edge::files::{self, SessionSetup};
 use crate::kitchen::Kitchen;
 use crate::session::LogHeader;
 use crate::session::plan::PlanSpec;
@@ -28,7 +28,7 @@ pub enum SessionStart {
     /// A new session with these settings, recorded in `out`; `trial` distinguishes sessions with the same seed.
     New {
         /// Settings of the session with the files that they name.
-        files: Box<SessionFiles>,
+        files: Box<SessionSetup>,
         /// Index of the trial among trials with the same seed.
         trial: u64,
         /// Folder in which the recording's folder is created.
@@ -40,15 +40,15 @@ pub enum SessionStart {
 
 /// A request to make the recordings that a participant in a study plan still needs.
 #[derive(Clone, Debug)]
-pub struct RemainingTrials {
+pub struct SeriesRequest {
     /// Session settings that contain the study plan.
-    pub files: SessionFiles,
+    pub files: SessionSetup,
     /// Index of the participant in the plan.
     pub participant: usize,
     /// Folder of the participant's recordings.
     pub out: PathBuf,
     /// Comparison of wizard and assistants, if the console shows it.
-    pub compare: Option<ComparisonRequest>,
+    pub compare: Option<SenderComparisonSettings>,
 }
 
 /// Session settings given on the command line; `None` keeps the session file's value.
@@ -84,7 +84,7 @@ impl SettingOverrides {
     ///
     /// # Errors
     /// The settings exclude each other.
-    pub fn apply(self, files: &mut SessionFiles) -> Result<(), SettingError> {
+    pub fn apply(self, files: &mut SessionSetup) -> Result<(), SettingError> {
         let spec = &mut files.spec;
         let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];
         if let Some((key, _)) = decided.into_iter().find(|(_, is_given)| *is_given && spec.plan.is_some()) {
@@ -137,7 +137,7 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
 ///
 /// # Errors
 /// The errors of [`files::read_session`].
-pub fn session_or_default(path: Option<&Path>) -> FileResult<SessionFiles> {
+pub fn session_or_default(path: Option<&Path>) -> FileResult<SessionSetup> {
     let default = Path::new("sessions/default.toml");
     match path {
         Some(path) => files::read_session(path),

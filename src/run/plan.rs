@@ -9,14 +9,14 @@ use super::error::LiveError;
 use super::series::{slot_name, stands};
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
-use crate::edge::files::KitchenFiles;
+use crate::edge::files::KitchenWithSources;
 use crate::edge::{frozen_file, recordings};
 use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study};
 use crate::study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StudyPlanSummary {
+pub struct StudyProgress {
     /// Name of the study plan.
     pub plan: String,
     /// Checksum of the plan and its settings.
@@ -31,12 +31,12 @@ pub struct StudyPlanSummary {
     pub participants: Vec<ParticipantProgress>,
 }
 
-impl StudyPlanSummary {
+impl StudyProgress {
     /// Progress of a study, computed from the recordings in the folder `out`.
     ///
     /// # Errors
     /// A recording cannot be read or does not belong to the plan.
-    pub fn from_study(study: &Study, out: &Path) -> Result<StudyPlanSummary, LiveError> {
+    pub fn from_study(study: &Study, out: &Path) -> Result<StudyProgress, LiveError> {
         let made = recordings::of_plan(out, &study.plan.name)?;
         let codes = study.plan.codes();
         if let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) {
@@ -48,7 +48,7 @@ impl StudyPlanSummary {
         let progress =
             |participant| ParticipantProgress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
         let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
-        Ok(StudyPlanSummary {
+        Ok(StudyProgress {
             plan: study.plan.name.clone(),
             digest: study.digest.clone(),
             seed: study.session.seed,
@@ -95,8 +95,8 @@ impl FrozenPlanSummary {
 /// The file of the frozen plan exists already, or cannot be written.
 pub fn freeze(
     study: &Study,
-    kitchen: &KitchenFiles,
-    progress: &StudyPlanSummary,
+    kitchen: &KitchenWithSources,
+    progress: &StudyProgress,
     file: &Path,
 ) -> FileResult<FrozenPlanSummary> {
     let steps = progress.participants.iter().flat_map(|one| &one.steps);
@@ -107,7 +107,7 @@ pub fn freeze(
 }
 
 /// Progress of the study as text for the terminal.
-pub fn describe(figures: &StudyPlanSummary) -> String {
+pub fn describe(figures: &StudyProgress) -> String {
     let mut sizes = BTreeMap::new();
     for one in &figures.participants {
         *sizes.entry(one.group.as_str()).or_insert(0) += 1;

@@ -13,7 +13,7 @@ use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::files::SessionFiles;
+use crate::edge::files::SessionSetup;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::plan::{Participants, Study};
@@ -26,7 +26,7 @@ use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTria
 #[derive(Clone, Debug)]
 pub struct PoolRequest {
     /// Settings that contain the study plan, with the files that they name.
-    pub files: SessionFiles,
+    pub files: SessionSetup,
     /// Number of participants in the whole pool, instead of the plan's number.
     pub participants: u32,
     /// Shard (part) of the pool that is simulated here.

@@ -8,10 +8,10 @@ use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
 use super::seekable_replay::SeekableReplay;
-use super::watch_desk::LiveComparison;
-use crate::analysis::watcher::{ComparisonFollower, ComparisonRequest};
+use super::watch_desk::ComparisonThreadHandle;
+use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use crate::base::time::SessionTime;
-use crate::console::compared::ComparisonView;
+use crate::console::compared::SenderComparisonView;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{Playback, ReplayAction, SPEEDS};
 use crate::console::rater_session::RaterSession;
@@ -35,7 +35,7 @@ const SEEK: SessionTime = SessionTime(10_000_000_000);
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
-pub fn review(recording: &Path, follow: bool, compare: Option<&ComparisonRequest>) -> Result<(), ReviewError> {
+pub fn review(recording: &Path, follow: bool, compare: Option<&SenderComparisonSettings>) -> Result<(), ReviewError> {
     // The console begins at once, and the rest is read beside it; a running session is shown at its end.
     let mut film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
     film.read_to_trial()?;
@@ -74,7 +74,7 @@ fn at_desk(
     film: SeekableReplay,
     recording: &Path,
     follow: bool,
-    compare: Option<&ComparisonRequest>,
+    compare: Option<&SenderComparisonSettings>,
     coding: Option<RaterSession>,
 ) -> Result<Review, ReviewError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
@@ -98,7 +98,7 @@ struct Review {
     grows: bool,
     dirty: bool,
     /// Comparison of wizard and assistants, if it was asked for.
-    comparison: Option<LiveComparison>,
+    comparison: Option<ComparisonThreadHandle>,
 }
 
 impl Review {
@@ -107,7 +107,7 @@ impl Review {
         desk: &OperatorDesk,
         recording: &Path,
         follow: bool,
-        compare: Option<&ComparisonRequest>,
+        compare: Option<&SenderComparisonSettings>,
         coding: Option<RaterSession>,
     ) -> Result<Review, ReviewError> {
         let size = TerminalScreen::size().map_err(TerminalError)?;
@@ -116,11 +116,11 @@ impl Review {
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let keys = if coding.is_some() { keys.with_coding(&film.session.kitchen) } else { keys };
         let mut model = ConsoleModel::new(keys, desk.theme, size);
-        model.comparison = compare.map(|_| ComparisonView::default());
+        model.comparison = compare.map(|_| SenderComparisonView::default());
         model.coding = coding;
         let comparison = compare.map(|request| {
             let session = film.replay.log().session();
-            ComparisonFollower::new(session, request).without_causes().on_thread()
+            SenderComparisonFollower::new(session, request).without_causes().on_thread()
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();
@@ -385,7 +385,7 @@ impl ConsoleShell for Review {
     fn advance(&mut self) -> bool {
         self.play();
         if let (Some(newest), Some(compared)) =
-            (self.comparison.as_ref().and_then(LiveComparison::newest), &mut self.model.comparison)
+            (self.comparison.as_ref().and_then(ComparisonThreadHandle::newest), &mut self.model.comparison)
         {
             compared.show(newest);
             self.dirty = true;

@@ -8,10 +8,10 @@ use super::engine::SessionEngine;
 use super::headless;
 use super::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
-use crate::analysis::belief_check::PressViews;
+use crate::analysis::belief_check::TrialBeliefCollector;
 use crate::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
 use crate::analysis::trial_summary::TrialSummary;
-use crate::edge::battery_file::BatteryFiles;
+use crate::edge::battery_file::CohortBattery;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
@@ -23,7 +23,7 @@ use crate::session::{Event, Session, TimestampedEvent, apply};
 #[derive(Clone, Debug)]
 pub struct RobustnessRequest {
     /// The battery file (cohorts of simulated people), with the session file that it names.
-    pub battery: BatteryFiles,
+    pub battery: CohortBattery,
     /// For each cohort, number of judged trials, and number of trials on which thresholds for flagging false beliefs
     /// are chosen.
     pub trials: u64,
@@ -124,7 +124,7 @@ fn simulate(
         .collect();
     // The session is run through once more to collect presses and the gaze baseline; the estimate comes from the
     // recorded events.
-    let (mut session, mut views) = (Session::new(kitchen.clone(), spec, trial), PressViews::default());
+    let (mut session, mut views) = (Session::new(kitchen.clone(), spec, trial), TrialBeliefCollector::default());
     let mut judged = follower.judged.iter().peekable();
     for stamped in &events {
         let applied = apply(&mut session, stamped).expect("an engine's own events fit its session");

@@ -5,15 +5,15 @@ use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
-use super::options::{RemainingTrials, SessionStart};
+use super::options::{SeriesRequest, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
-use crate::analysis::watcher::ComparisonRequest;
+use crate::analysis::watcher::SenderComparisonSettings;
 use crate::console::question::StartQuestion;
-use crate::edge::files::SessionFiles;
+use crate::edge::files::SessionSetup;
 use crate::edge::recordings;
 use crate::session::plan::{NextRecording, ParticipantProgress, Study};
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 
 /// Result of one session, or of a participant's series of sessions.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub struct SeriesOutcome {
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: SessionStart, compare: Option<ComparisonRequest>) -> Result<SeriesOutcome, LiveError> {
+pub fn operate(beginning: SessionStart, compare: Option<SenderComparisonSettings>) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async {
         // The session's start is checked before the terminal is taken over and a recording is created, so that a
         // session that cannot start leaves nothing behind.
@@ -53,7 +53,7 @@ pub fn operate(beginning: SessionStart, compare: Option<ComparisonRequest>) -> R
 ///
 /// # Errors
 /// The errors of [`operate`]; or recordings cannot be read or do not fit the plan.
-pub fn operate_series(series: RemainingTrials) -> Result<SeriesOutcome, LiveError> {
+pub fn operate_series(series: SeriesRequest) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
 }
 
@@ -80,12 +80,12 @@ enum Choice {
 /// The series of one participant in a study plan. The next recording is determined from the existing recordings each
 /// time.
 struct Planned {
-    series: RemainingTrials,
+    series: SeriesRequest,
     study: Study,
 }
 
 impl Planned {
-    fn new(series: RemainingTrials) -> Result<Planned, LiveError> {
+    fn new(series: SeriesRequest) -> Result<Planned, LiveError> {
         let study = series.files.study().ok_or(LiveError::Plan("a session without a plan".to_string()))?;
         Ok(Planned { series, study })
     }
@@ -143,7 +143,7 @@ impl Planned {
         let beginning = match continued {
             Some(recording) => SessionStart::Continued(self.series.out.join(recording)),
             None => {
-                let files = Box::new(SessionFiles { spec, ..self.series.files.clone() });
+                let files = Box::new(SessionSetup { spec, ..self.series.files.clone() });
                 SessionStart::New { files, trial, out: self.series.out.clone() }
             }
         };
@@ -151,7 +151,7 @@ impl Planned {
         if progress.consent {
             return Ok(Choice::Begin(Box::new(begun)));
         }
-        let on_display = self.study.plan.consent_on == AnswerEntry::Display
+        let on_display = self.study.plan.consent_on == AnswerDevice::Display
             && desk.wall.ask_consent(begun.engine.session(), &self.study.plan.consent);
         match ask_consent(desk, &consent(&self.study, progress, &label, on_display), on_display).await? {
             Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use super::parallel;
 use super::replay::each_once;
 use super::standing::exclusion_status;
-use crate::analysis::compared_recording::{ComparedRecording, RecordingComparer};
-use crate::analysis::watcher::ComparisonRequest;
+use crate::analysis::compared_recording::{RecordingSenderComparison, SenderComparer};
+use crate::analysis::watcher::SenderComparisonSettings;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
@@ -20,17 +20,17 @@ pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 /// A recording cannot be read or replayed, or is named twice.
 pub fn watch(
     recordings: &[PathBuf],
-    request: &ComparisonRequest,
+    request: &SenderComparisonSettings,
     done: impl Fn() + Sync,
-) -> FileResult<Vec<ComparedRecording>> {
+) -> FileResult<Vec<RecordingSenderComparison>> {
     each_once(recordings)?;
     parallel::each(recordings, |recording| follow(recording, request), done).into_iter().collect()
 }
 
 /// Compares wizard and assistants in one recording, from beginning to end.
-fn follow(recording: &Path, request: &ComparisonRequest) -> FileResult<ComparedRecording> {
+fn follow(recording: &Path, request: &SenderComparisonSettings) -> FileResult<RecordingSenderComparison> {
     let mut log = LogReader::open(recording)?;
-    let mut comparer = RecordingComparer::new(log.session(), request);
+    let mut comparer = SenderComparer::new(log.session(), request);
     while let Some(line) = log.next_line()? {
         let added = comparer.add(&line.stamped);
         added.map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
@@ -43,7 +43,7 @@ fn follow(recording: &Path, request: &ComparisonRequest) -> FileResult<ComparedR
 ///
 /// # Errors
 /// There is no unmatched communication with this number, or there are several recordings.
-pub fn open(watched: &[ComparedRecording], number: usize) -> FileResult<String> {
+pub fn open(watched: &[RecordingSenderComparison], number: usize) -> FileResult<String> {
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());
         let remedy = "one recording at a time".to_string();

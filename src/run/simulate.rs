@@ -20,8 +20,8 @@ use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArm
 use crate::base::words::count;
 use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
-use crate::edge::files::SessionFiles;
-use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLog, check_simulated, ruling};
+use crate::edge::files::SessionSetup;
+use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
@@ -32,7 +32,7 @@ use crate::session::{LogHeader, TimestampedEvent};
 #[derive(Clone, Debug)]
 pub struct SimulationRequest {
     /// Settings of the session, with the files that they name.
-    pub files: SessionFiles,
+    pub files: SessionSetup,
     /// Total number of trials, over all shards of the simulation.
     pub trials: u64,
     /// Shard (part) of the trials that is simulated here.
@@ -249,15 +249,15 @@ fn simulate_trial(
 ) -> Result<SimulatedTrial, RunError> {
     let header = header_of_trial(simulation, trial);
     let folder = folder_of_trial(&simulation.out, &header.session);
-    let opened = SimulatedLog::open(&folder, &header)?;
+    let opened = SimulatedLogState::open(&folder, &header)?;
     let cost = own.take().unwrap_or_else(|| unused.clone());
     let (follower, found, moved) = match opened {
-        SimulatedLog::Whole => {
+        SimulatedLogState::Whole => {
             let mut replay = RecordingReplay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
             replay.run().map_err(Box::new)?;
             (replay.follower, true, None)
         }
-        SimulatedLog::Begun { mut log, moved } => {
+        SimulatedLogState::Begun { mut log, moved } => {
             let mut engine = SessionEngine::new(kitchen.clone(), header.session, header.trial, cost);
             headless::run(&mut engine, |stamped: &TimestampedEvent| log.append(stamped))?;
             log.flush()?;

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::error::RunError;
 use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_trial};
 use crate::analysis::kitchen_summary::plan_lengths;
-use crate::analysis::sweep_row::{ParameterSweepRow, TrialErrors};
+use crate::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::{AssistantSpec, ShadowMode};
@@ -194,7 +194,7 @@ pub fn sweep(
         one.files.spec = spec;
         one.out = simulation.out.join(folder_of(cell));
         let (trials, figures) = of_cell(&one, &done)?;
-        let with_first = first.as_ref().map(|first: &Vec<TrialErrors>| [&first[..], &trials]);
+        let with_first = first.as_ref().map(|first: &Vec<PressErrorCounts>| [&first[..], &trials]);
         rows.push(ParameterSweepRow::new(cell, &figures, Some([&before, &trials]), with_first));
         first.get_or_insert(trials);
         moved.extend(figures.moved);
@@ -280,7 +280,7 @@ fn folder_of(cell: &Cell) -> String {
 fn of_cell(
     simulation: &SimulationRequest,
     done: &(impl Fn() + Sync),
-) -> Result<(Vec<TrialErrors>, SimulationSummary), RunError> {
+) -> Result<(Vec<PressErrorCounts>, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
     // Recommendations for trials without signals are not computed, since they would only take time.
     simulation.files.spec.assistant.shadow = ShadowMode::Off;
@@ -291,7 +291,7 @@ fn of_cell(
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         let TrialSummary { errors, human_actions, .. } = trial.figures;
         let related = trial.figures.beliefs.as_ref().map(|beliefs| beliefs.related);
-        trials.push(TrialErrors { errors, related, human_actions });
+        trials.push(PressErrorCounts { errors, related, human_actions });
         sums.add(trial.arm, &trial.figures, &plan_lengths);
         Ok(())
     })?;

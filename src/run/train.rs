@@ -22,7 +22,7 @@ use crate::session::settings::{Condition, WizardVisibility};
 
 /// Request of `tomcom train`.
 #[derive(Clone, Debug)]
-pub struct TrainingRequest {
+pub struct WizardTrainingRequest {
     /// Recordings of simulated participants without signals, which the wizard watches.
     pub recordings: Vec<PathBuf>,
     /// The wizard's pseudonymous code.
@@ -39,7 +39,7 @@ pub struct TrainingRequest {
 ///
 /// # Errors
 /// A recording is not suitable, there is no terminal, or the result cannot be written.
-pub fn train(lesson: &TrainingRequest) -> Result<(WizardTrainingRecord, PathBuf), ReviewError> {
+pub fn train(lesson: &WizardTrainingRequest) -> Result<(WizardTrainingRecord, PathBuf), ReviewError> {
     let before = training::read(&lesson.out, &lesson.wizard)?;
     let films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)> =
         lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
@@ -77,7 +77,7 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
 
 /// Plays one recording after another until all recordings are finished or the wizard quits.
 async fn watch(
-    lesson: &TrainingRequest,
+    lesson: &WizardTrainingRequest,
     films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)>,
     before: &[WizardTrainingRecord],
 ) -> Result<Vec<WatchedRecording>, ReviewError> {
@@ -100,7 +100,7 @@ async fn watch(
 }
 
 /// Name of a recording in training records; if the recording was simulated for training, the name includes its length.
-fn name_of(recording: &Path, lesson: &TrainingRequest) -> String {
+fn name_of(recording: &Path, lesson: &WizardTrainingRequest) -> String {
     let simulated = recording.strip_prefix(lesson.out.join("recordings")).ok();
     let name = simulated.or(recording.file_name().map(Path::new)).unwrap_or(recording);
     name.display().to_string()

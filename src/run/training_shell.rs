@@ -9,7 +9,7 @@ use super::event_loop::{ConsoleShell, LoopEvent, ShellView};
 use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use crate::analysis::lesson_report;
-use crate::analysis::training_record::{JudgedFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
+use crate::analysis::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::recommendation::aspects_told;
@@ -35,7 +35,7 @@ pub(super) struct TrainingShell {
     name: String,
     spells: Vec<FalseBeliefPeriod>,
     /// Periods of false belief in the recording that led to errors, with the judgement of the wizard's signals.
-    beliefs: Vec<JudgedFalseBelief>,
+    beliefs: Vec<HarmfulFalseBelief>,
     criterion: TrainingCriterion,
     model: ConsoleModel,
     sent: Vec<WizardSignal>,
@@ -268,14 +268,14 @@ impl TrainingShell {
     }
 
     /// The false beliefs that led to errors and have begun so far.
-    fn judged_beliefs(&self) -> Vec<JudgedFalseBelief> {
+    fn judged_beliefs(&self) -> Vec<HarmfulFalseBelief> {
         let clock = self.film.session.trial_clock(self.now);
         let worths = worths(&self.sent, &self.spells);
         let hit_by = |index: usize| {
             worths.iter().position(|worth| matches!(worth, SignalVerdict::Hit { spell, .. } if *spell == index))
         };
         let begun = self.spells.iter().enumerate().filter(|(_, spell)| spell.errors > 0 && spell.began <= clock);
-        begun.map(|(index, _)| JudgedFalseBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
+        begun.map(|(index, _)| HarmfulFalseBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
     }
 
     /// The training record's entry for this recording; `before` are the wizard's earlier training records.

@@ -7,7 +7,7 @@ use super::engine::SessionEngine;
 use super::error::LiveError;
 use super::options::SessionStart;
 use super::resume::resume;
-use crate::analysis::watcher::ComparisonRequest;
+use crate::analysis::watcher::SenderComparisonSettings;
 use crate::base::time::SessionTime;
 use crate::edge::log::RecordingLock;
 use crate::kitchen::Kitchen;
@@ -26,7 +26,7 @@ pub(super) struct PreparedSession {
     /// Session time at which the session begins.
     pub time: SessionTime,
     /// Comparison of wizard and assistants, if the console shows it.
-    pub compare: Option<ComparisonRequest>,
+    pub compare: Option<SenderComparisonSettings>,
     pub place: RecordingPlace,
 }
 
@@ -91,7 +91,7 @@ impl PreparedSession {
     }
 
     /// Adds to the prepared session a comparison of wizard and assistants.
-    pub fn comparing(self, compare: Option<ComparisonRequest>) -> PreparedSession {
+    pub fn comparing(self, compare: Option<SenderComparisonSettings>) -> PreparedSession {
         PreparedSession { compare, ..self }
     }
 

@@ -3,13 +3,13 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-use crate::analysis::watcher::ComparisonFollower;
+use crate::analysis::watcher::SenderComparisonFollower;
 use crate::history::comparison::SenderComparison;
 use crate::session::{Event, TimestampedEvent};
 
-impl ComparisonFollower {
+impl SenderComparisonFollower {
     /// Starts the comparison's thread, which ends when the returned connection is dropped.
-    pub fn on_thread(mut self) -> LiveComparison {
+    pub fn on_thread(mut self) -> ComparisonThreadHandle {
         let (tell, events) = channel::<TimestampedEvent>();
         let (show, views) = channel();
         thread::spawn(move || {
@@ -27,18 +27,18 @@ impl ComparisonFollower {
                 }
             }
         });
-        LiveComparison { tell, views }
+        ComparisonThreadHandle { tell, views }
     }
 }
 
 /// The console's connection to the thread that compares wizard and assistants.
 #[derive(Debug)]
-pub struct LiveComparison {
+pub struct ComparisonThreadHandle {
     tell: Sender<TimestampedEvent>,
     views: Receiver<SenderComparison>,
 }
 
-impl LiveComparison {
+impl ComparisonThreadHandle {
     /// Passes an event of the session to the thread that compares wizard and assistants.
     pub fn tell(&self, stamped: &TimestampedEvent) {
         // If the comparison's thread has ended, the session continues without a comparison.

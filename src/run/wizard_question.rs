@@ -8,7 +8,7 @@ use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, Sh
 use crate::console::ConsoleMessage;
 use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 
 /// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);
@@ -30,7 +30,7 @@ pub(super) async fn ask_consent(
     desk: &mut OperatorDesk,
     question: &StartQuestion,
     on_display: bool,
-) -> Result<Option<(usize, AnswerEntry)>, LiveError> {
+) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
     let mut shell = OpenQuestion { question, on_display, theme: desk.theme, dirty: true };
     let reply = event_loop::run(&mut shell, desk).await?;
     Ok(match reply {
@@ -50,7 +50,7 @@ struct OpenQuestion<'a> {
 }
 
 impl ConsoleShell for OpenQuestion<'_> {
-    type Outcome = (StartQuestionReply, AnswerEntry);
+    type Outcome = (StartQuestionReply, AnswerDevice);
     type Error = LiveError;
 
     fn deadlines(&mut self) -> ShellDeadlines {
@@ -59,17 +59,17 @@ impl ConsoleShell for OpenQuestion<'_> {
 
     /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
     /// later as if they were new inputs.
-    fn take(&mut self, event: LoopEvent) -> Result<Option<(StartQuestionReply, AnswerEntry)>, LiveError> {
+    fn take(&mut self, event: LoopEvent) -> Result<Option<(StartQuestionReply, AnswerDevice)>, LiveError> {
         let message = match event {
             LoopEvent::Page(input) if self.on_display && is_consent(&input) => {
-                return Ok(Some((StartQuestionReply::Answer(0), AnswerEntry::Display)));
+                return Ok(Some((StartQuestionReply::Answer(0), AnswerDevice::Display)));
             }
             LoopEvent::Terminal(message) => message,
             _ => return Ok(None),
         };
         self.dirty = true;
         Ok(match message {
-            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, AnswerEntry::Console)),
+            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, AnswerDevice::Console)),
             _ => None,
         })
     }

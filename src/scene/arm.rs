@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours::{self, SceneColour};
-use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SceneSeries, slug};
+use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SeriesStyle, slug};
 use crate::arm::kinematics::SerialArm;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::arm::motion::JointMotion;
@@ -87,7 +87,7 @@ impl RobotArmScene {
             rows.push(EntityUpdate::new(entity(&link.name), EntityData::Solids(link.solids.clone(), colour)));
         }
         for (name, colour) in JOINTS {
-            let series = SceneSeries { name: format!("{name} (degrees)"), colour };
+            let series = SeriesStyle { name: format!("{name} (degrees)"), colour };
             rows.push(EntityUpdate::new(joint(name), EntityData::Line(series)));
         }
         if self.motion.is_none() {
@@ -95,7 +95,7 @@ impl RobotArmScene {
             for (entity, name, colour) in
                 [(FORCE, "force on the arm (N)", colours::ROBOT), (AWAY, "hand away (cm)", colours::HUMAN)]
             {
-                rows.push(EntityUpdate::new(entity, EntityData::Line(SceneSeries { name: name.to_string(), colour })));
+                rows.push(EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name: name.to_string(), colour })));
             }
         }
         rows

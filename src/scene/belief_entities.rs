@@ -1,7 +1,7 @@
 //! The participant's beliefs for Rerun: the estimate of them, and for simulated participants the recorded belief.
 
 use super::colours;
-use super::entity_content::{EntityData, EntityUpdate, MarkShape, SceneSeries, slug};
+use super::entity_content::{EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
 use crate::base::time::SessionTime;
 use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen, State, StateAspect};
@@ -71,10 +71,10 @@ pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
         let colour = colours::of_aspect(AspectId(nth as u8));
         let name = wording::location(&aspect.name);
         // All curves are grey; marks in the aspect's colour stand out where a belief is false.
-        let quiet = EntityData::QuietLine(SceneSeries { name: name.clone(), colour: colours::QUIET });
+        let quiet = EntityData::QuietLine(SeriesStyle { name: name.clone(), colour: colours::QUIET });
         rows.push(EntityUpdate::new(estimated(&aspect.name), quiet.clone()));
         rows.push(EntityUpdate::new(held_truly(&aspect.name), quiet));
-        let marks = |who: &str, shape| EntityData::Marks(SceneSeries { name: format!("{name}, {who}"), colour }, shape);
+        let marks = |who: &str, shape| EntityData::Marks(SeriesStyle { name: format!("{name}, {who}"), colour }, shape);
         let wrong = [
             (estimated_wrong(&aspect.name), marks("wrong by the estimate", MarkShape::Circle)),
             (truly_wrong(&aspect.name), marks("truly wrong", MarkShape::Diamond)),

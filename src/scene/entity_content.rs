@@ -47,11 +47,11 @@ pub enum EntityData {
     /// A value of a time series.
     Value(f64),
     /// Style of a time series: a line.
-    Line(SceneSeries),
+    Line(SeriesStyle),
     /// Style of a time series: a thin line, for plots with many series.
-    QuietLine(SceneSeries),
+    QuietLine(SeriesStyle),
     /// Style of a time series: marks.
-    Marks(SceneSeries, MarkShape),
+    Marks(SeriesStyle, MarkShape),
     /// A line of the text log.
     Words {
         /// Severity of the line in the text log.
@@ -112,7 +112,7 @@ pub struct ScenePoint {
 
 /// Name and colour of a time series.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SceneSeries {
+pub struct SeriesStyle {
     /// Name of the series in the legend.
     pub name: String,
     /// Colour of the series' line or marks.

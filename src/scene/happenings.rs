@@ -2,7 +2,7 @@
 
 use super::EntityUpdate;
 use super::colours::{self, SceneColour};
-use super::entity_content::{EntityData, MarkShape, SceneLogLevel, SceneSeries, slug};
+use super::entity_content::{EntityData, MarkShape, SceneLogLevel, SeriesStyle, slug};
 use crate::communication::offer::{OfferCloseReason, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal, signals};
@@ -29,7 +29,7 @@ fn benefit(signal: &Signal) -> String {
 pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
     let line = |entity: String, name: String, colour: SceneColour| {
-        EntityUpdate::new(entity, EntityData::Line(SceneSeries { name, colour }))
+        EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name, colour }))
     };
     let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.signals.own_hand)
         .iter()
@@ -41,7 +41,7 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
         .collect();
     let worth = format!("worth its cost ({}) above this line", assistant.price());
     rows.push(line(COST_LINE.to_string(), worth, colours::SIGNAL));
-    let marks = SceneSeries { name: "errors".to_string(), colour: colours::ERROR };
+    let marks = SeriesStyle { name: "errors".to_string(), colour: colours::ERROR };
     rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks, MarkShape::Cross)));
     rows
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Whose parameters a recording uses, where the file of its human model has parameters of persons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ParameterOwner {
+pub enum ParameterSource {
     /// The recording uses the parameters fitted to its own participant.
     Person,
     /// The recording uses the population's parameters: the file has none of this participant.

@@ -25,7 +25,7 @@ const LOOKED_PAST_S: f64 = 1.0;
 
 /// What the gaze has revealed about the human's awareness since the assistant was last asked for advice.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct GazeAwareness {
+pub struct UnawarenessDetector {
     /// Bit set of the state aspects about which the belief has been right since the last request for advice.
     right: u32,
     /// Time of known gaze in the trial so far, in seconds.
@@ -49,7 +49,7 @@ struct WatchedChange {
     is_asked: bool,
 }
 
-impl GazeAwareness {
+impl UnawarenessDetector {
     /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant has not been
     /// asked for advice since.
     pub fn unaware(&self) -> Option<AspectId> {

@@ -11,8 +11,8 @@ use super::session_state::Session;
 use super::settings::{Condition, WizardVisibility};
 use crate::base::time::SessionTime;
 use crate::communication::offer::{
-    GAP, HOLD, Offer, OfferCloseReason, OfferKeyUse, OfferThresholds, OfferWorth, OfferedAdvice, OfferedCommunication,
-    TAKEN_AFTER, UNREAD, UsedOffer,
+    GAP, HOLD, Offer, OfferCloseReason, OfferCloseThresholds, OfferKeyKind, OfferUse, OfferWorth, OfferedAdvice,
+    OfferedCommunication, TAKEN_AFTER, UNREAD,
 };
 use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::communication::{Sender, Signal, unavailable};
@@ -43,8 +43,8 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCl
         TrialPhase::Over(_) | TrialPhase::Closed => return Some(OfferCloseReason::TrialEnded),
     }
     match offer.used.map(|used| used.how) {
-        Some(OfferKeyUse::Taken) => return Some(OfferCloseReason::Taken),
-        Some(OfferKeyUse::OwnKey) => return Some(OfferCloseReason::OwnKey),
+        Some(OfferKeyKind::Taken) => return Some(OfferCloseReason::Taken),
+        Some(OfferKeyKind::OwnKey) => return Some(OfferCloseReason::OwnKey),
         None => {}
     }
     let is_impossible = |signal| unavailable(&session.kitchen, session.state, signal).is_some();
@@ -70,7 +70,7 @@ fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<
     };
     // A signal that is not in the recommendation's list has no net benefit that could close the offer.
     let net = advice.options.iter().find(|option| option.signal == *signal)?.net;
-    let thresholds = OfferThresholds::for_concept(session.spec.assistant.concept);
+    let thresholds = OfferCloseThresholds::for_concept(session.spec.assistant.concept);
     if net < thresholds.closes_below {
         return Some(OfferCloseReason::Fell);
     }
@@ -137,9 +137,9 @@ fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), O
 /// Records that the wizard sent a signal: the signal of the open offer, or of the last offer while `enter` still takes
 /// it.
 pub(super) fn sends(session: &mut Session, now: SessionTime, signal: &Signal, is_taken: bool) {
-    let how = if is_taken { OfferKeyUse::Taken } else { OfferKeyUse::OwnKey };
+    let how = if is_taken { OfferKeyKind::Taken } else { OfferKeyKind::OwnKey };
     let with_last = still_takes(session, now).is_some();
-    session.offers.sends(signal, UsedOffer { how, at: now }, with_last);
+    session.offers.sends(signal, OfferUse { how, at: now }, with_last);
 }
 
 /// The last offer that closed, while the key `enter` can still take it.

@@ -1,7 +1,7 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::condition::Condition;
-use super::fitted_parameters::ParameterOwner;
+use super::fitted_parameters::ParameterSource;
 use super::gaze_samples::faults;
 use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
@@ -60,8 +60,8 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let file = spec.human_model.as_deref().unwrap_or("its file");
     let found = match spec.parameters_of? {
-        ParameterOwner::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
-        ParameterOwner::Population => {
+        ParameterSource::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
+        ParameterSource::Population => {
             format!("parameters of the population: {file} has none of {}", spec.participant.code)
         }
     };

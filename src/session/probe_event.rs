@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::wall_display::AnswerEntry;
+use super::wall_display::AnswerDevice;
 
 /// An event of a freeze probe. Probes have numbers from 1 within a trial, scheduled and requested ones together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ pub enum ProbeEvent {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         confidence: Option<u8>,
         /// Where the answer to the probe was entered: on the display or at the console.
-        on: AnswerEntry,
+        on: AnswerDevice,
     },
     /// The wizard skips the remaining questions of the freeze probe.
     Skipped {

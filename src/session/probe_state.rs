@@ -2,16 +2,16 @@
 
 use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeOrigin, ProbeQuestion};
 use super::probe_schedule::ScheduledProbe;
-use super::wall_display::AnswerEntry;
+use super::wall_display::AnswerDevice;
 use crate::base::time::SessionTime;
 
 /// All freeze probes of a trial: the present one, past ones, and the schedule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialProbes {
     /// The freeze probe for which the task stands still now, from its event `begun` to its event `ended`.
-    pub open: Option<OpenProbe>,
+    pub open: Option<StartedProbe>,
     /// The freeze probes that have ended.
-    pub over: Vec<OpenProbe>,
+    pub over: Vec<StartedProbe>,
     /// A freeze probe that is due and has not begun.
     pub waiting: Option<WaitingProbe>,
     /// Numbers of the cancelled freeze probes, each with the reason for which the probe had to wait.
@@ -45,7 +45,7 @@ pub struct WaitingProbe {
 
 /// A freeze probe that has begun.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OpenProbe {
+pub struct StartedProbe {
     /// Number of the freeze probe within the trial, counted from 1.
     pub number: u32,
     /// Whether the schedule or the wizard caused the probe.
@@ -82,10 +82,10 @@ pub struct ProbeAnswer {
     /// Response time: from the appearance of the question to the answer, without pauses.
     pub took: SessionTime,
     /// Where the answer was entered: on the display or at the console.
-    pub on: AnswerEntry,
+    pub on: AnswerDevice,
 }
 
-impl OpenProbe {
+impl StartedProbe {
     /// Whether the wizard paused the freeze probe.
     pub fn is_paused(&self) -> bool {
         self.paused_since.is_some()

@@ -10,7 +10,7 @@ use super::probe_sampling;
 pub use super::probe_schedule::{ScheduledProbe, of_trial};
 use super::probe_schedule::{draw, requested_uses_estimate};
 use super::probe_settings::ProbeSpec;
-pub use super::probe_state::{OpenProbe, ProbeAnswer, TrialProbes, WaitingProbe};
+pub use super::probe_state::{ProbeAnswer, StartedProbe, TrialProbes, WaitingProbe};
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use super::trial_clock;
@@ -22,7 +22,7 @@ const BLANK_S: f64 = 1.0;
 
 /// What the rules of freeze probes require next.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DueProbe {
+pub enum DueProbeEvent {
     /// A freeze probe begins; its questions have to be drawn.
     Begin {
         /// Number of the freeze probe within the trial, counted from 1.
@@ -37,7 +37,7 @@ pub enum DueProbe {
 }
 
 /// The next due event of freeze probes and its time; none without freeze probes, and while a probe is paused.
-pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbe)> {
+pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbeEvent)> {
     let spec = of_trial(&session.spec)?;
     match &session.probes.open {
         Some(open) => in_probe(session, spec, open),
@@ -46,10 +46,10 @@ pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbe)> {
     }
 }
 
-fn in_probe(session: &Session, spec: &ProbeSpec, open: &OpenProbe) -> Option<(SessionTime, DueProbe)> {
+fn in_probe(session: &Session, spec: &ProbeSpec, open: &StartedProbe) -> Option<(SessionTime, DueProbeEvent)> {
     let (now, probe) = (session.time, open.number);
     let when = |at, seconds| open.when(at, SessionTime::from_secs_f64(seconds)).max(now);
-    let closes = |at, reason| Some((at, DueProbe::Event(ProbeEvent::Closed { probe, reason })));
+    let closes = |at, reason| Some((at, DueProbeEvent::Event(ProbeEvent::Closed { probe, reason })));
     if let TrialPhase::Over(_) = session.phase {
         return closes(now, ProbeEndReason::TrialEnded);
     }
@@ -57,7 +57,7 @@ fn in_probe(session: &Session, spec: &ProbeSpec, open: &OpenProbe) -> Option<(Se
         return None;
     }
     if let Some((_, closed)) = open.closed {
-        return Some((when(closed, spec.count_down_s), DueProbe::Event(ProbeEvent::Ended { probe })));
+        return Some((when(closed, spec.count_down_s), DueProbeEvent::Event(ProbeEvent::Ended { probe })));
     }
     if open.skipped.is_some() {
         return closes(now, ProbeEndReason::Skipped);
@@ -72,12 +72,12 @@ fn in_probe(session: &Session, spec: &ProbeSpec, open: &OpenProbe) -> Option<(Se
         return closes(limit, ProbeEndReason::TimeOver);
     }
     match next < open.questions.len() {
-        true => Some((asked, DueProbe::Event(ProbeEvent::Asked { probe, question: next as u32 + 1 }))),
+        true => Some((asked, DueProbeEvent::Event(ProbeEvent::Asked { probe, question: next as u32 + 1 }))),
         false => closes(now, ProbeEndReason::Answered),
     }
 }
 
-fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProbe)> {
+fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProbeEvent)> {
     let book = &session.probes;
     let Some(waiting) = &book.waiting else {
         let ScheduledProbe { at, uses_estimate } = *book.schedule.get(book.came_due)?;
@@ -85,22 +85,22 @@ fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProb
         return Some((
             at,
             match block(session, spec, at) {
-                Some((reason, _)) => DueProbe::Event(ProbeEvent::Delayed { probe, reason }),
-                None => DueProbe::Begin { probe, origin: ProbeOrigin::Schedule, uses_estimate },
+                Some((reason, _)) => DueProbeEvent::Event(ProbeEvent::Delayed { probe, reason }),
+                None => DueProbeEvent::Begin { probe, origin: ProbeOrigin::Schedule, uses_estimate },
             },
         ));
     };
     let WaitingProbe { number: probe, origin, uses_estimate, since, reason } = *waiting;
-    let begins = DueProbe::Begin { probe, origin, uses_estimate };
+    let begins = DueProbeEvent::Begin { probe, origin, uses_estimate };
     let now = session.time;
     let Some((reason_now, until)) = block(session, spec, now) else { return Some((now, begins)) };
     if reason.is_none() {
-        return Some((now, DueProbe::Event(ProbeEvent::Delayed { probe, reason: reason_now })));
+        return Some((now, DueProbeEvent::Event(ProbeEvent::Delayed { probe, reason: reason_now })));
     }
     let latest = at_clock(session, since + SessionTime::from_secs_f64(spec.wait_s));
     Some(match until <= latest {
         true => (until, begins),
-        false => (latest, DueProbe::Event(ProbeEvent::Dropped { probe, reason: reason_now })),
+        false => (latest, DueProbeEvent::Event(ProbeEvent::Dropped { probe, reason: reason_now })),
     })
 }
 
@@ -183,7 +183,7 @@ pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
 }
 
 /// The open freeze probe with this number, if its questions have not ended.
-fn opened(session: &Session, probe: u32) -> Result<&OpenProbe, &'static str> {
+fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> {
     let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or(
         "this freeze probe is not \
                                                                                        running",
@@ -238,7 +238,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
         ProbeEvent::Begun { origin, uses_estimate, questions, .. } => {
             let number = take_due(session, now).number;
             trial_clock::pause(session, now);
-            session.probes.open = Some(OpenProbe {
+            session.probes.open = Some(StartedProbe {
                 number,
                 origin: *origin,
                 uses_estimate: *uses_estimate,

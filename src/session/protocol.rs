@@ -1,7 +1,7 @@
 //! The study protocol: rules for the phases of a plan's recording, which follow one after another.
 
 use super::phase::TrialPhase;
-use super::plan::{PhaseSpec, Questionnaire, StepSpec};
+use super::plan::{PhaseSpec, PlanPosition, Questionnaire};
 pub use super::protocol_event::{ProtocolEvent, StudyPhase};
 pub use super::protocol_state::{ItemAnswer, PracticeResult, StudyProtocolState};
 use super::session_state::Session;
@@ -9,7 +9,7 @@ use super::tutorial;
 
 impl Session {
     /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.
-    pub fn step(&self) -> Option<(&StepSpec, &StudyProtocolState)> {
+    pub fn step(&self) -> Option<(&PlanPosition, &StudyProtocolState)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
 
@@ -223,7 +223,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
 }
 
 /// Numbers of steps to tick off and of questionnaire items in the phase with this number.
-fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
+fn sizes(step: Option<&PlanPosition>, number: usize) -> (usize, usize) {
     let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
     let items = match phase {
         Some(PhaseSpec::Questionnaire { questionnaire }) => questionnaire.items.len(),

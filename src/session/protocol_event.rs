@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answer_value::AnswerValue;
 use super::tutorial_event::TutorialEvent;
-use super::wall_display::AnswerEntry;
+use super::wall_display::AnswerDevice;
 
 /// A phase of a study, such as instruction, trial or questionnaire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,7 +53,7 @@ pub enum ProtocolEvent {
         /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
         /// it on the console.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        on: Option<AnswerEntry>,
+        on: Option<AnswerDevice>,
         /// The text to which the participant consented.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         text: Option<String>,

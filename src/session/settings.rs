@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
-use super::fitted_parameters::ParameterOwner;
+use super::fitted_parameters::ParameterSource;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
-use super::plan::{PlanSpec, StepSpec};
+use super::plan::{PlanPosition, PlanSpec};
 pub use super::probe_settings::ProbeSpec;
 use super::ranges;
 pub use super::robot_settings::{ArmKind, RobotSpec};
@@ -77,7 +77,7 @@ pub struct SessionSpec {
     /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons. Written by the
     /// program, not allowed in session files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parameters_of: Option<ParameterOwner>,
+    pub parameters_of: Option<ParameterSource>,
     /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never
     /// recorded.
     #[serde(skip)]
@@ -87,7 +87,7 @@ pub struct SessionSpec {
     pub plan: Option<PlanSpec>,
     /// Position of a recording in its plan; written by the program, not allowed in session files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub step: Option<StepSpec>,
+    pub step: Option<PlanPosition>,
 }
 
 fn default_seed() -> u64 {
@@ -165,7 +165,7 @@ impl SessionSpec {
     pub fn adopt_person(&mut self) {
         let Some(people) = self.people.take() else { return };
         let is_known = people.apply(&self.participant.code, &mut self.human);
-        self.parameters_of = Some(if is_known { ParameterOwner::Person } else { ParameterOwner::Population });
+        self.parameters_of = Some(if is_known { ParameterSource::Person } else { ParameterSource::Population });
     }
 
     /// Whether the session needs the library of the Lab Streaming Layer.

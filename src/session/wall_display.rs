@@ -34,7 +34,7 @@ pub struct DisplaySpec {
     /// How the page shows a robot that the participant cannot see otherwise. A session file without this setting means
     /// a hand; a recording without this setting was made when the page showed no robot.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub arm: Option<DisplayedArm>,
+    pub arm: Option<RobotDepiction>,
     /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
     pub tags: bool,
     /// Whether a square on the page flashes at the start of the trial and at signals, to synchronise video recordings.
@@ -52,7 +52,7 @@ pub struct DisplaySpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub served: Option<bool>,
     /// Where questionnaires are answered: on the display or at the console.
-    pub questionnaire: AnswerEntry,
+    pub questionnaire: AnswerDevice,
 }
 
 impl Default for DisplaySpec {
@@ -72,7 +72,7 @@ impl Default for DisplaySpec {
             sound: false,
             clock: false,
             served: None,
-            questionnaire: AnswerEntry::Console,
+            questionnaire: AnswerDevice::Console,
         }
     }
 }
@@ -124,7 +124,7 @@ pub enum DisplayedNames {
 /// How the participant's display shows the robot. An approaching hand reveals an intention, as a real robot's does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DisplayedArm {
+pub enum RobotDepiction {
     /// The page does not show the robot: a real robot stands beside the display.
     None,
     /// The page shows a hand that moves between the places with its content.
@@ -133,13 +133,13 @@ pub enum DisplayedArm {
     Arm,
 }
 
-impl DisplayedArm {
+impl RobotDepiction {
     /// Name of this choice of the shown robot in files and tables.
     pub fn name(self) -> &'static str {
         match self {
-            DisplayedArm::None => "none",
-            DisplayedArm::Hand => "hand",
-            DisplayedArm::Arm => "arm",
+            RobotDepiction::None => "none",
+            RobotDepiction::Hand => "hand",
+            RobotDepiction::Arm => "arm",
         }
     }
 }
@@ -147,7 +147,7 @@ impl DisplayedArm {
 /// Where answers of the participant are entered, and by whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum AnswerEntry {
+pub enum AnswerDevice {
     /// Answers are entered at the console: the wizard reads the items out and enters the participant's answers.
     Console,
     /// Answers are entered on the display by the participant; the wizard can also enter answers.

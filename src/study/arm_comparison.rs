@@ -9,7 +9,7 @@
 
 use serde::Serialize;
 
-use super::arm_design::{StudyArmDesign, StudyArmTrial, pairs};
+use super::arm_design::{ArmComparisonDesign, StudyArmTrial, pairs};
 use super::effect::LEVEL;
 use super::group_orders::{GroupOrder, group_orders};
 use super::linear_mixed_model::{LinearMixedModel, MixedModelContrast};
@@ -28,7 +28,7 @@ pub struct StudyArmComparison {
     /// Number of trials in the comparison of arms.
     pub trials: usize,
     /// Numbers of trials, events and presses of each arm, in the order of tables.
-    pub arms: Vec<StudyArmOutcome>,
+    pub arms: Vec<StudyArmCounts>,
     /// Standard deviations of log rates: between participants, and residual (within participants).
     pub standard_deviations: [f64; 2],
     /// Contrasts of the primary model: arms against the arm without signals and against the wizard.
@@ -46,7 +46,7 @@ pub struct StudyArmComparison {
 
 /// Counts of trials, events and presses of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct StudyArmOutcome {
+pub struct StudyArmCounts {
     /// Study arm of the counts.
     pub arm: StudyArm,
     /// Number of trials in this study arm.
@@ -57,7 +57,7 @@ pub struct StudyArmOutcome {
     pub presses: u64,
 }
 
-impl StudyArmOutcome {
+impl StudyArmCounts {
     /// Events of the primary outcome per 100 presses of the human, over all trials of the arm together.
     pub fn per_100(&self) -> f64 {
         100.0 * self.events as f64 / self.presses as f64
@@ -158,7 +158,7 @@ fn counted(trials: &[&TrialStatistics], outcome: PrimaryOutcome) -> Vec<StudyArm
 }
 
 /// Contrasts of the primary model, with Holm's correction.
-fn contrasts(design: &StudyArmDesign, model: &LinearMixedModel) -> Vec<StudyArmContrast> {
+fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<StudyArmContrast> {
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
         let (arm, against) = pair;
@@ -171,7 +171,7 @@ fn contrasts(design: &StudyArmDesign, model: &LinearMixedModel) -> Vec<StudyArmC
     all
 }
 
-fn count_comparison(design: &StudyArmDesign) -> Option<NegativeBinomialComparison> {
+fn count_comparison(design: &ArmComparisonDesign) -> Option<NegativeBinomialComparison> {
     let model = design.counts()?;
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
@@ -201,7 +201,7 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
 /// Contrasts of the primary model alone, for trials ordered by participant and period; empty where the model cannot be
 /// estimated.
 pub fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
-    let design = StudyArmDesign::new(trials);
+    let design = ArmComparisonDesign::new(trials);
     let model = if design.is_within() { design.linear(false) } else { None };
     model.map_or_else(Vec::new, |model| contrasts(&design, &model))
 }
@@ -216,7 +216,7 @@ pub fn compare_arms(trials: &[&TrialStatistics]) -> Option<StudyArmComparison> {
 
 /// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups.
 pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
-    let design = StudyArmDesign::new(trials);
+    let design = ArmComparisonDesign::new(trials);
     if !design.is_within() {
         return None;
     }
@@ -239,7 +239,7 @@ pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<Stu
     });
     let outcome_of = |arm: StudyArm| {
         let own = || design.trials().iter().filter(|trial| trial.arm == arm);
-        StudyArmOutcome {
+        StudyArmCounts {
             arm,
             trials: own().count(),
             events: own().map(|trial| trial.events).sum(),

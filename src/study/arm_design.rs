@@ -28,7 +28,7 @@ impl StudyArmTrial {
 
 /// Design of a comparison of arms: one row of effects per trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StudyArmDesign {
+pub struct ArmComparisonDesign {
     trials: Vec<StudyArmTrial>,
     arms: Vec<StudyArm>,
     periods: Vec<u32>,
@@ -48,15 +48,15 @@ pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
     pairs
 }
 
-impl StudyArmDesign {
+impl ArmComparisonDesign {
     /// The design for these trials, which must be ordered by participant and period.
-    pub fn new(trials: Vec<StudyArmTrial>) -> StudyArmDesign {
+    pub fn new(trials: Vec<StudyArmTrial>) -> ArmComparisonDesign {
         let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
         let arms = StudyArm::ALL.into_iter().filter(has).collect();
         let mut periods: Vec<u32> = trials.iter().map(|trial| trial.period).collect();
         periods.sort_unstable();
         periods.dedup();
-        StudyArmDesign { trials, arms, periods }
+        ArmComparisonDesign { trials, arms, periods }
     }
 
     /// The trials of the comparison, ordered by participant and period.

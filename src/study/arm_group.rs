@@ -8,7 +8,7 @@ use crate::session::settings::ArmKind;
 
 /// Robot statistics summed over the trials with one kind of robot arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RobotArmGroup {
+pub struct RobotArmTotals {
     /// Kind of the robot's arm: timed or physical.
     pub kind: ArmKind,
     /// Number of trials with this kind of robot arm.
@@ -19,9 +19,9 @@ pub struct RobotArmGroup {
 }
 
 /// Groups trials by kind of robot arm; kinds without trials are left out.
-pub fn by_arm(trials: &[&TrialStatistics]) -> Vec<RobotArmGroup> {
+pub fn by_arm(trials: &[&TrialStatistics]) -> Vec<RobotArmTotals> {
     let of = |kind: ArmKind| {
-        let mut group = RobotArmGroup { kind, trials: 0, robot: RobotEventSummary::default() };
+        let mut group = RobotArmTotals { kind, trials: 0, robot: RobotEventSummary::default() };
         for trial in trials.iter().filter(|trial| trial.arm == kind) {
             group.trials += 1;
             group.robot.add(&trial.robot);

@@ -10,7 +10,7 @@ use crate::session::{Event, Session, TimestampedEvent};
 
 /// Event of a trial that can change or show the participant's belief.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BeliefTraceEvent {
+pub enum BeliefEvidenceEvent {
     /// The trial starts in a state of the kitchen that the participant knows.
     Started {
         /// State of the kitchen at the trial's start: empty.
@@ -44,15 +44,15 @@ pub enum BeliefTraceEvent {
 
 /// The belief-related events of a trial, collected event by event.
 #[derive(Clone, Debug, Default)]
-pub struct BeliefTrace {
+pub struct BeliefEvidence {
     /// The trial's events with their session times, in order.
-    pub events: Vec<(SessionTime, BeliefTraceEvent)>,
+    pub events: Vec<(SessionTime, BeliefEvidenceEvent)>,
     looks: LocationDwells,
     /// For each location, whether the present look at its present content is already in `events`.
     is_noted: Vec<bool>,
 }
 
-impl BeliefTrace {
+impl BeliefEvidence {
     /// Adds an event that has just been applied to the session.
     pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, session: &Session) {
         if !session.is_running() && change.states().is_none() {
@@ -68,18 +68,18 @@ impl BeliefTrace {
             }
         }
         let traced = match (*change, &stamped.event) {
-            (KitchenChange::TrialStarted { after, .. }, _) => Some(BeliefTraceEvent::Started { state: after }),
+            (KitchenChange::TrialStarted { after, .. }, _) => Some(BeliefEvidenceEvent::Started { state: after }),
             (KitchenChange::Press { press, .. }, _) if press.agent == Agent::Human => {
-                Some(BeliefTraceEvent::Pressed { seq: stamped.seq, press })
+                Some(BeliefEvidenceEvent::Pressed { seq: stamped.seq, press })
             }
             (_, Event::SignalShown { signal, .. }) => {
-                Some(BeliefTraceEvent::Told { aspects: aspects_told(&session.kitchen, session.state, signal) })
+                Some(BeliefEvidenceEvent::Told { aspects: aspects_told(&session.kitchen, session.state, signal) })
             }
             (_, Event::Gaze(sample)) if sample.confidence >= MIN_CONFIDENCE && session.gaze.fault.is_none() => {
                 self.looked(stamped.time, session);
                 None
             }
-            _ => change.states().map(|(before, after)| BeliefTraceEvent::Changed { before, after }),
+            _ => change.states().map(|(before, after)| BeliefEvidenceEvent::Changed { before, after }),
         };
         self.events.extend(traced.map(|event| (stamped.time, event)));
     }
@@ -90,7 +90,7 @@ impl BeliefTrace {
             let location = LocationId(index as u8);
             let is_seen = self.looks.sampled(session, location);
             if is_seen && !*is_noted {
-                self.events.push((now, BeliefTraceEvent::Looked { location }));
+                self.events.push((now, BeliefEvidenceEvent::Looked { location }));
             }
             *is_noted = is_seen;
         }
@@ -98,6 +98,6 @@ impl BeliefTrace {
 
     /// Whether the trial has any look of the participant; without gaze data it is unknown what the participant saw.
     pub fn has_looks(&self) -> bool {
-        self.events.iter().any(|(_, event)| matches!(event, BeliefTraceEvent::Looked { .. }))
+        self.events.iter().any(|(_, event)| matches!(event, BeliefEvidenceEvent::Looked { .. }))
     }
 }

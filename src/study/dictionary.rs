@@ -12,7 +12,7 @@ use super::tables::offer_table::OfferRow;
 use super::tables::participants::ParticipantRow;
 use super::tables::probe_table::ProbeRow;
 use super::tables::questionnaires::AnswerRow;
-use super::tables::tutorial_answers::TutorialAnswer;
+use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_statistics::TrialStatistics;
 
 /// Data dictionary entry of one table column.
@@ -47,7 +47,7 @@ pub fn columns(table: CsvTable) -> Vec<DataDictionaryRow> {
         CsvTable::Participants => declared::<ParticipantRow>(),
         CsvTable::Trials => declared::<TrialStatistics>(),
         CsvTable::Questionnaires => declared::<AnswerRow>(),
-        CsvTable::Tutorial => declared::<TutorialAnswer>(),
+        CsvTable::Tutorial => declared::<TutorialQuestionRow>(),
         CsvTable::Concepts => declared::<ConceptRow>(),
         CsvTable::Actions => declared::<ActionRow>(),
         CsvTable::Communications => declared::<CommunicationRow>(),

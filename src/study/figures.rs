@@ -6,17 +6,17 @@ use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use super::arm_comparison::{StudyArmComparison, compare_arms};
-use super::arm_group::{RobotArmGroup, by_arm};
+use super::arm_group::{RobotArmTotals, by_arm};
 use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::RecordingFacts;
-use super::known_beliefs::FalseBeliefAgreement;
-use super::live_arms::{LiveStudyArm, live_arms};
+use super::known_beliefs::RaterFalseBeliefAgreement;
+use super::live_arms::{SignalSenderResults, live_arms};
 use super::preregistration::PreregistrationCheck;
-use super::roc::{ConceptComparison, ConceptRocCurve, PreventedTrialErrors, compare};
+use super::roc::{ConceptComparison, ConceptPreventionCounts, ConceptRocCurve, compare};
 use super::statistics::{Correlation, FTest};
 use super::tables::probe_table::PROBES_WRONG;
 use super::tables::trials::measures;
-use super::tables::tutorial_answers::TutorialAnswer;
+use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_statistics::{TrialStatistics, mean};
 use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
@@ -51,7 +51,7 @@ pub struct StudySummary {
     /// Number of trials by the reason why they ended.
     pub ended: BTreeMap<TrialEndReason, u64>,
     /// Counts of robot events, by kind of robot arm.
-    pub robot: Vec<RobotArmGroup>,
+    pub robot: Vec<RobotArmTotals>,
     /// Agreement of the study with its frozen (preregistered) plan; absent if no frozen plan was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preregistration: Option<PreregistrationCheck>,
@@ -72,7 +72,7 @@ pub struct StudySummary {
     pub roc: Vec<ConceptRocCurve>,
     /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
     /// share trials.
-    pub live: Vec<LiveStudyArm>,
+    pub live: Vec<SignalSenderResults>,
     /// Source of what participants believed in the trials for the comparison of concepts; of several sources, the least
     /// reliable one.
     pub roc_beliefs_from: Option<BeliefSource>,
@@ -89,7 +89,7 @@ pub struct StudySummary {
     /// `similarity`; null without such trials.
     pub similarity_with_advice: Option<Similarity>,
     /// Similarity of wizard and assistant in each trial.
-    pub similarity_by_trial: Vec<TrialSimilarity>,
+    pub similarity_by_trial: Vec<WizardAssistantSimilarity>,
     /// Performance of the wizards, over all trials with a wizard.
     pub wizard: Option<WizardMeasures>,
     /// Source of what participants believed in the trials with a wizard; of several sources, the least reliable one.
@@ -112,7 +112,7 @@ pub struct StudySummary {
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<RaterAgreement>,
     /// Agreement of the two raters about the false beliefs from which episodes follow.
-    pub shared_beliefs: Option<FalseBeliefAgreement>,
+    pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
     pub consensus: BTreeMap<String, u64>,
     /// Consensus codes of two raters that are ignored, since a rater changed a code afterwards.
@@ -147,7 +147,7 @@ pub struct StudyConditionSummary {
 
 /// Similarity of wizard and assistant in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrialSimilarity {
+pub struct WizardAssistantSimilarity {
     /// Folder of the trial's recording.
     pub recording: String,
     /// Whether the wizard saw the assistant's recommendations.
@@ -253,7 +253,7 @@ impl StudySummary {
     }
 
     /// Adds the answers to the questions of tutorials, which must be ordered by participant.
-    pub fn with_tutorials(self, answers: &[TutorialAnswer]) -> StudySummary {
+    pub fn with_tutorials(self, answers: &[TutorialQuestionRow]) -> StudySummary {
         StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
     }
 }
@@ -316,7 +316,7 @@ fn conditions(trials: &[&TrialStatistics]) -> Vec<StudyConditionSummary> {
 fn concepts(trials: &[&TrialStatistics]) -> ConceptComparison {
     let tried: Vec<&TrialStatistics> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
     let of_participant = |of_one: &[&TrialStatistics]| {
-        let mut sum: Vec<PreventedTrialErrors> = of_one[0].swept.clone();
+        let mut sum: Vec<ConceptPreventionCounts> = of_one[0].swept.clone();
         for trial in &of_one[1..] {
             for (sum, one) in sum.iter_mut().zip(&trial.swept) {
                 sum.count = sum.count.plus(&one.count);
@@ -324,7 +324,7 @@ fn concepts(trials: &[&TrialStatistics]) -> ConceptComparison {
         }
         sum
     };
-    let participants: Vec<Vec<PreventedTrialErrors>> =
+    let participants: Vec<Vec<ConceptPreventionCounts>> =
         tried.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
     compare(&participants, tried.len() as u64, SEED)
 }
@@ -343,13 +343,13 @@ fn add_lanes(tally: &mut MatchCounts, trial: &TrialStatistics) {
     }
 }
 
-fn similarity_of_trial(trial: &TrialStatistics) -> Option<TrialSimilarity> {
+fn similarity_of_trial(trial: &TrialStatistics) -> Option<WizardAssistantSimilarity> {
     trial.lanes.as_ref()?;
     let mut own = MatchCounts::default();
     add_lanes(&mut own, trial);
     let Similarity { of_n, with_n, matched, signal, .. } = own.similarity();
     let (recording, wizard_saw_advice) = (trial.recording.clone(), trial.wizard_saw_advice);
-    Some(TrialSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
+    Some(WizardAssistantSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
 }
 
 /// Number of trials that use the consensus of two raters, by pair of raters.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::belief_trace::BeliefTrace;
+use super::belief_trace::BeliefEvidence;
 use super::rater_episodes::rater_episodes;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -28,7 +28,7 @@ pub struct KnownFalseBeliefs {
 
 /// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes that each gave alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FalseBeliefAgreement {
+pub struct RaterFalseBeliefAgreement {
     /// Number of errors that both raters attribute to the same false belief.
     pub same: u64,
     /// Number of errors that the raters attribute to different false beliefs.
@@ -53,7 +53,7 @@ impl KnownFalseBeliefs {
         basis: BeliefSource,
         kitchen: &Kitchen,
         cost: &mut CostToGo,
-        trace: &BeliefTrace,
+        trace: &BeliefEvidence,
         judged: &[JudgedPress],
         codes: &RaterCodes,
     ) -> KnownFalseBeliefs {
@@ -77,10 +77,10 @@ impl KnownFalseBeliefs {
     }
 }
 
-impl FalseBeliefAgreement {
+impl RaterFalseBeliefAgreement {
     /// Counts the agreement of two raters over errors that both coded.
-    pub fn count([one, other]: &[RaterCodes; 2]) -> FalseBeliefAgreement {
-        let mut shared = FalseBeliefAgreement::default();
+    pub fn count([one, other]: &[RaterCodes; 2]) -> RaterFalseBeliefAgreement {
+        let mut shared = RaterFalseBeliefAgreement::default();
         for (press, code) in &one.0 {
             let Some(of_other) = other.0.get(press) else { continue };
             match (code.aspect(), of_other.aspect()) {
@@ -94,8 +94,8 @@ impl FalseBeliefAgreement {
     }
 
     /// Sum of two counts of agreement about false beliefs.
-    pub fn plus(self, other: FalseBeliefAgreement) -> FalseBeliefAgreement {
-        FalseBeliefAgreement {
+    pub fn plus(self, other: RaterFalseBeliefAgreement) -> RaterFalseBeliefAgreement {
+        RaterFalseBeliefAgreement {
             same: self.same + other.same,
             differing: self.differing + other.differing,
             of_one: self.of_one + other.of_one,

@@ -17,7 +17,7 @@ use crate::session::settings::ParticipantKind;
 
 /// Results of one sender of signals over the simulated trials that all compared arms have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LiveStudyArm {
+pub struct SignalSenderResults {
     /// Sender of the signals, with the parameter of the sender's concept.
     #[serde(flatten)]
     pub arm: SignalSenderWithParameter,
@@ -60,7 +60,7 @@ fn key(trial: &TrialStatistics) -> TrialKey {
 }
 
 /// Results of all arms over the trials that all of the arms have; empty unless at least two arms share trials.
-pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<LiveStudyArm> {
+pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<SignalSenderResults> {
     let simulated = |trial: &&TrialStatistics| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
     let mut groups: Vec<(SignalSenderWithParameter, Vec<&TrialStatistics>)> = Vec::new();
     for trial in trials.iter().copied().filter(simulated) {
@@ -77,8 +77,8 @@ pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<Li
         return Vec::new();
     }
     groups.iter_mut().for_each(|(_, group)| group.retain(|trial| shared.contains(&key(trial))));
-    let mut arms: Vec<LiveStudyArm> =
-        groups.iter().map(|(arm, group)| LiveStudyArm::from_trials(*arm, group)).collect();
+    let mut arms: Vec<SignalSenderResults> =
+        groups.iter().map(|(arm, group)| SignalSenderResults::from_trials(*arm, group)).collect();
     let without = arms.iter().find(|arm| arm.arm.concept == "none").and_then(|arm| arm.belief_related_per_100);
     for arm in arms.iter_mut().filter(|arm| arm.arm.concept != "none") {
         let rates = arm.belief_related_per_100.zip(without).filter(|(_, without)| *without > 0.0);
@@ -92,8 +92,8 @@ pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<Li
     arms
 }
 
-impl LiveStudyArm {
-    fn from_trials(arm: SignalSenderWithParameter, trials: &[&TrialStatistics]) -> LiveStudyArm {
+impl SignalSenderResults {
+    fn from_trials(arm: SignalSenderWithParameter, trials: &[&TrialStatistics]) -> SignalSenderResults {
         let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
         let beliefs = || trials.iter().filter_map(|trial| trial.beliefs.as_ref());
         let lengths: Vec<u32> = beliefs().flat_map(|one| one.lengths.iter().copied()).collect();
@@ -107,7 +107,7 @@ impl LiveStudyArm {
         });
         let useless: Option<u64> = judged.sum();
         let seconds: f64 = trials.iter().map(|trial| trial.seconds).sum();
-        LiveStudyArm {
+        SignalSenderResults {
             arm,
             trials: trials.len() as u64,
             belief_related_per_100: per_100(beliefs().map(|one| one.errors).sum()),

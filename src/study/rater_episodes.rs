@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::belief_trace::{BeliefTrace, BeliefTraceEvent};
+use super::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{
@@ -35,7 +35,7 @@ pub const RULE: &str = "Of people, from the codes of two raters: their consensus
 pub fn rater_episodes(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
-    trace: &BeliefTrace,
+    trace: &BeliefEvidence,
     judged: &[JudgedPress],
     coded: &[(u64, FalseBeliefTarget)],
 ) -> Vec<FalseBeliefEpisode> {
@@ -54,7 +54,7 @@ pub fn rater_episodes(
 struct EpisodeRule<'a> {
     kitchen: &'a Kitchen,
     cost: &'a mut CostToGo,
-    trace: &'a BeliefTrace,
+    trace: &'a BeliefEvidence,
     /// Sequence numbers of the presses that are neither errors nor races.
     correct: BTreeSet<u64>,
 }
@@ -150,15 +150,15 @@ impl EpisodeRule<'_> {
         let mut errors: BTreeMap<AspectId, BTreeSet<u64>> = BTreeMap::new();
         for (_, event) in &trace.events {
             match event {
-                BeliefTraceEvent::Started { .. } => unseen.clear(),
-                BeliefTraceEvent::Changed { before, after } => unseen.extend(self.kitchen.changed(*before, *after)),
-                BeliefTraceEvent::Looked { location } => {
+                BeliefEvidenceEvent::Started { .. } => unseen.clear(),
+                BeliefEvidenceEvent::Changed { before, after } => unseen.extend(self.kitchen.changed(*before, *after)),
+                BeliefEvidenceEvent::Looked { location } => {
                     unseen.remove(location);
                 }
-                BeliefTraceEvent::Told { aspects } => {
+                BeliefEvidenceEvent::Told { aspects } => {
                     unseen.retain(|one| !aspects.contains(&AspectId::of_location(*one)))
                 }
-                BeliefTraceEvent::Pressed { seq, press } => {
+                BeliefEvidenceEvent::Pressed { seq, press } => {
                     if let Some(&target) = targets.get(seq) {
                         let aspect = match target {
                             FalseBeliefTarget::Order(order, Some(dish)) if !(has_looks && unseen.contains(&order)) => {
@@ -196,25 +196,25 @@ impl EpisodeRule<'_> {
         let mut course = BeliefCourse::new(aspect);
         for (time, event) in &trace.events {
             match event {
-                BeliefTraceEvent::Started { state } => {
+                BeliefEvidenceEvent::Started { state } => {
                     now = *state;
                     course.right(*time, value(now));
                 }
-                BeliefTraceEvent::Changed { before, after } => {
+                BeliefEvidenceEvent::Changed { before, after } => {
                     now = *after;
                     if value(*before) != value(now) {
                         course.uphold();
                         course.changed(*time, value(now));
                     }
                 }
-                BeliefTraceEvent::Looked { location } if AspectId::of_location(*location) == aspect => {
+                BeliefEvidenceEvent::Looked { location } if AspectId::of_location(*location) == aspect => {
                     course.told(*time, value(now));
                 }
-                BeliefTraceEvent::Told { aspects } if aspects.contains(&aspect) => {
+                BeliefEvidenceEvent::Told { aspects } if aspects.contains(&aspect) => {
                     course.told(after(*time), value(now))
                 }
-                BeliefTraceEvent::Looked { .. } | BeliefTraceEvent::Told { .. } => {}
-                BeliefTraceEvent::Pressed { seq, press } => {
+                BeliefEvidenceEvent::Looked { .. } | BeliefEvidenceEvent::Told { .. } => {}
+                BeliefEvidenceEvent::Pressed { seq, press } => {
                     now = press.after;
                     if errors.contains(seq) {
                         course.erred();
@@ -258,8 +258,8 @@ impl EpisodeRule<'_> {
         let (kitchen, trace) = (self.kitchen, self.trace);
         let one = &kitchen.aspects[aspect.index()];
         let AspectKind::Recipe(_) = one.kind else { return Vec::new() };
-        let of_error = |(_, event): &'_ (SessionTime, BeliefTraceEvent)| match event {
-            BeliefTraceEvent::Pressed { seq, press } if errors.contains(seq) => Some(*press),
+        let of_error = |(_, event): &'_ (SessionTime, BeliefEvidenceEvent)| match event {
+            BeliefEvidenceEvent::Pressed { seq, press } if errors.contains(seq) => Some(*press),
             _ => None,
         };
         let presses: Vec<Press> = trace.events.iter().filter_map(of_error).collect();

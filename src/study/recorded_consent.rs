@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 
 /// A participant's consent, as the first event of a recording has it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -11,7 +11,7 @@ pub struct RecordedConsent {
     /// The code of the participant who consented.
     pub participant: String,
     /// Where the consent was given (display or console); `None`: the recording does not say.
-    pub on: Option<AnswerEntry>,
+    pub on: Option<AnswerDevice>,
     /// Wall clock time at which the recording that begins with the consent began (UTC, RFC 3339).
     pub started: Option<String>,
     /// Digest of the text to which the participant consented.
@@ -22,8 +22,8 @@ impl RecordedConsent {
     /// Where the consent was given, as tables name it.
     pub fn place(&self) -> Option<&'static str> {
         self.on.map(|on| match on {
-            AnswerEntry::Console => "console",
-            AnswerEntry::Display => "display",
+            AnswerDevice::Console => "console",
+            AnswerDevice::Display => "display",
         })
     }
 }

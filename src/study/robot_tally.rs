@@ -17,7 +17,7 @@ use crate::session::settings::ArmKind;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotEventSummary {
     /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
-    pub arm: Option<RobotArmSummary>,
+    pub arm: Option<ArmSafetySummary>,
     /// Number of emergency stops by the wizard.
     pub emergency_stops: u64,
     /// Number of aborted robot presses by the reason of aborting; reasons that did not occur are absent.
@@ -34,7 +34,7 @@ pub struct RobotEventSummary {
 
 /// Safety and contact statistics of a simulated physical arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RobotArmSummary {
+pub struct ArmSafetySummary {
     /// Number of protective stops: the arm stopped because of a contact force.
     pub protective_stops: u64,
     /// Number of stops because a joint did not follow its commanded motion.
@@ -49,7 +49,7 @@ pub struct RobotArmSummary {
     pub safeguard_s: f64,
 }
 
-impl RobotArmSummary {
+impl ArmSafetySummary {
     /// Counts a contact with the arm, with its force in newtons if the log has the force.
     fn felt(&mut self, force_n: Option<f64>) {
         self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
@@ -99,7 +99,7 @@ pub struct RobotEventTally {
 impl RobotEventTally {
     /// An empty tally for a trial with this kind of arm.
     pub fn new(arm: ArmKind) -> RobotEventTally {
-        let arm = (arm == ArmKind::Physics).then(RobotArmSummary::default);
+        let arm = (arm == ArmKind::Physics).then(ArmSafetySummary::default);
         let figures = RobotEventSummary { arm, ..RobotEventSummary::default() };
         RobotEventTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }

@@ -47,7 +47,7 @@ pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, C
 
 /// Prevention counts of a concept with one parameter value in one unassisted trial.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PreventedTrialErrors {
+pub struct ConceptPreventionCounts {
     /// Communication concept that would have sent the signals.
     pub concept: ConceptName,
     /// Value of the concept's parameter, such as the cost of communication.
@@ -133,10 +133,10 @@ struct Curves {
 }
 
 /// Sum of each concept's counts over participants; each participant counts as often as `times` says.
-fn summed(participants: &[Vec<PreventedTrialErrors>], times: &[u32]) -> Vec<PreventedTrialErrors> {
+fn summed(participants: &[Vec<ConceptPreventionCounts>], times: &[u32]) -> Vec<ConceptPreventionCounts> {
     let Some(first) = participants.first() else { return Vec::new() };
-    let mut sum: Vec<PreventedTrialErrors> =
-        first.iter().map(|one| PreventedTrialErrors { count: PreventionCounts::default(), ..*one }).collect();
+    let mut sum: Vec<ConceptPreventionCounts> =
+        first.iter().map(|one| ConceptPreventionCounts { count: PreventionCounts::default(), ..*one }).collect();
     for (participant, &times) in participants.iter().zip(times) {
         for (sum, one) in sum.iter_mut().zip(participant) {
             for _ in 0..times {
@@ -148,7 +148,7 @@ fn summed(participants: &[Vec<PreventedTrialErrors>], times: &[u32]) -> Vec<Prev
 }
 
 impl Curves {
-    fn from_counts(sum: &[PreventedTrialErrors]) -> Curves {
+    fn from_counts(sum: &[ConceptPreventionCounts]) -> Curves {
         let curve = |concept: ConceptName, point: fn(&PreventionRates) -> (f64, f64)| {
             let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.rates());
             // A concept that sends no signals is at the point (0, 0), where every ROC curve begins.
@@ -202,7 +202,7 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
 /// Compares the communication concepts. `participants` has, for each participant, the sums over the participant's
 /// trials for every concept and parameter value, in the same order. The percentile bootstrap (Efron 1979) resamples
 /// participants; its random stream is seeded by `seed`.
-pub fn compare(participants: &[Vec<PreventedTrialErrors>], trials: u64, seed: u64) -> ConceptComparison {
+pub fn compare(participants: &[Vec<ConceptPreventionCounts>], trials: u64, seed: u64) -> ConceptComparison {
     let once = vec![1; participants.len()];
     let sum = summed(participants, &once);
     if sum.is_empty() {
@@ -214,7 +214,7 @@ pub fn compare(participants: &[Vec<PreventedTrialErrors>], trials: u64, seed: u6
         resamples(participants.len(), seed).map(|times| Curves::from_counts(&summed(participants, &times))).collect();
     let roc = |(index, &concept): (usize, &ConceptName)| {
         let of_concept = sum.iter().filter(|one| one.concept == concept);
-        let point = |one: &PreventedTrialErrors| {
+        let point = |one: &ConceptPreventionCounts| {
             let PreventionRates { fpr, tpr, signals_per_100 } = one.count.rates()?;
             Some(RocPoint {
                 parameter: one.parameter,

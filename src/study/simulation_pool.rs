@@ -107,12 +107,12 @@ pub struct PoolParticipant {
     /// Starting group of the participant.
     pub group: String,
     /// Trials of the participant, in the order of periods.
-    pub trials: Vec<PoolTrialPosition>,
+    pub trials: Vec<PoolTrialPair>,
 }
 
 /// A period of a pool's participant, with its counts in the planned arm and without signals.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PoolTrialPosition {
+pub struct PoolTrialPair {
     /// Study arm that the plan gives to this period of the participant.
     pub arm: StudyArm,
     /// Counts of the trial in the planned arm; `None` if that trial was not simulated.
@@ -171,7 +171,7 @@ impl SimulationPool {
                 return wrong(found, "participants in order, each once, from 0");
             };
             if person.trials.len() + 1 == trial.period as usize {
-                person.trials.push(PoolTrialPosition { arm: trial.planned, own: None, unassisted: None });
+                person.trials.push(PoolTrialPair { arm: trial.planned, own: None, unassisted: None });
             }
             let is_last = person.trials.len() == trial.period as usize;
             let Some(slot) = person.trials.last_mut().filter(|slot| is_last && slot.arm == trial.planned) else {
@@ -186,7 +186,7 @@ impl SimulationPool {
                 }
             }
         }
-        let is_whole = |trial: &PoolTrialPosition| {
+        let is_whole = |trial: &PoolTrialPair| {
             (trial.own.is_some() || !header.arms) && (trial.unassisted.is_some() || !header.unassisted)
         };
         let is_complete = |person: &PoolParticipant| {

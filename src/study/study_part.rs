@@ -23,10 +23,10 @@ use serde::{Deserialize, Serialize};
 use super::facts::RecordingFacts;
 use super::preregistration::RecordedPlan;
 use super::recorded_consent::RecordedConsent;
-use super::tables::tutorial_answers::TutorialAnswer;
+use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_statistics::TrialStatistics;
 use crate::session::header::RecordedFile;
-use crate::session::plan::StepSpec;
+use crate::session::plan::PlanPosition;
 
 /// Version of the file format of a study's parts.
 pub const PART_FORMAT: u32 = 1;
@@ -46,7 +46,7 @@ pub struct PartHeader {
     /// Number of analysed recordings in the part.
     pub recordings: u64,
     /// With which options the recordings were analysed.
-    pub analysis: PartAnalysis,
+    pub analysis: PartAnalysisOptions,
     /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.
     pub plans: BTreeSet<(String, String)>,
 }
@@ -57,7 +57,7 @@ pub type PartKitchen = Option<[RecordedFile; 2]>;
 /// The options of an analysis that change the results of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PartAnalysis {
+pub struct PartAnalysisOptions {
     /// Whether the signals that communication concepts would have sent are computed.
     pub concepts: bool,
     /// Whether the rows of the tables of events are computed.
@@ -77,7 +77,7 @@ pub struct AnalysedRecording {
     /// The consent with which the recording begins; `None` if it begins without.
     pub consent: Option<RecordedConsent>,
     /// The answers to the questions of the recording's tutorial.
-    pub tutorial: Vec<TutorialAnswer>,
+    pub tutorial: Vec<TutorialQuestionRow>,
     /// The recording's trial, with what the report tells about the recording; `None` for practice.
     pub trial: Option<(TrialStatistics, RecordingFacts)>,
 }
@@ -107,7 +107,7 @@ impl PartHeader {
 
     /// The options of the analysis in words.
     fn options(&self) -> String {
-        let PartAnalysis { concepts, events, raters } = &self.analysis;
+        let PartAnalysisOptions { concepts, events, raters } = &self.analysis;
         let skipped = [(*concepts, "concepts"), (*events, "events")];
         let skipped: Vec<&str> = skipped.iter().filter(|(is_done, _)| !is_done).map(|(_, what)| *what).collect();
         let skip =
@@ -176,7 +176,7 @@ fn plans(part: &PartHeader) -> String {
 /// Index of a recording's trial, by which the recording belongs to a shard: as `tomcom simulate` counts the trials of a
 /// plan, participant by participant; without a plan the number of the trial. Practice has the index of the
 /// participant's first trial.
-pub fn trial_index(step: Option<&StepSpec>, trial: u64) -> u64 {
+pub fn trial_index(step: Option<&PlanPosition>, trial: u64) -> u64 {
     step.map_or(trial, |step| {
         let period = step.period.map_or(0, |period| u64::from(period).saturating_sub(1));
         u64::from(step.participant) * u64::from(step.periods) + period

@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::acting_arm::SignalSenderWithParameter;
-use super::known_beliefs::FalseBeliefAgreement;
+use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::robot_tally::RobotEventSummary;
-use super::roc::PreventedTrialErrors;
+use super::roc::ConceptPreventionCounts;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::probe_record::ProbedTrial;
 use crate::measures::belief_basis::BeliefSource;
 use crate::measures::cause_codes::RaterCodes;
-use crate::measures::cause_kinds::CauseKindCounts;
+use crate::measures::cause_kinds::BeliefErrorCounts;
 use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::answer_value::AnswerValue;
@@ -18,7 +18,7 @@ use crate::session::event::TrialEndReason;
 use crate::session::plan::{ItemOption, QuestionnaireItemKind, StudyAims};
 use crate::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use crate::session::study_arm::StudyArm;
-use crate::session::wall_display::DisplayedArm;
+use crate::session::wall_display::RobotDepiction;
 
 /// Statistics of one trial of a study: conditions, counts, medians, answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,7 +87,7 @@ pub struct TrialStatistics {
     pub useful_signals: Option<u64>,
     /// How the participant's display showed the robot; `None` without a display, and in older recordings, which do not
     /// say how.
-    pub display_arm: Option<DisplayedArm>,
+    pub display_arm: Option<RobotDepiction>,
     /// Offers that a wizard could see; `None` in recordings without offers.
     pub offers: Option<Vec<TimedOffer>>,
     /// Duration of the trial without pauses, in seconds.
@@ -102,11 +102,11 @@ pub struct TrialStatistics {
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
     /// In unassisted trials with known beliefs: what each concept would have prevented, for each value of its
     /// parameter.
-    pub swept: Vec<PreventedTrialErrors>,
+    pub swept: Vec<ConceptPreventionCounts>,
     /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
     pub raters: Option<[RaterCodes; 2]>,
     /// Agreement of the two raters about false beliefs.
-    pub shared_beliefs: Option<FalseBeliefAgreement>,
+    pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// The two raters whose consensus determines the causes of errors.
     pub settled_by: Option<[String; 2]>,
     /// Why the raters' consensus is not used: a rater's code changed after the raters settled it.
@@ -125,7 +125,7 @@ pub struct FalseBeliefErrors {
     /// Number of errors that only two false beliefs together explain.
     pub of_two: u64,
     /// Errors from false beliefs, counted by kind of state aspect.
-    pub causes: CauseKindCounts,
+    pub causes: BeliefErrorCounts,
     /// Length (number of errors) of each error sequence whose errors follow from the same false belief.
     pub lengths: Vec<u32>,
     /// Length (number of errors) of each error sequence, whichever false beliefs its errors follow from.

@@ -6,7 +6,7 @@ use super::effect::LEVEL;
 use super::statistics::{ConfidenceInterval, share_interval};
 use super::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean, mean_length};
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_kinds::CauseKindCounts;
+use crate::measures::cause_kinds::BeliefErrorCounts;
 
 /// Sums and rates over trials of a study: presses, errors, sequences, signals, orders.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -30,7 +30,7 @@ pub struct TrialTotals {
     /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
     /// Errors from false beliefs, counted by kind of state aspect.
-    pub belief_related_by_kind: Option<CauseKindCounts>,
+    pub belief_related_by_kind: Option<BeliefErrorCounts>,
     /// Share of the errors that follow from false beliefs, from 0 to 1.
     pub belief_related_share: Option<f64>,
     /// 95 % interval of the share `belief_related_share`.
@@ -87,7 +87,7 @@ impl TrialTotals {
             beliefs_from: beliefs.iter().map(|one| one.basis).max(),
             belief_related_errors: Some(related),
             belief_related_by_kind: Some(
-                beliefs.iter().fold(CauseKindCounts::default(), |sum, one| sum.plus(one.causes)),
+                beliefs.iter().fold(BeliefErrorCounts::default(), |sum, one| sum.plus(one.causes)),
             ),
             belief_related_share: interval.map(|interval| interval.estimate),
             belief_related_interval: interval,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::tables::tutorial_answers::TutorialAnswer;
+use super::tables::tutorial_answers::TutorialQuestionRow;
 
 /// Summary of the answers to the tutorials' comprehension questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -17,8 +17,8 @@ pub struct TutorialSummary {
 
 impl TutorialSummary {
     /// Summarizes answers, which must be ordered by participant; `None` if no question was answered.
-    pub fn from_answers(answers: &[TutorialAnswer]) -> Option<TutorialSummary> {
-        let answered: Vec<&TutorialAnswer> = answers.iter().filter(|answer| answer.tries > 0).collect();
+    pub fn from_answers(answers: &[TutorialQuestionRow]) -> Option<TutorialSummary> {
+        let answered: Vec<&TutorialQuestionRow> = answers.iter().filter(|answer| answer.tries > 0).collect();
         let mut participants: Vec<&str> = answered.iter().map(|answer| answer.participant.as_str()).collect();
         participants.dedup();
         (!answered.is_empty()).then(|| TutorialSummary {

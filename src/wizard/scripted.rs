@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::offer_reader::OfferReader;
-use super::seen::{ObservedPress, SeenKitchen, explain, misleads};
+use super::seen::{ObservedPress, ParticipantSeenKitchen, explain, misleads};
 use super::settings::WizardSpec;
 use super::thought::SuspectedFalseBelief;
 use crate::base::rng::{Stream, stream};
@@ -35,7 +35,7 @@ pub struct ScriptedWizard {
     spec: WizardSpec,
     own_hand: bool,
     random: Stream,
-    seen: SeenKitchen,
+    seen: ParticipantSeenKitchen,
     /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
     /// The planned signal: the time to send it, and the suspected false belief that the signal is about.
@@ -51,7 +51,7 @@ pub struct ScriptedWizard {
 impl ScriptedWizard {
     /// Creates the scripted wizard of a trial, who reads no offers; its random stream is seeded by (seed, trial).
     pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
-        let seen = SeenKitchen::new(kitchen.empty_state());
+        let seen = ParticipantSeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
         let (about_to, watched, signalled_at) = (None, Vec::new(), None);
         let presses = VecDeque::with_capacity(REMEMBERED_PRESSES);
@@ -75,7 +75,7 @@ impl ScriptedWizard {
 
     /// Starts the trial; the participant and the wizard see the empty kitchen.
     pub fn on_trial_start(&mut self, state: State) {
-        self.seen = SeenKitchen::new(state);
+        self.seen = ParticipantSeenKitchen::new(state);
         (self.about_to, self.signalled_at) = (None, None);
         self.watched.clear();
         self.presses.clear();

@@ -8,17 +8,17 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 
 /// The kitchen as the participant last saw it, location by location.
 #[derive(Clone, Debug)]
-pub struct SeenKitchen {
+pub struct ParticipantSeenKitchen {
     /// The last seen content of every location.
     pub state: State,
     /// Location on which the gaze rests, and the time at which the gaze arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
-impl SeenKitchen {
+impl ParticipantSeenKitchen {
     /// Creates the kitchen that the participant last saw in this state.
-    pub fn new(state: State) -> SeenKitchen {
-        SeenKitchen { state, resting: None }
+    pub fn new(state: State) -> ParticipantSeenKitchen {
+        ParticipantSeenKitchen { state, resting: None }
     }
 
     /// Updates the gaze location; a location counts as read once the gaze has rested on it for `look_s` seconds.
@@ -97,7 +97,7 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]
 pub fn misleads(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
-    seen: &SeenKitchen,
+    seen: &ParticipantSeenKitchen,
     truth: State,
     thought: SuspectedFalseBelief,
 ) -> bool {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use tomcom::analysis::bids::{BidsLabels, LEVELS, session_label};
+use tomcom::analysis::bids::{BidsLabelMap, LEVELS, session_label};
 use tomcom::run::bids_export::{BidsSummary, describe, export};
 
 fn folder(name: &str) -> PathBuf {
@@ -127,7 +127,7 @@ fn a_folder_with_something_in_it_is_refused() {
 #[test]
 fn no_two_codes_have_one_label_and_a_changed_one_is_told() {
     let codes = ["P07", "p07", "P-07", "P_07", "A1", "-", "_", "P07x2"];
-    let labels = BidsLabels::from_names(codes);
+    let labels = BidsLabelMap::from_names(codes);
     let made: BTreeSet<String> =
         codes.iter().map(|code| labels.label(code).expect("a label").to_ascii_lowercase()).collect();
     assert_eq!(made.len(), codes.len(), "{labels:?}");

@@ -8,7 +8,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, Signal, signals};
 use tomcom::display::page_language::DisplayWords;
 use tomcom::display::{DisplayStage, scene, sight};
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::language::LanguageFile;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::parse::parse;
@@ -19,20 +19,20 @@ use tomcom::run::verify::verify;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::wall_display::{AnswerEntry, DisplayEvent, DisplaySpec};
+use tomcom::session::wall_display::{AnswerDevice, DisplayEvent, DisplaySpec};
 use tomcom::session::{Event, LogHeader, Session};
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
 /// A session file of the project, with an inference that is coarse and quick.
-pub(super) fn files(path: &str) -> SessionFiles {
+pub(super) fn files(path: &str) -> SessionSetup {
     let mut files = read_session(Path::new(path)).expect("a session file of the project");
     let inference = &mut files.spec.human.inference;
     (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);
     files
 }
 
-pub(super) fn engine(files: SessionFiles) -> SessionEngine {
+pub(super) fn engine(files: SessionSetup) -> SessionEngine {
     let kitchen = Arc::new(files.kitchen.kitchen);
     SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
 }
@@ -254,7 +254,7 @@ fn phases_of_a_plan_are_those_of_the_display() {
     let mut files = files("sessions/study.toml");
     files.spec.participant.kind = ParticipantKind::Display;
     files.spec.participant.gaze = GazeSource::Mouse;
-    files.spec.display.questionnaire = AnswerEntry::Display;
+    files.spec.display.questionnaire = AnswerDevice::Display;
     let study = files.study().expect("a plan");
     // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
     let wanted = tomcom::session::plan::WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };

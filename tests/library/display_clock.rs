@@ -1,7 +1,7 @@
 //! The trial's clock and the number of served orders on the participant's display.
 
 use tomcom::base::time::SessionTime;
-use tomcom::display::{DisplayedClock, scene, sight, time_left};
+use tomcom::display::{TrialClockState, scene, sight, time_left};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::event::TrialEndReason;
@@ -26,14 +26,14 @@ fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
         let give = |engine: &mut SessionEngine, now_s, event| assert_eq!(engine.input(at(now_s), event).refused, None);
         expect(&engine, 1.0, None, 600.0);
         give(&mut engine, 2.0, Event::TrialStarted);
-        expect(&engine, 12.0, Some(DisplayedClock::Goes), 590.0);
+        expect(&engine, 12.0, Some(TrialClockState::Goes), 590.0);
         // It stands in a pause, and goes on from there.
         give(&mut engine, 12.0, Event::TrialPaused);
-        expect(&engine, 50.0, Some(DisplayedClock::Stands), 590.0);
+        expect(&engine, 50.0, Some(TrialClockState::Stands), 590.0);
         give(&mut engine, 62.0, Event::TrialResumed);
-        expect(&engine, 72.0, Some(DisplayedClock::Goes), 580.0);
+        expect(&engine, 72.0, Some(TrialClockState::Goes), 580.0);
         give(&mut engine, 72.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
-        expect(&engine, 99.0, Some(DisplayedClock::Stands), 580.0);
+        expect(&engine, 99.0, Some(TrialClockState::Stands), 580.0);
         let scene = scene(engine.session());
         assert_eq!((scene.clock, scene.served, scene.sound), (shown, shown, false));
     }

@@ -8,7 +8,7 @@ use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, s
 use tomcom::kitchen::{AspectId, AspectKind, Kitchen};
 use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom::session::settings::ParticipantKind;
-use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, Session, TimestampedEvent, apply};
 
 use super::display::{engine, files};
@@ -139,7 +139,7 @@ fn the_page_is_told_the_question_and_nothing_of_the_kitchen() {
                 .map(|answer| {
                     let confidence = answer.as_ref().map(|_| 2);
                     let mut other = Probed { session: probed.session.clone(), seq: probed.seq };
-                    let on = AnswerEntry::Display;
+                    let on = AnswerDevice::Display;
                     other.probe(
                         seconds + 0.05,
                         ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on },
@@ -153,7 +153,7 @@ fn the_page_is_told_the_question_and_nothing_of_the_kitchen() {
                 })
                 .collect();
             assert!(after.iter().all(|one| *one == after[0]), "the answer shows on the page: {after:?}");
-            let (answer, confidence, on) = (None, None, AnswerEntry::Display);
+            let (answer, confidence, on) = (None, None, AnswerDevice::Display);
             probed.probe(seconds + 0.05, ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on });
         }
         probed.probe(50.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Answered });
@@ -218,7 +218,7 @@ fn every_choice_can_be_made_by_a_touch_or_of_its_items() {
                 items.reverse();
                 assert_eq!(choice_made_of(&kitchen, asked, &items).as_ref(), Some(name));
             }
-            let (answer, confidence, on) = (None, None, AnswerEntry::Display);
+            let (answer, confidence, on) = (None, None, AnswerDevice::Display);
             probed.probe(31.0, ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on });
         }
         let none = choice_made_of(&kitchen, &questions[0], &["no such item".to_string()]);

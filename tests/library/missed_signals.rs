@@ -16,7 +16,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::signal_model::SignalForecast;
+use tomcom::mind::signal_model::SignalReadingForecast;
 
 /// Salmon nigiri is wanted and the base is ready; its recipe is taken for another one.
 struct WrongRecipe {
@@ -56,14 +56,14 @@ impl WrongRecipe {
         WrongRecipe { kitchen, state, belief, signal, recipe }
     }
 
-    fn moment<'a>(&'a self, forecast: SignalForecast, signals: &'a [Signal]) -> DecisionPoint<'a> {
+    fn moment<'a>(&'a self, forecast: SignalReadingForecast, signals: &'a [Signal]) -> DecisionPoint<'a> {
         let robot = RobotIntent::Still;
         let situation = Situation { robot, forecast, ..Situation::new(self.state, &self.belief) };
         DecisionPoint { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals, error: None }
     }
 
     /// The benefit of showing the recipe, by the planner.
-    fn benefit(&self, forecast: SignalForecast) -> f64 {
+    fn benefit(&self, forecast: SignalReadingForecast) -> f64 {
         let signals = [self.signal.clone()];
         let mut spec = AssistantSpec::default();
         // All rollouts, so that answers differ by the forecast alone.
@@ -77,7 +77,7 @@ impl WrongRecipe {
 #[test]
 fn the_benefit_of_a_signal_is_weighed_by_the_chance_that_it_is_read_and_falls_with_its_delay() {
     let scene = WrongRecipe::new();
-    let benefit = |recipe: f64, delay_s: f64| scene.benefit(SignalForecast { recipe, highlight: 1.0, delay_s });
+    let benefit = |recipe: f64, delay_s: f64| scene.benefit(SignalReadingForecast { recipe, highlight: 1.0, delay_s });
     let certain = benefit(1.0, 0.0);
     assert!(certain > 1.5, "{certain}");
     assert!((benefit(0.5, 0.0) - 0.5 * certain).abs() < 0.01, "half of it is missed: {}", benefit(0.5, 0.0));
@@ -90,7 +90,7 @@ fn the_benefit_of_a_signal_is_weighed_by_the_chance_that_it_is_read_and_falls_wi
 #[test]
 fn the_planner_and_its_plain_reference_agree_on_a_signal_that_can_be_missed() {
     let scene = WrongRecipe::new();
-    let forecast = SignalForecast { recipe: 0.7, highlight: 0.5, delay_s: 1.5 };
+    let forecast = SignalReadingForecast { recipe: 0.7, highlight: 0.5, delay_s: 1.5 };
     let fast = scene.benefit(forecast);
     let mut spec = AssistantSpec::default();
     spec.rollout.rollouts = 96;

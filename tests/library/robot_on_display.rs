@@ -7,7 +7,7 @@ use tomcom::edge::files::read_session;
 use tomcom::kitchen::{Agent, ButtonAction, Kitchen};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::ArmKind;
-use tomcom::session::wall_display::DisplayedArm;
+use tomcom::session::wall_display::RobotDepiction;
 use tomcom::session::{Event, Session, SessionSpec, TimelineEvent};
 
 use super::display::{engine, files};
@@ -15,7 +15,7 @@ use super::display::{engine, files};
 /// Time from pose to pose, in seconds, as in a live session.
 const STEP_S: f64 = 0.05;
 
-fn session_with(arm: ArmKind, shown: DisplayedArm) -> SessionEngine {
+fn session_with(arm: ArmKind, shown: RobotDepiction) -> SessionEngine {
     let mut files = files("sessions/default.toml");
     files.spec.robot.arm = arm;
     files.spec.display.arm = Some(shown);
@@ -76,7 +76,7 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 fn the_hand_is_at_the_place_of_each_press_and_never_jumps() {
     // Where two buttons are near each other, and their places are not, the physical arm's hand is quick.
     for (arm, most) in [(ArmKind::Timed, 0.12), (ArmKind::Physics, 0.25)] {
-        let mut engine = session_with(arm, DisplayedArm::Hand);
+        let mut engine = session_with(arm, RobotDepiction::Hand);
         let poses = poses(&mut engine, 60.0, |_, _| ());
         let places = pressed_places(engine.session());
         assert!(places.len() > 10, "{arm:?}: {} presses", places.len());
@@ -96,7 +96,7 @@ fn the_hand_is_at_the_place_of_each_press_and_never_jumps() {
 
 #[test]
 fn the_page_is_told_a_pose_and_nothing_of_what_comes() {
-    let mut engine = session_with(ArmKind::Timed, DisplayedArm::Hand);
+    let mut engine = session_with(ArmKind::Timed, RobotDepiction::Hand);
     for (pose, _) in poses(&mut engine, 60.0, |_, _| ()) {
         let told = serde_json::to_value(pose).expect("a pose is JSON");
         assert_eq!(told, json!({"x": pose.x, "y": pose.y, "down": pose.down}));
@@ -104,7 +104,7 @@ fn the_page_is_told_a_pose_and_nothing_of_what_comes() {
     }
     // Until it sets out, two presses with different goals look alike: the pose is that of the last one.
     let setting_out = |engine: &SessionEngine| engine.session().robot.intention.map(|(_, since, _)| since);
-    let mut engine = session_with(ArmKind::Timed, DisplayedArm::Hand);
+    let mut engine = session_with(ArmKind::Timed, RobotDepiction::Hand);
     let mut hand = RobotHand::new(engine.session()).expect("it is shown");
     let rest = hand.at(engine.session(), SessionTime::ZERO);
     assert_eq!(engine.input(SessionTime::ZERO, Event::TrialStarted).refused, None);
@@ -114,7 +114,7 @@ fn the_page_is_told_a_pose_and_nothing_of_what_comes() {
 
 #[test]
 fn a_stopped_robot_stands_still_and_goes_on_from_there() {
-    let mut engine = session_with(ArmKind::Timed, DisplayedArm::Hand);
+    let mut engine = session_with(ArmKind::Timed, RobotDepiction::Hand);
     let (stop, resume) = (250, 330);
     let poses = poses(&mut engine, 40.0, |step, engine| {
         let event = match step {
@@ -133,19 +133,19 @@ fn a_stopped_robot_stands_still_and_goes_on_from_there() {
 
 #[test]
 fn a_session_says_how_the_robot_is_shown() {
-    let shown = |arm: Option<DisplayedArm>| {
+    let shown = |arm: Option<RobotDepiction>| {
         let mut files = files("sessions/default.toml");
         files.spec.display.arm = arm;
         let engine = engine(files);
         (RobotHand::new(engine.session()).is_some(), scene(engine.session()).arm)
     };
-    assert_eq!(shown(Some(DisplayedArm::Arm)), (true, "arm"));
-    assert_eq!(shown(Some(DisplayedArm::None)), (false, "none"));
+    assert_eq!(shown(Some(RobotDepiction::Arm)), (true, "arm"));
+    assert_eq!(shown(Some(RobotDepiction::None)), (false, "none"));
     assert_eq!(shown(None), (false, "none"), "a recording from before");
     let of_file = |path: &str| read_session(path.as_ref()).expect("a session file").spec.display.arm;
-    assert_eq!(of_file("sessions/default.toml"), Some(DisplayedArm::Hand));
-    assert_eq!(of_file("sessions/burger.toml"), Some(DisplayedArm::Hand), "where the file says nothing");
-    assert_eq!(of_file("sessions/study.toml"), Some(DisplayedArm::None));
+    assert_eq!(of_file("sessions/default.toml"), Some(RobotDepiction::Hand));
+    assert_eq!(of_file("sessions/burger.toml"), Some(RobotDepiction::Hand), "where the file says nothing");
+    assert_eq!(of_file("sessions/study.toml"), Some(RobotDepiction::None));
     let recorded: SessionSpec = toml::from_str("layout = \"\"").expect("settings");
     assert_eq!(recorded.display.arm, None);
 }

@@ -14,7 +14,7 @@ use tomcom::run::engine::SessionEngine;
 use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
-use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, LogHeader, TrialPhase};
 
 use crate::forgetting::RecordingsFolder;
@@ -52,7 +52,7 @@ fn record(root: &Path, participant: usize, words: &str) {
             engine.fire().iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         }
     };
-    tell(&mut engine, Event::Protocol(study.consent_given(AnswerEntry::Display)));
+    tell(&mut engine, Event::Protocol(study.consent_given(AnswerDevice::Display)));
     let mut number = 0;
     while let Some(phase) = engine.session().next_phase() {
         number += 1;

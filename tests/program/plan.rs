@@ -9,7 +9,7 @@ use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::run::verify::verify;
 use tomcom::session::LogHeader;
-use tomcom::session::plan::{StepSpec, Study, WantedRecording};
+use tomcom::session::plan::{PlanPosition, Study, WantedRecording};
 use tomcom::session::settings::Condition;
 
 use crate::tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
@@ -33,7 +33,7 @@ fn json(arguments: &[&str]) -> Value {
 }
 
 /// The step of a recording, from its header.
-fn step(recording: &Path) -> (String, Condition, StepSpec) {
+fn step(recording: &Path) -> (String, Condition, PlanPosition) {
     let text = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
     let header: LogHeader = serde_json::from_str(text.lines().next().expect("a header")).expect("a header");
     let step = header.session.step.expect("a step of the plan");

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::session::plan::StepSpec;
+use crate::session::plan::PlanPosition;
 
 /// The letters and digits of a name; a BIDS label may contain nothing else.
 pub fn letters_and_digits(name: &str) -> String {
@@ -13,12 +13,12 @@ pub fn letters_and_digits(name: &str) -> String {
 /// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be the same folder on some
 /// disks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct BidsLabels(BTreeMap<String, String>);
+pub struct BidsLabelMap(BTreeMap<String, String>);
 
-impl BidsLabels {
+impl BidsLabelMap {
     /// The BIDS labels of these names: the label consists of the letters and digits of the name. A label that another
     /// name has already is followed by `x2`, `x3` and so on.
-    pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> BidsLabels {
+    pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> BidsLabelMap {
         let all: BTreeSet<&str> = names.into_iter().collect();
         let (plain, others): (Vec<&str>, Vec<&str>) =
             all.into_iter().partition(|name| letters_and_digits(name) == *name);
@@ -27,7 +27,7 @@ impl BidsLabels {
         for name in plain.into_iter().chain(others) {
             labels.insert(name.to_string(), free(&letters_and_digits(name), "x", &mut taken));
         }
-        BidsLabels(labels)
+        BidsLabelMap(labels)
     }
 
     /// The BIDS label that a name got.
@@ -56,8 +56,8 @@ pub(super) fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> 
 
 /// The session label of a recording of a participant: its place in the study plan, or else its number. `taken` are the
 /// session labels of the participant's earlier recordings.
-pub fn session_label(step: Option<&StepSpec>, taken: &mut BTreeSet<String>) -> String {
-    let attempt = |step: &StepSpec| match step.attempt {
+pub fn session_label(step: Option<&PlanPosition>, taken: &mut BTreeSet<String>) -> String {
+    let attempt = |step: &PlanPosition| match step.attempt {
         0 | 1 => String::new(),
         attempt => format!("attempt{attempt}"),
     };

@@ -21,7 +21,7 @@ pub use self::dataset::{
     BidsParticipant, CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME, dataset_files,
 };
 pub use self::event_levels::LEVELS;
-pub use self::labels::{BidsLabels, letters_and_digits, session_label};
+pub use self::labels::{BidsLabelMap, letters_and_digits, session_label};
 pub use self::phenotype::QuestionnairePhenotypes;
 pub use self::recording_tables::{BidsRowCounts, PressOutcome, RecordingTables};
 pub use self::session_rows::{BidsSessionRow, sessions_files};

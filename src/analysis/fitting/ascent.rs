@@ -39,7 +39,7 @@ pub enum BoundReached {
 
 /// Estimate of one variable of a likelihood, with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FittedVariable {
+pub struct VariableEstimate {
     /// Value of the variable at which the likelihood is greatest.
     pub at: f64,
     /// Standard error of the variable; `None` at a bound, and where the log likelihood is not concave.
@@ -54,7 +54,7 @@ pub struct FittedVariable {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LikelihoodMaximum {
     /// Estimates of the variables, in the order in which they were passed.
-    pub variables: Vec<FittedVariable>,
+    pub variables: Vec<VariableEstimate>,
     /// Number of evaluations of the log likelihood during the search.
     pub evaluations: usize,
     /// Whether the search converged before the allowed evaluations were used up.
@@ -67,7 +67,7 @@ pub fn climb(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]]
     let mut search = Search::begin(loss, start, bounds, most);
     let free: Vec<usize> = (0..start.len()).collect();
     let converged = search.climb(&free).is_some();
-    let variable = |&at: &f64| FittedVariable { at, standard_error: None, end: None, limit: None };
+    let variable = |&at: &f64| VariableEstimate { at, standard_error: None, end: None, limit: None };
     let variables = search.at.iter().map(variable).collect();
     LikelihoodMaximum { variables, evaluations: search.evaluations, converged }
 }
@@ -106,7 +106,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
     let limits: Vec<Option<f64>> = (0..count)
         .map(|index| held[index].filter(|_| converged).and_then(|end| search.limit(index, end, &held)))
         .collect();
-    let variable = |index: usize| FittedVariable {
+    let variable = |index: usize| VariableEstimate {
         at: search.at[index],
         standard_error: errors[index],
         end: held[index].filter(|_| converged),

@@ -15,12 +15,12 @@ pub struct ProbeAnswerFit {
     /// Log likelihood per answer with the fitted parameters, in nats.
     pub log_likelihood: f64,
     /// For each parameter, its interval when fitted to presses alone, compared with the fit to presses and answers.
-    pub shrinkage: Vec<IntervalShrinkage>,
+    pub shrinkage: Vec<IntervalNarrowing>,
 }
 
 /// How far the answers to freeze probes narrow a parameter's interval, compared with presses alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct IntervalShrinkage {
+pub struct IntervalNarrowing {
     /// The parameter's name in a parameter file.
     pub name: &'static str,
     /// Value of the parameter when fitted to presses alone.
@@ -45,7 +45,7 @@ impl ProbeAnswerFit {
     }
 }
 
-impl IntervalShrinkage {
+impl IntervalNarrowing {
     /// Compares two intervals of a parameter: from presses alone (with the value from that fit), and from presses and
     /// answers to freeze probes.
     pub fn between(
@@ -53,13 +53,13 @@ impl IntervalShrinkage {
         value: f64,
         alone: Option<[Option<f64>; 2]>,
         with: Option<[Option<f64>; 2]>,
-    ) -> IntervalShrinkage {
+    ) -> IntervalNarrowing {
         let width = |interval: Option<[Option<f64>; 2]>| match interval {
             Some([Some(from), Some(to)]) => Some(parameter.to_scale(to) - parameter.to_scale(from)),
             _ => None,
         };
         let ratio = width(with).zip(width(alone)).map(|(with, alone)| with / alone);
-        IntervalShrinkage { name: parameter.name(), value, interval: alone, ratio }
+        IntervalNarrowing { name: parameter.name(), value, interval: alone, ratio }
     }
 }
 

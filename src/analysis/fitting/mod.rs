@@ -22,7 +22,7 @@ pub mod response_surface;
 
 use serde::Serialize;
 
-use self::ascent::{BoundReached, FittedVariable, LikelihoodMaximum, ascend};
+use self::ascent::{BoundReached, LikelihoodMaximum, VariableEstimate, ascend};
 pub use self::fitted_answers::ProbeAnswerFit;
 use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use crate::base::words::count;
@@ -109,7 +109,7 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
-    fn from_variable(parameter: HumanModelParameter, before: f64, found: &FittedVariable) -> FittedParameter {
+    fn from_variable(parameter: HumanModelParameter, before: f64, found: &VariableEstimate) -> FittedParameter {
         let value = parameter.from_scale(found.at);
         let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
         let told = |end: f64| (low..=high).contains(&end).then(|| parameter.from_scale(end));

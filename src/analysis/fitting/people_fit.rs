@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use super::FitSettings;
 use super::ascent::climb;
 use super::parameter_scale::{bounds_of, is_possible, model_at, point_of};
-use super::people_search::{FoundPeople, PeopleSearch, PersonTry, TrialPart, search};
+use super::people_search::{FoundPeople, PeopleSearch, PersonTry, TrialSelection, search};
 use super::people_summary::{
-    FittedPerson, HeldOut, HeldOutPerson, PeopleSummary, PersonSummary, PooledParameter, PopulationParameter,
+    HeldOut, HeldOutPerson, PeopleSummary, PersonRecordingCount, PersonSummary, PooledParameter, PopulationParameter,
 };
 use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
 use crate::mind::fitting::TrialLikelihood;
@@ -27,27 +27,27 @@ struct PartFit {
 ///
 /// The caller adds the intervals over persons to [`HeldOut`].
 pub fn fit_people(
-    people: &[FittedPerson],
+    people: &[PersonRecordingCount],
     model: &HumanModel,
     plan: &FitSettings,
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> PeopleSummary {
     let base = plan.start.as_ref().unwrap_or(model);
     let start = point_of(base, &plan.parameters);
-    let all = fit_part(people.len(), base, plan, (&start, TrialPart::All), &likelihoods);
+    let all = fit_part(people.len(), base, plan, (&start, TrialSelection::All), &likelihoods);
     let held_out = people.iter().any(|person| person.recordings > 1).then(|| {
         // The search on the training trials starts where the search on all trials ended, which saves rounds; its result
         // depends on the training trials alone.
-        let training = fit_part(people.len(), base, plan, (&all.pooled, TrialPart::Training), &likelihoods);
+        let training = fit_part(people.len(), base, plan, (&all.pooled, TrialSelection::Training), &likelihoods);
         (judge(people, base, plan, &training, &likelihoods), training)
     });
-    let at_modes = sums(&at_each(base, plan, &all.people.modes, TrialPart::All, &likelihoods));
+    let at_modes = sums(&at_each(base, plan, &all.people.modes, TrialSelection::All, &likelihoods));
     let at_pooled = vec![all.pooled.clone(); people.len()];
-    let each_pooled = at_each(base, plan, &at_pooled, TrialPart::All, &likelihoods);
+    let each_pooled = at_each(base, plan, &at_pooled, TrialSelection::All, &likelihoods);
     let pooled = sums(&each_pooled);
     let presses = pooled.presses.max(1) as f64;
     let population = &all.people.estimate;
-    let person = |(index, person): (usize, &FittedPerson)| {
+    let person = |(index, person): (usize, &PersonRecordingCount)| {
         let posterior = &population.people[index];
         PersonSummary::from_posterior(person, each_pooled[index].presses, &plan.parameters, posterior)
     };
@@ -73,7 +73,7 @@ fn fit_part(
     people: usize,
     base: &HumanModel,
     plan: &FitSettings,
-    (start, part): (&[f64], TrialPart),
+    (start, part): (&[f64], TrialSelection),
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> PartFit {
     let loss = |at: &[f64]| {
@@ -98,7 +98,7 @@ fn at_each(
     base: &HumanModel,
     plan: &FitSettings,
     points: &[Vec<f64>],
-    part: TrialPart,
+    part: TrialSelection,
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> Vec<TrialLikelihood> {
     let model = |at: &Vec<f64>| model_at(base, &plan.parameters, at);
@@ -112,14 +112,14 @@ fn sums(each: &[TrialLikelihood]) -> TrialLikelihood {
 
 /// How likely the presses of the trials that were left out of the fit are.
 fn judge(
-    people: &[FittedPerson],
+    people: &[PersonRecordingCount],
     base: &HumanModel,
     plan: &FitSettings,
     training: &PartFit,
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> HeldOut {
     let same = |at: &[f64]| vec![at.to_vec(); people.len()];
-    let by = |points: &[Vec<f64>]| at_each(base, plan, points, TrialPart::HeldOut, &likelihoods);
+    let by = |points: &[Vec<f64>]| at_each(base, plan, points, TrialSelection::HeldOut, &likelihoods);
     let [pooled, population, own] =
         [same(&training.pooled), same(&training.people.mean), training.people.modes.clone()].map(|points| by(&points));
     let judged = (0..people.len()).filter(|&one| pooled[one].presses > 0);
@@ -133,13 +133,13 @@ fn judge(
             own: per_press(&own[one]),
         })
         .collect();
-    let is_judged = |person: &&FittedPerson| by_person.iter().any(|one| one.code == person.code);
+    let is_judged = |person: &&PersonRecordingCount| by_person.iter().any(|one| one.code == person.code);
     let left_out = people.iter().filter(|person| !is_judged(person)).map(|person| person.code.clone()).collect();
     HeldOut { left_out, gain: None, population_gain: None, by_person }
 }
 
 /// The file of fitted parameters: those of the population's median person, and those of every person.
-fn file(people: &[FittedPerson], base: &HumanModel, plan: &FitSettings, found: &FoundPeople) -> HumanModelFile {
+fn file(people: &[PersonRecordingCount], base: &HumanModel, plan: &FitSettings, found: &FoundPeople) -> HumanModelFile {
     let values = |at: &Vec<f64>| plan.parameters.iter().zip(at).map(|(one, at)| (*one, one.from_scale(*at))).collect();
     let own: BTreeMap<_, _> =
         people.iter().zip(&found.modes).map(|(person, at)| (person.code.clone(), values(at))).collect();

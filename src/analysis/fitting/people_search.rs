@@ -28,7 +28,7 @@ const NEAR: f64 = 0.5;
 
 /// Which trials of a person the search uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TrialPart {
+pub enum TrialSelection {
     /// All trials of the person.
     All,
     /// All trials of the person except the last one; a person with a single trial keeps that trial.
@@ -43,7 +43,7 @@ pub struct PersonTry {
     /// Index of the person among all fitted persons.
     pub person: usize,
     /// Which of the person's trials are used.
-    pub part: TrialPart,
+    pub part: TrialSelection,
     /// The human model with the parameters to try.
     pub model: HumanModel,
 }
@@ -58,7 +58,7 @@ pub struct PeopleSearch<'a> {
     /// Number of persons whose parameters are searched.
     pub people: usize,
     /// Which trials of each person the search uses.
-    pub part: TrialPart,
+    pub part: TrialSelection,
 }
 
 /// Result of a search: the estimated population and its persons.

@@ -13,7 +13,7 @@ const HALF_WIDTH: f64 = 1.96;
 
 /// A person to whose trials parameters are fitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FittedPerson {
+pub struct PersonRecordingCount {
     /// Code of the person, with the seed in front where simulated people of several seeds are fitted.
     pub code: String,
     /// Number of the person's recordings.
@@ -149,7 +149,7 @@ pub struct PersonParameter {
 impl PersonSummary {
     /// Summary of a person with this number of presses, from the posterior of the person's parameters.
     pub fn from_posterior(
-        person: &FittedPerson,
+        person: &PersonRecordingCount,
         human_actions: u64,
         parameters: &[HumanModelParameter],
         posterior: &PersonPosterior,

@@ -18,7 +18,7 @@ mod work_ahead;
 use std::sync::Arc;
 
 use self::lattice::{PER_DECISION, QuasiRandomLattice};
-use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState};
+use self::rollout::{BaselineRollout, DecisionDraws, Rollout, RolloutContext, RolloutState};
 use self::rollout_robot::RobotPolicy;
 use self::sample::BeliefSamples;
 use self::tally::PairedDifferences;
@@ -58,7 +58,7 @@ pub struct Planner {
     state: RolloutState,
     /// Weighted worlds that represent the human's belief.
     believed: WeightedWorlds<u32>,
-    draws: Vec<RolloutDraws>,
+    draws: Vec<DecisionDraws>,
 }
 
 /// A signal whose expected saving is estimated.
@@ -126,7 +126,7 @@ impl Planner {
         let first_s = first * model.human_press_s;
         let sees = sees < self.looking.capture;
         self.draws.clear();
-        self.draws.extend((0..model.horizon).map(|_| RolloutDraws::draw(random)));
+        self.draws.extend((0..model.horizon).map(|_| DecisionDraws::draw(random)));
         for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
             draws.begin_with(first);
         }

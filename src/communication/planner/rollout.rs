@@ -21,7 +21,7 @@ const ROBOT_DRAWS: usize = 4;
 
 /// Random numbers of one decision of the human and of the robot's presses before that decision; `looks` by location.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RolloutDraws {
+pub struct DecisionDraws {
     decision: f64,
     slip: f64,
     looks: [f64; MAX_LOCATIONS],
@@ -30,10 +30,10 @@ pub struct RolloutDraws {
     captures: [f64; ROBOT_DRAWS],
 }
 
-impl RolloutDraws {
+impl DecisionDraws {
     /// Draws the random numbers of one rollout from this stream.
-    pub fn draw(random: &mut Stream) -> RolloutDraws {
-        let mut draws = RolloutDraws { decision: random.random(), slip: random.random(), ..RolloutDraws::default() };
+    pub fn draw(random: &mut Stream) -> DecisionDraws {
+        let mut draws = DecisionDraws { decision: random.random(), slip: random.random(), ..DecisionDraws::default() };
         draws.looks.iter_mut().for_each(|draw| *draw = random.random());
         draws.choices.iter_mut().for_each(|draw| *draw = random.random());
         draws.predictions.iter_mut().for_each(|draw| *draw = random.random());
@@ -162,7 +162,7 @@ pub struct Rollout<'a> {
     /// The robot's policy, with its caches.
     pub policy: &'a mut RobotPolicy,
     /// The random numbers of each decision of the human, in order.
-    pub draws: &'a [RolloutDraws],
+    pub draws: &'a [DecisionDraws],
     /// Time of the human's first decision, in seconds since the start of the rollout.
     pub first_s: f64,
     /// Time at which the human reads a signal, in seconds since the start of the rollout.

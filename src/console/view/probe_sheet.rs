@@ -15,7 +15,7 @@ use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::probe_entry::ProbeEntry;
 use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
 use crate::display::{ProbeWording, probe_left, probe_wording};
-use crate::session::probes::{OpenProbe, ProbeAnswer, ProbeQuestion};
+use crate::session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
 use crate::session::settings::WizardVisibility;
 use crate::session::{Session, TrialPhase};
 
@@ -32,7 +32,7 @@ pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &C
 }
 
 /// Draws the sheet of a freeze probe.
-pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
+pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &StartedProbe, session: &Session, model: &ConsoleModel) {
     let mut page = Page::new(screen);
     let who = answerer(session, model);
     if let Some(address) =
@@ -79,7 +79,7 @@ fn capital(text: &str) -> String {
 /// Draws the question with its numbered choices, in as many columns as have room.
 fn ask(
     page: &mut Page,
-    (open, index, question): (&OpenProbe, usize, &ProbeQuestion),
+    (open, index, question): (&StartedProbe, usize, &ProbeQuestion),
     (session, model): (&Session, &ConsoleModel),
     who: ProbeAnswerer,
 ) {
@@ -136,7 +136,7 @@ fn sure(page: &mut Page, entry: ProbeEntry) {
 
 /// Draws the progress of the answers. Their content is shown only where the study shows beliefs to the wizard, and
 /// never to raters.
-fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
+fn answers(page: &mut Page, open: &StartedProbe, session: &Session, model: &ConsoleModel) {
     let is_shown = visibility(session, model) >= WizardVisibility::Belief && model.coding.is_none();
     let given =
         open.questions.iter().zip(&open.answers).filter_map(|(question, given)| Some((question, given.as_ref()?)));

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 
 use crate::console::beliefs::visibility;
 use crate::console::codebook;
-use crate::console::compared::ComparisonView;
+use crate::console::compared::SenderComparisonView;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel;
 use crate::session::Session;
@@ -103,7 +103,8 @@ struct LineRows {
 impl PanelAreas {
     /// Computes the arrangement of panels on a terminal with `size` columns and rows, for this session and console.
     pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> PanelAreas {
-        let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
+        let assistants =
+            |compared: &SenderComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
         let codebook = model.coding.as_ref().map(|_| {
             let (keys, kitchen) = (&model.keys, &session.kitchen);

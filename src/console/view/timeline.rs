@@ -8,7 +8,7 @@ use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::communication::offer::OfferKeyUse;
+use crate::communication::offer::OfferKeyKind;
 use crate::console::beliefs::visibility;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
@@ -99,7 +99,7 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         let role = if used.is_some() { TextRole::Signal } else { TextRole::Quiet };
         let style = brush.style(role);
         let key = offer.signal().map_or("!".to_string(), |signal| signal_sign(session, model, signal));
-        let is_taken = used.is_some_and(|used| used.how == OfferKeyUse::Taken);
+        let is_taken = used.is_some_and(|used| used.how == OfferKeyKind::Taken);
         for at in from.max(row.x.into())..=to.min(i64::from(row.right()) - 1) {
             let sign = match at {
                 at if at == from => key.as_str(),

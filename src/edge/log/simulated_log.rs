@@ -18,7 +18,7 @@ const LAST: u64 = 256;
 
 /// State of a simulated session's log before the simulation.
 #[derive(Debug)]
-pub enum SimulatedLog {
+pub enum SimulatedLogState {
     /// The simulated session has no complete log yet: a new log has to be written.
     Begun {
         /// Writer of the new log.
@@ -30,22 +30,22 @@ pub enum SimulatedLog {
     Whole,
 }
 
-impl SimulatedLog {
+impl SimulatedLogState {
     /// Starts the recording of a simulated session in this folder, unless the recording exists and is complete.
     ///
     /// # Errors
     /// The errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
-    pub fn open(folder: &Path, header: &LogHeader) -> Result<SimulatedLog, RecordingWriteError> {
+    pub fn open(folder: &Path, header: &LogHeader) -> Result<SimulatedLogState, RecordingWriteError> {
         // A complete recording is not locked, so that several programs can read it at once.
         if is_whole(folder, header) {
-            return Ok(SimulatedLog::Whole);
+            return Ok(SimulatedLogState::Whole);
         }
         fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
         let lock = RecordingLock::take(folder)?;
         check_simulated(folder, header)?;
         // The previous holder of the lock may have completed the recording.
         if is_whole(folder, header) {
-            return Ok(SimulatedLog::Whole);
+            return Ok(SimulatedLogState::Whole);
         }
         let path = folder.join(LOG_NAME);
         let moved = match is_without_header(&path) {
@@ -53,7 +53,7 @@ impl SimulatedLog {
             false => None,
         };
         let log = LogWriter::begin(lock, folder.to_path_buf(), header, false)?;
-        Ok(SimulatedLog::Begun { log: Box::new(log), moved })
+        Ok(SimulatedLogState::Begun { log: Box::new(log), moved })
     }
 }
 

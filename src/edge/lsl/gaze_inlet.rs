@@ -35,9 +35,9 @@ const RETRY: Duration = Duration::from_secs(1);
 /// Waits, when it is dropped, for the end of the reading thread, since liblsl must not be in use when the program ends.
 /// The receiver of gaze messages must be dropped before this value.
 #[derive(Debug)]
-pub struct InletThreadEnd(mpsc::Receiver<()>);
+pub struct InletThreadGuard(mpsc::Receiver<()>);
 
-impl Drop for InletThreadEnd {
+impl Drop for InletThreadGuard {
     fn drop(&mut self) {
         // An LSL library that hangs does not delay the end of the program beyond the time limit.
         let _ = self.0.recv_timeout(END);
@@ -53,7 +53,7 @@ pub fn follow(
     library: LslLibrary,
     stream: LslGazeSpec,
     display_m: [f64; 2],
-) -> io::Result<(Receiver<TrackerMessage>, InletThreadEnd)> {
+) -> io::Result<(Receiver<TrackerMessage>, InletThreadGuard)> {
     let ((news, heard), (end, ended)) = (channel(WAITING), mpsc::channel());
     let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
     let work = move || {
@@ -62,7 +62,7 @@ pub fn follow(
         let _ = end.send(());
     };
     thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
-    Ok((heard, InletThreadEnd(ended)))
+    Ok((heard, InletThreadGuard(ended)))
 }
 
 /// Names by which settings can refer to a gaze stream's channels: labels, or numbers for channels without a label.

@@ -18,7 +18,7 @@ use std::path::absolute;
 use crate::analysis::lsl::SOURCE;
 use crate::session::settings::{LslGazeSpec, LslSpec};
 
-pub use gaze_inlet::{InletThreadEnd, channel_names, follow, missing_channel};
+pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
 pub use library::{DiscoveredLslStream, LslLibrary};
 pub use lsl_error::LslError;
 pub use outlet_thread::{LslCounts, LslSample, LslStreams};

@@ -20,7 +20,7 @@ const APART_S: f64 = 1.0;
 
 /// A window of a fixation as Capture sends it, or several merged windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FixationWindow {
+pub struct FixationFragment {
     /// Pupil Capture's id of the fixation.
     pub id: u64,
     /// Position of the fixation on the display, in fractions; `None` if unknown.
@@ -42,7 +42,7 @@ pub struct FixationMerger {
 
 #[derive(Clone, Copy, Debug)]
 struct MergedWindows {
-    merged: FixationWindow,
+    merged: FixationFragment,
     /// Number of merged windows, and number of merged windows with a position.
     windows: f64,
     places: f64,
@@ -51,8 +51,8 @@ struct MergedWindows {
 
 impl FixationMerger {
     /// Adds a window of a fixation that arrived at `now`; returns the previous fixation if the previous one is over.
-    pub fn take(&mut self, window: FixationWindow, now: Instant) -> Option<FixationWindow> {
-        let belongs = |merged: &FixationWindow| {
+    pub fn take(&mut self, window: FixationFragment, now: Instant) -> Option<FixationFragment> {
+        let belongs = |merged: &FixationFragment| {
             let [begin, end] = merged.span_s;
             merged.id == window.id && window.span_s[0] <= end + APART_S && window.span_s[1] >= begin - APART_S
         };
@@ -65,19 +65,19 @@ impl FixationMerger {
     }
 
     /// Returns the present fixation if no window of this fixation has arrived for a while.
-    pub fn expire(&mut self, now: Instant) -> Option<FixationWindow> {
+    pub fn expire(&mut self, now: Instant) -> Option<FixationFragment> {
         let is_over = |current: &MergedWindows| now.saturating_duration_since(current.heard) >= SILENCE;
         self.current.take_if(|current| is_over(current)).map(|over| over.merged)
     }
 
     /// Returns the fixation that was not yet over when Capture's messages ended.
-    pub fn end(&mut self) -> Option<FixationWindow> {
+    pub fn end(&mut self) -> Option<FixationFragment> {
         self.current.take().map(|over| over.merged)
     }
 }
 
 impl MergedWindows {
-    fn add(&mut self, window: &FixationWindow, now: Instant) {
+    fn add(&mut self, window: &FixationFragment, now: Instant) {
         let merged = &mut self.merged;
         merged.span_s = [merged.span_s[0].min(window.span_s[0]), merged.span_s[1].max(window.span_s[1])];
         merged.dispersion_deg = merged.dispersion_deg.max(window.dispersion_deg);

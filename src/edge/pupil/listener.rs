@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Sender;
 use tokio::time::timeout;
 
-use super::eye_events::{BlinkMerger, FixationMerger, FixationWindow};
+use super::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use super::message::{self, CaptureNotification, PupilBlink, PupilFixation, PupilMessage};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
 use crate::edge::compared_clock::ClockOffsetEstimator;
@@ -108,7 +108,7 @@ impl<'a> Listener<'a> {
         self.tell_over(fixation, blink);
     }
 
-    fn tell_over(&mut self, fixation: Option<FixationWindow>, blink: Option<PupilBlink>) {
+    fn tell_over(&mut self, fixation: Option<FixationFragment>, blink: Option<PupilBlink>) {
         if let Some(over) = fixation {
             self.tell_fixation(over);
         }
@@ -173,8 +173,8 @@ impl<'a> Listener<'a> {
         }
     }
 
-    fn window(&self, found: &PupilFixation) -> FixationWindow {
-        FixationWindow {
+    fn window(&self, found: &PupilFixation) -> FixationFragment {
+        FixationFragment {
             id: found.id,
             at: found.on_surface.and_then(|place| self.map.to_display(place)),
             span_s: [found.timestamp, found.timestamp + found.duration_ms / 1000.0],
@@ -183,7 +183,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    fn tell_fixation(&mut self, found: FixationWindow) {
+    fn tell_fixation(&mut self, found: FixationFragment) {
         let [begin, end] = found.span_s;
         self.offer(TrackerMessage::Fixation(TrackerFixation {
             at: found.at,

@@ -29,7 +29,7 @@ const PROBABILITY: [f64; 2] = [-0.03, 1.03];
 
 /// One of the recordings that a stream shows side by side.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct StreamLane {
+pub struct ShownRecording {
     /// Path of the entity that contains all entities of the recording; empty for the top level.
     pub root: String,
     /// Title of the recording in the viewer.
@@ -58,7 +58,7 @@ pub(super) struct ViewerLayout {
 
 impl ViewerLayout {
     /// The viewer's layout for these recordings.
-    pub(super) fn from_lanes(lanes: &[StreamLane], opens: ViewerStart) -> ViewerLayout {
+    pub(super) fn from_lanes(lanes: &[ShownRecording], opens: ViewerStart) -> ViewerLayout {
         let mut properties = Vec::new();
         let root: ContainerLike = match lanes {
             [only] => alone(only, &mut properties),
@@ -112,7 +112,7 @@ impl ViewerLayout {
 }
 
 /// Viewer layout for a single recording.
-fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
+fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
     let wrong = StateTimelineView::new("False beliefs")
         .with_origin(path(lane, "human/belief/wrong"))
@@ -135,19 +135,19 @@ fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
 }
 
 /// Viewer layout for one of several recordings side by side.
-fn beside(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
+fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let belief = beliefs(lane, "P(truth)", properties);
     let below = Horizontal::new([belief, benefit(lane, properties)]);
     let words = Horizontal::new([believed(lane), happened(lane, properties)]);
     Vertical::new([kitchen(lane), below.into(), words.into()]).with_row_shares([5.0, 3.0, 3.0]).into()
 }
 
-fn path(lane: &StreamLane, entities: &str) -> String {
+fn path(lane: &ShownRecording, entities: &str) -> String {
     let path = format!("{}/{entities}", lane.root);
     format!("/{}", path.trim_matches('/'))
 }
 
-fn titled(lane: &StreamLane, name: &str) -> String {
+fn titled(lane: &ShownRecording, name: &str) -> String {
     if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
@@ -165,12 +165,12 @@ fn with(
     view
 }
 
-fn kitchen(lane: &StreamLane) -> ContainerLike {
+fn kitchen(lane: &ShownRecording) -> ContainerLike {
     let contents = ["kitchen/**", "human/gaze"].map(|entities| path(lane, entities));
     Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
 }
 
-fn arm(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
+fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let contents = ["robot/**", "human/hand/**"].map(|entities| path(lane, entities));
     let view = Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents);
     let eye = EyeControls3D::new().with_position(EYE_M).with_look_target(LOOKED_AT_M).with_eye_up([0.0, 0.0, 1.0]);
@@ -179,7 +179,7 @@ fn arm(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
 
 /// A view of curves, without a legend, which would cover the curves: their colours are those of the names in the
 /// kitchen, and the viewer names the curve under the mouse.
-fn series(lane: &StreamLane, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
+fn series(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
     with(view, "PlotLegend", &PlotLegend::new().with_visible(false), properties)
@@ -187,18 +187,18 @@ fn series(lane: &StreamLane, name: &str, entities: &[&str], properties: &mut Vec
 
 /// A view of belief probabilities: the estimate and, for a simulated participant, the true belief. Curves are
 /// inconspicuous, and false beliefs are marked in the colour of their state aspect.
-fn beliefs(lane: &StreamLane, name: &str, properties: &mut Vec<Property>) -> ContainerLike {
+fn beliefs(lane: &ShownRecording, name: &str, properties: &mut Vec<Property>) -> ContainerLike {
     let curves = ["estimated", "true", "estimated_wrong", "truly_wrong"].map(|of| format!("human/belief/{of}/**"));
     let entities: Vec<&str> = curves.iter().map(String::as_str).chain(["human/errors/**"]).collect();
     let view = series(lane, name, &entities, properties);
     with(view, "ScalarAxis", &ScalarAxis::new().with_range(PROBABILITY), properties)
 }
 
-fn benefit(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
+fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"], properties)
 }
 
-fn believed(lane: &StreamLane) -> ContainerLike {
+fn believed(lane: &ShownRecording) -> ContainerLike {
     let page = path(lane, "human/belief/page");
     TextDocumentView::new(titled(lane, "What the participant believes"))
         .with_origin(page.clone())
@@ -207,7 +207,7 @@ fn believed(lane: &StreamLane) -> ContainerLike {
 }
 
 /// A view of the list of events, each with its time on the trial's clock.
-fn happened(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
+fn happened(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let lines = path(lane, "happened");
     let view = TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents([lines]);
     let column = |kind, visible: bool| TextLogColumn { kind, visible: visible.into() };

@@ -9,7 +9,7 @@ use crate::kitchen::dish::Dish;
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::location::{Location, LocationId, LocationKind};
 use crate::kitchen::process::ProcessingStep;
-use crate::kitchen::recipe::{DeviationCombination, DeviationSpec, ProcessingStepSpec, RecipesSpec};
+use crate::kitchen::recipe::{DeviationCombinationRule, DeviationSpec, ProcessingStepSpec, RecipesSpec};
 use crate::kitchen::state::MAX_DISHES;
 
 pub(super) fn processes(
@@ -92,8 +92,8 @@ fn variants(
             return Err(wrong(KitchenFileKind::Recipes, vary.slot.span(), found, "the name of a [[slot]]"));
         };
         let starts = match deviation.combine {
-            DeviationCombination::OneAtATime => vec![truth.to_vec()],
-            DeviationCombination::All => sets.clone(),
+            DeviationCombinationRule::OneAtATime => vec![truth.to_vec()],
+            DeviationCombinationRule::All => sets.clone(),
         };
         for start in starts {
             for item in items.find_all(&vary.items)? {

@@ -2,13 +2,13 @@
 //! greedy plan.
 
 use super::moves::{ClearingMove, ClearingMoves};
-use super::needs::TargetNeeds;
+use super::needs::RequiredFreePlaces;
 use super::partial_plan::PressPlan;
-use super::task::{AssemblyTask, STORAGE};
+use super::task::{DeliveryTask, STORAGE};
 
 impl PressPlan<'_> {
     /// All moves that can free the hands and places that the work on a target dish needs.
-    pub(super) fn moves(&self, wants: &TargetNeeds) -> ClearingMoves {
+    pub(super) fn moves(&self, wants: &RequiredFreePlaces) -> ClearingMoves {
         let mut moves = ClearingMoves::new();
         for agent in 0..2 {
             self.empty(wants, agent, &mut moves);
@@ -22,7 +22,7 @@ impl PressPlan<'_> {
     }
 
     /// Adds the moves that empty the hand of an agent.
-    fn empty(&self, wants: &TargetNeeds, agent: usize, moves: &mut ClearingMoves) {
+    fn empty(&self, wants: &RequiredFreePlaces, agent: usize, moves: &mut ClearingMoves) {
         let hand = self.ground.hands[agent];
         let wanted = wants.hand(agent);
         let Some((task, of)) = self.task_at(hand) else {
@@ -45,7 +45,7 @@ impl PressPlan<'_> {
     }
 
     /// Adds the moves that empty a place of the kitchen.
-    fn take_away(&self, wants: &TargetNeeds, from: usize, moves: &mut ClearingMoves) {
+    fn take_away(&self, wants: &RequiredFreePlaces, from: usize, moves: &mut ClearingMoves) {
         for hand in self.ground.hands.into_iter().filter(|&hand| self.state[hand] == 0) {
             let Some((task, _)) = self.task_at(from) else {
                 moves.add(ClearingMove::PickUp { from, hand });
@@ -60,8 +60,8 @@ impl PressPlan<'_> {
 
     /// Adds exchanges of items between two target dishes that need no additional presses.
     fn exchange(&self, moves: &mut ClearingMoves) {
-        let movable = |task: &AssemblyTask| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
-        let way = |task: &AssemblyTask, at: u8| self.goal.way(&self.state, task, at).0;
+        let movable = |task: &DeliveryTask| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
+        let way = |task: &DeliveryTask, at: u8| self.goal.way(&self.state, task, at).0;
         for (one, a) in self.tasks().filter(|(_, task)| movable(task)) {
             for (other, b) in self.tasks().filter(|(_, task)| movable(task) && task.target > a.target) {
                 let fit = self.goal.fits(&self.state, &a, b.at) && self.goal.fits(&self.state, &b, a.at);

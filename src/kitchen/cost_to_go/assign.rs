@@ -1,10 +1,10 @@
 //! Assigns the items in the kitchen to the parts of the dishes that are still to be served (target dishes).
 
-use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
-use super::demand::PressDemand;
+use super::classes::{CompactState, MAX_TARGETS, USELESS};
+use super::demand::TaskRequirements;
 use super::goal::{ItemValue, ServingGoal};
 use super::ground::KitchenTables;
-use super::task::{AssemblyTask, STORAGE};
+use super::task::{DeliveryTask, STORAGE};
 use crate::base::bits::ones;
 
 /// Largest number of tasks (items to bring to the board, complete stacks to serve) of all target dishes together.
@@ -14,7 +14,7 @@ pub const MAX_TASKS: usize = 16;
 #[derive(Clone, Copy, Debug)]
 pub struct Assignment {
     /// The tasks of the assignment; only the first [`Self::count`] are valid.
-    pub tasks: [AssemblyTask; MAX_TASKS],
+    pub tasks: [DeliveryTask; MAX_TASKS],
     /// Number of valid tasks in the assignment.
     pub count: usize,
     /// The target dishes in the order in which they will be served.
@@ -22,7 +22,7 @@ pub struct Assignment {
     /// Locations whose content the assignment uses, one bit each.
     used: u32,
     /// Requirements of all tasks, from which the lower bound of the cost to go follows.
-    pub demand: PressDemand,
+    pub demand: TaskRequirements,
 }
 
 impl Assignment {
@@ -36,15 +36,15 @@ impl Assignment {
     pub fn choose(
         ground: &KitchenTables,
         goal: &ServingGoal,
-        state: &ContentClasses,
+        state: &CompactState,
         order: [usize; MAX_TARGETS],
     ) -> Assignment {
         let mut choice = Assignment {
-            tasks: [AssemblyTask::default(); MAX_TASKS],
+            tasks: [DeliveryTask::default(); MAX_TASKS],
             count: 0,
             order,
             used: 0,
-            demand: PressDemand::default(),
+            demand: TaskRequirements::default(),
         };
         let mut useful = 0;
         for location in ground.places() {
@@ -61,13 +61,13 @@ impl Assignment {
         choice
     }
 
-    fn demanded(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> PressDemand {
-        PressDemand::from_tasks(ground, goal, state, self.tasks[..self.count].iter().copied())
+    fn demanded(&self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) -> TaskRequirements {
+        TaskRequirements::from_tasks(ground, goal, state, self.tasks[..self.count].iter().copied())
     }
 
     /// If both hands hold the same content and only one of the two is used: uses the content of the other hand instead,
     /// if fewer obstacles have to be cleared then.
-    fn change_hands(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
+    fn change_hands(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) {
         let [one, other] = ground.hands;
         let both = 1 << one | 1 << other;
         if state[one] != state[other] || !(self.used & both).is_power_of_two() {
@@ -89,7 +89,7 @@ impl Assignment {
         &mut self,
         ground: &KitchenTables,
         goal: &ServingGoal,
-        state: &ContentClasses,
+        state: &CompactState,
         target: usize,
         useful: u32,
     ) {
@@ -125,7 +125,7 @@ impl Assignment {
     }
 
     /// Exchanges items between two target dishes where an exchange saves presses.
-    fn exchange(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
+    fn exchange(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) {
         // Exchanges are possible only for items that both target dishes can use.
         let (mut stored, mut shared) = (0u32, 0u32);
         for (index, task) in self.tasks[..self.count].iter().enumerate().filter(|(_, task)| task.bits.count_ones() == 1)
@@ -143,8 +143,8 @@ impl Assignment {
         let is_first = (1 << of_first) - 1;
         let needs = |index: usize| usize::from(goal.way(state, &self.tasks[index], STORAGE).1);
         let wanted = ones(stored & is_first).fold(0, |wanted, index| wanted | needs(index)) & 3;
-        let fits = |task: &AssemblyTask, at: u8| goal.fits(state, task, at);
-        let presses = |task: &AssemblyTask, at: u8| u32::from(goal.way(state, task, at).0);
+        let fits = |task: &DeliveryTask, at: u8| goal.fits(state, task, at);
+        let presses = |task: &DeliveryTask, at: u8| u32::from(goal.way(state, task, at).0);
         // The hand that the first target dish needs should become free first; a stack on the board stays on the board.
         let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
         for first in ones((stored | shared) & is_first) {
@@ -165,7 +165,7 @@ impl Assignment {
 
     fn push(&mut self, target: usize, bits: u8, at: u8) {
         if self.count < MAX_TASKS {
-            self.tasks[self.count] = AssemblyTask { target: target as u8, bits, at };
+            self.tasks[self.count] = DeliveryTask { target: target as u8, bits, at };
             self.count += 1;
         }
         if at != STORAGE {
@@ -173,13 +173,7 @@ impl Assignment {
         }
     }
 
-    fn nearest_complete(
-        &self,
-        ground: &KitchenTables,
-        state: &ContentClasses,
-        class: u8,
-        useful: u32,
-    ) -> Option<usize> {
+    fn nearest_complete(&self, ground: &KitchenTables, state: &CompactState, class: u8, useful: u32) -> Option<usize> {
         let complete = ones(useful & !self.used).filter(|&location| state[location] == class);
         complete.min_by_key(|&location| ground.last_presses(location))
     }

@@ -1,7 +1,7 @@
 //! Executes a plan press by press: one target dish after another, clearing obstacles on the way.
 
-use super::classes::ContentClasses;
-use super::demand::PressDemand;
+use super::classes::CompactState;
+use super::demand::TaskRequirements;
 use super::partial_plan::{BLOCKED, PressPlan};
 
 /// Largest number of steps of a plan, as a guard against endless loops.
@@ -63,7 +63,7 @@ impl PressPlan<'_> {
     fn is_over(&self, limit: u32) -> bool {
         let rest = || {
             let tasks = self.tasks().map(|(_, task)| task);
-            PressDemand::from_tasks(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
+            TaskRequirements::from_tasks(self.ground, self.goal, &self.state, tasks).bound(self.ground, &self.state)
         };
         limit < BLOCKED && self.presses + rest() > limit
     }
@@ -71,7 +71,7 @@ impl PressPlan<'_> {
     /// Does the presses that are certainly optimal: serves a complete stack if the way is free, processes parts where
     /// they are, and brings the parts of the stack on the board as long as nothing is in the way. Returns the number of
     /// presses, the state after these presses, and the target dish that was served, if any.
-    pub fn settle(mut self) -> (u32, ContentClasses, Option<usize>) {
+    pub fn settle(mut self) -> (u32, CompactState, Option<usize>) {
         let order = self.choice.order;
         loop {
             for &target in &order[..self.goal.targets.len()] {
@@ -88,7 +88,7 @@ impl PressPlan<'_> {
 
     /// Commits the board to a target dish: returns number of presses and state after the dish's first part was brought
     /// there.
-    pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
+    pub fn begin(mut self, target: usize) -> Option<(u32, CompactState)> {
         let begins = self.begun().is_none() && self.bring_part(target);
         begins.then_some((self.presses, self.state))
     }

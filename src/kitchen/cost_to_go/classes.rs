@@ -8,4 +8,4 @@ pub const MAX_TARGETS: usize = 2;
 pub const USELESS: u8 = 1;
 
 /// A state in compact form: for every physical location, by index, the class of its content.
-pub type ContentClasses = [u8; 16];
+pub type CompactState = [u8; 16];

@@ -1,13 +1,13 @@
 //! The greedy choice of a move that clears an obstacle: throw the obstacle away, pick it up, or put it aside.
 
 use super::moves::ClearingMove;
-use super::needs::TargetNeeds;
+use super::needs::RequiredFreePlaces;
 use super::partial_plan::PressPlan;
 
 impl PressPlan<'_> {
     /// Clears an obstacle to the work on a target dish by the move that is usually best (one or two presses); returns
     /// whether there is such a move.
-    pub(super) fn clear(&mut self, wants: &TargetNeeds) -> bool {
+    pub(super) fn clear(&mut self, wants: &RequiredFreePlaces) -> bool {
         let best = self
             .put_down(wants)
             .or_else(|| self.throw_away(wants))
@@ -21,7 +21,7 @@ impl PressPlan<'_> {
     }
 
     /// Puts down the content of a hand that has to be free, at a place on the content's way to the board.
-    fn put_down(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
+    fn put_down(&self, wants: &RequiredFreePlaces) -> Option<ClearingMove> {
         let wanted = (0..2).filter(|&agent| wants.hand(agent));
         wanted.into_iter().find_map(|agent| {
             let (task, _) = self.task_at(self.ground.hands[agent])?;
@@ -33,7 +33,7 @@ impl PressPlan<'_> {
     }
 
     /// Throws away a useless content of a hand that has to be free, or of one of two full hands.
-    fn throw_away(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
+    fn throw_away(&self, wants: &RequiredFreePlaces) -> Option<ClearingMove> {
         let hands = self.ground.hands;
         let useless = |agent: usize| self.state[hands[agent]] != 0 && self.task_at(hands[agent]).is_none();
         let needed = (0..2).find(|&agent| wants.needs & (1 << agent) != 0 && useless(agent));
@@ -44,7 +44,7 @@ impl PressPlan<'_> {
     }
 
     /// Removes a content that blocks the parts of the target dish, if a hand is free.
-    fn empty_place(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
+    fn empty_place(&self, wants: &RequiredFreePlaces) -> Option<ClearingMove> {
         let ground = self.ground;
         let [human, robot] = ground.hands;
         let hand = match (self.state[human] == 0, self.state[robot] == 0) {
@@ -69,7 +69,7 @@ impl PressPlan<'_> {
 
     /// Moves a part out of the way: along the part's own way, into a hand, or to another place; returns the additional
     /// presses and the move.
-    fn put_aside(&self, wants: &TargetNeeds, task: usize, hand: usize) -> Option<(u32, ClearingMove)> {
+    fn put_aside(&self, wants: &RequiredFreePlaces, task: usize, hand: usize) -> Option<(u32, ClearingMove)> {
         let of = self.choice.tasks[task];
         let from = usize::from(of.at);
         // A part of the present target dish on the board that cannot stay there would otherwise come back at once.
@@ -87,7 +87,7 @@ impl PressPlan<'_> {
     }
 
     /// Removes a content from the place to which the item in a needed hand has to go.
-    fn make_way(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
+    fn make_way(&self, wants: &RequiredFreePlaces) -> Option<ClearingMove> {
         let ground = self.ground;
         let needed = (0..2).filter(|&agent| !wants.hands_full && wants.needs & (1 << agent) != 0);
         needed.into_iter().find_map(|agent| {
@@ -105,7 +105,7 @@ impl PressPlan<'_> {
     }
 
     /// Puts down the content of a hand that has to be free, or throws the content away if there is no place for it.
-    fn empty_hand(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
+    fn empty_hand(&self, wants: &RequiredFreePlaces) -> Option<ClearingMove> {
         let mut best: Option<(u32, ClearingMove)> = None;
         let mut consider = |rest: u32, made: ClearingMove| {
             if best.is_none_or(|(least, _)| rest < least) {

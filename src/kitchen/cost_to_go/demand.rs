@@ -1,15 +1,15 @@
 //! The lower bound of the cost to go: least number of presses for a set of tasks, from the items' journeys to the board
 //! and from clearing obstacles.
 
-use super::classes::ContentClasses;
+use super::classes::CompactState;
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::journeys::JourneyNeeds;
-use super::task::{AssemblyTask, STORAGE};
+use super::task::{DeliveryTask, STORAGE};
 
 /// Requirements of a set of tasks: presses, places and target dishes.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PressDemand {
+pub struct TaskRequirements {
     /// Number of presses that the tasks would take without obstacles.
     presses: u32,
     /// Bit set of the locations whose content the tasks use.
@@ -24,15 +24,15 @@ pub struct PressDemand {
     is_busy: bool,
 }
 
-impl PressDemand {
+impl TaskRequirements {
     /// The requirements of these tasks, with the tasks' items at their present places.
     pub fn from_tasks(
         ground: &KitchenTables,
         goal: &ServingGoal,
-        state: &ContentClasses,
-        tasks: impl Iterator<Item = AssemblyTask>,
-    ) -> PressDemand {
-        let mut demand = PressDemand::default();
+        state: &CompactState,
+        tasks: impl Iterator<Item = DeliveryTask>,
+    ) -> TaskRequirements {
+        let mut demand = TaskRequirements::default();
         for task in tasks {
             let (target, at) = (usize::from(task.target), usize::from(task.at));
             if task.at != STORAGE {
@@ -66,7 +66,7 @@ impl PressDemand {
     }
 
     /// Lower bound of the number of presses: presses of the journeys plus presses for clearing obstacles.
-    pub fn bound(&self, ground: &KitchenTables, state: &ContentClasses) -> u32 {
+    pub fn bound(&self, ground: &KitchenTables, state: &CompactState) -> u32 {
         let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
         let mut in_the_way = 0;
         // Every useless content of a hand has to be thrown away, except in a hand that is not needed any more.

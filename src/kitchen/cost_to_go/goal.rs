@@ -5,10 +5,10 @@
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
 
-use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
+use super::classes::{CompactState, MAX_TARGETS, USELESS};
 use super::ground::KitchenTables;
 use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
-use super::task::{AssemblyTask, STORAGE};
+use super::task::{DeliveryTask, STORAGE};
 
 /// Value of an item at its place for one target dish, packed into one number so that the maximum of many values is
 /// found without branches: a larger gain is better, ties go to the first location.
@@ -164,7 +164,7 @@ impl ServingGoal {
 
     /// Number of presses of a task if its item is at location `at`, and free hands and places required for that.
     #[inline]
-    pub fn way(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> (u8, JourneyNeeds) {
+    pub fn way(&self, state: &CompactState, task: &DeliveryTask, at: u8) -> (u8, JourneyNeeds) {
         let target = usize::from(task.target);
         if at == STORAGE {
             return self.fresh[target][task.bits.trailing_zeros() as usize];
@@ -182,13 +182,13 @@ impl ServingGoal {
 
     /// Whether the content at location `at` is the item of a task or can become that item.
     #[inline]
-    pub fn fits(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> bool {
+    pub fn fits(&self, state: &CompactState, task: &DeliveryTask, at: u8) -> bool {
         at == STORAGE || self.fills[usize::from(task.target)][usize::from(state[usize::from(at)])] == task.bits
     }
 
     /// Whether a task's item is on the board in its final (processed) form.
     #[inline]
-    pub fn is_ready(&self, ground: &KitchenTables, state: &ContentClasses, task: &AssemblyTask) -> bool {
+    pub fn is_ready(&self, ground: &KitchenTables, state: &CompactState, task: &DeliveryTask) -> bool {
         let at = usize::from(task.at);
         at == ground.board && self.ready[usize::from(task.target)][usize::from(state[at])] == task.bits
     }
@@ -280,7 +280,7 @@ impl ServingGoal {
 
     /// Cache key of a state that is given by classes of contents.
     #[inline]
-    pub fn key_of_classes(&self, state: &ContentClasses) -> u64 {
+    pub fn key_of_classes(&self, state: &CompactState) -> u64 {
         let rows = self.key_by_class.chunks_exact(self.content.len());
         rows.zip(&state[self.first..self.last]).map(|(parts, &class)| parts[usize::from(class)]).sum()
     }

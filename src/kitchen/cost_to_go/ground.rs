@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId};
 
-use super::classes::ContentClasses;
+use super::classes::CompactState;
 use super::journeys::{FreeMask, JourneyTables};
 
 /// Tables of one kitchen for the cost to go that hold for all goals.
@@ -113,7 +113,7 @@ impl KitchenTables {
 
     /// Bit mask of the free hands and places in a state.
     #[inline]
-    pub fn free(&self, state: &ContentClasses) -> FreeMask {
+    pub fn free(&self, state: &CompactState) -> FreeMask {
         let mut free = 0;
         for location in self.places() {
             if state[location] == 0 {

@@ -6,7 +6,7 @@ use super::partial_plan::PressPlan;
 
 /// Hands and places that the work on a target dish requires.
 #[derive(Clone, Copy, Debug)]
-pub struct TargetNeeds {
+pub struct RequiredFreePlaces {
     /// The index of the target dish.
     pub target: usize,
     /// Whether parts of the target dish still have to be brought to the board.
@@ -19,7 +19,7 @@ pub struct TargetNeeds {
     pub hands_full: bool,
 }
 
-impl TargetNeeds {
+impl RequiredFreePlaces {
     /// Whether the hand of this agent should be empty for the work on the target dish.
     pub fn hand(&self, agent: usize) -> bool {
         self.hands_full || self.needs & (1 << agent) != 0
@@ -28,7 +28,7 @@ impl TargetNeeds {
 
 impl PressPlan<'_> {
     /// The present requirements of the work on a target dish: hands, places, and whether parts are missing.
-    pub(super) fn wants(&self, target: usize) -> TargetNeeds {
+    pub(super) fn wants(&self, target: usize) -> RequiredFreePlaces {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
         let assembling = of_target().any(|(_, task)| task.bits != complete && !self.is_ready(&task));
@@ -36,11 +36,11 @@ impl PressPlan<'_> {
         let needs = needs.fold(0, |needs, (_, task)| needs | self.needs(&task));
         let later = self.tasks().fold(needs, |needs, (_, task)| needs | self.needs(&task));
         let hands_full = self.ground.hands.iter().all(|&hand| self.state[hand] != 0);
-        TargetNeeds { target, assembling, needs, later, hands_full }
+        RequiredFreePlaces { target, assembling, needs, later, hands_full }
     }
 
     /// Whether the content of a location blocks the parts of the target dish.
-    pub(super) fn blocks(&self, wants: &TargetNeeds, location: usize) -> bool {
+    pub(super) fn blocks(&self, wants: &RequiredFreePlaces, location: usize) -> bool {
         let ground = self.ground;
         match location {
             _ if self.state[location] == 0 => false,

@@ -2,11 +2,11 @@
 //! these items.
 
 use super::assign::Assignment;
-use super::classes::ContentClasses;
+use super::classes::CompactState;
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::journeys::{FreeMask, NEVER};
-use super::task::{AssemblyTask, STORAGE};
+use super::task::{DeliveryTask, STORAGE};
 
 /// Length, in presses, that stands for a plan that cannot be completed.
 pub const BLOCKED: u32 = 1000;
@@ -15,7 +15,7 @@ pub const BLOCKED: u32 = 1000;
 pub struct PressPlan<'a> {
     pub(super) ground: &'a KitchenTables,
     pub(super) goal: &'a ServingGoal,
-    pub(super) state: ContentClasses,
+    pub(super) state: CompactState,
     pub(super) choice: Assignment,
     /// Bit set of the tasks that remain in the plan.
     pub(super) open: u32,
@@ -30,7 +30,7 @@ impl<'a> PressPlan<'a> {
     pub fn new(
         ground: &'a KitchenTables,
         goal: &'a ServingGoal,
-        state: &ContentClasses,
+        state: &CompactState,
         choice: &Assignment,
     ) -> PressPlan<'a> {
         PressPlan { ground, goal, state: *state, choice: *choice, open: choice.all(), presses: 0, served: 0, steps: 0 }
@@ -62,7 +62,7 @@ impl<'a> PressPlan<'a> {
     }
 
     #[inline]
-    pub(super) fn tasks(&self) -> impl Iterator<Item = (usize, AssemblyTask)> + '_ {
+    pub(super) fn tasks(&self) -> impl Iterator<Item = (usize, DeliveryTask)> + '_ {
         let mut open = self.open;
         std::iter::from_fn(move || {
             let index = open.trailing_zeros() as usize;
@@ -72,7 +72,7 @@ impl<'a> PressPlan<'a> {
     }
 
     /// The first remaining task of a target dish.
-    fn first_of(&self, target: usize) -> Option<(usize, AssemblyTask)> {
+    fn first_of(&self, target: usize) -> Option<(usize, DeliveryTask)> {
         self.tasks().find(|(_, task)| usize::from(task.target) == target)
     }
 
@@ -101,7 +101,7 @@ impl<'a> PressPlan<'a> {
     }
 
     /// Whether a task's item is on the board in its final (processed) form.
-    pub(super) fn is_ready(&self, task: &AssemblyTask) -> bool {
+    pub(super) fn is_ready(&self, task: &DeliveryTask) -> bool {
         self.goal.is_ready(self.ground, &self.state, task)
     }
 
@@ -111,7 +111,7 @@ impl<'a> PressPlan<'a> {
         if self.state[board] == 0 {
             return true;
         }
-        let ours = |(_, task): (usize, AssemblyTask)| usize::from(task.target) == target && self.is_ready(&task);
+        let ours = |(_, task): (usize, DeliveryTask)| usize::from(task.target) == target && self.is_ready(&task);
         self.tasks().any(ours)
     }
 
@@ -195,12 +195,12 @@ impl<'a> PressPlan<'a> {
                 index
             }
         };
-        self.choice.tasks[keep] = AssemblyTask { target: target as u8, bits, at: board as u8 };
+        self.choice.tasks[keep] = DeliveryTask { target: target as u8, bits, at: board as u8 };
         self.state[board] = self.goal.part_class[target][usize::from(bits)];
     }
 
     /// Number of presses of a task while the hands and places of this mask are free.
-    pub(super) fn bring(&self, task: &AssemblyTask, free: FreeMask) -> u8 {
+    pub(super) fn bring(&self, task: &DeliveryTask, free: FreeMask) -> u8 {
         let (ground, goal) = (self.ground, self.goal);
         let target = usize::from(task.target);
         if task.bits.count_ones() > 1 {
@@ -220,17 +220,17 @@ impl<'a> PressPlan<'a> {
     }
 
     /// Number of presses of a task if there were no obstacles.
-    pub(super) fn least(&self, task: &AssemblyTask) -> u32 {
+    pub(super) fn least(&self, task: &DeliveryTask) -> u32 {
         u32::from(self.goal.way(&self.state, task, task.at).0)
     }
 
     /// Mask of free hands and places that the rest of a task requires.
-    pub(super) fn needs(&self, task: &AssemblyTask) -> FreeMask {
+    pub(super) fn needs(&self, task: &DeliveryTask) -> FreeMask {
         usize::from(self.goal.way(&self.state, task, task.at).1)
     }
 
     /// The task whose item is at this location; `None` if there is none.
-    pub(super) fn task_at(&self, location: usize) -> Option<(usize, AssemblyTask)> {
+    pub(super) fn task_at(&self, location: usize) -> Option<(usize, DeliveryTask)> {
         self.tasks().find(|(_, task)| usize::from(task.at) == location)
     }
 

@@ -1,38 +1,38 @@
 //! Lower and upper bound of a state's cost to go, computed without a search.
 
 use super::assign::Assignment;
-use super::classes::{ContentClasses, MAX_TARGETS};
+use super::classes::{CompactState, MAX_TARGETS};
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::partial_plan::{BLOCKED, PressPlan};
 
 /// The assignments of items for both serving orders, the one with the smaller lower bound of the cost to go first.
-pub struct CostToGoBounds {
+pub struct RankedAssignments {
     choices: [Assignment; 2],
     count: usize,
     /// The lower bound of the cost to go, in presses.
     pub lower: u32,
 }
 
-impl CostToGoBounds {
+impl RankedAssignments {
     /// The assignments of items in this state, and the lower bound of the cost to go that follows from the assignments.
-    pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> CostToGoBounds {
+    pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) -> RankedAssignments {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
         if !order_counts(goal, state) {
             let count = if goal.targets_differ() { 2 } else { 1 };
-            return CostToGoBounds { choices: [forwards, forwards.reversed()], count, lower };
+            return RankedAssignments { choices: [forwards, forwards.reversed()], count, lower };
         }
         let backwards = Assignment::choose(ground, goal, state, [1, 0]);
         let other = backwards.demand.bound(ground, state);
         match lower <= other {
-            true => CostToGoBounds { choices: [forwards, backwards], count: 2, lower },
-            false => CostToGoBounds { choices: [backwards, forwards], count: 2, lower: other },
+            true => RankedAssignments { choices: [forwards, backwards], count: 2, lower },
+            false => RankedAssignments { choices: [backwards, forwards], count: 2, lower: other },
         }
     }
 
     /// The lower bound of the cost to go alone, without the assignments.
-    pub fn bound(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
+    pub fn bound(ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) -> u32 {
         let of_order = |order| Assignment::choose(ground, goal, state, order).demand.bound(ground, state);
         let forwards = of_order([0, 1]);
         if order_counts(goal, state) { forwards.min(of_order([1, 0])) } else { forwards }
@@ -59,13 +59,13 @@ impl CostToGoBounds {
     }
 
     /// Length of the best plan in presses; [`BLOCKED`] if no plan ends within `most` presses.
-    pub fn upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses, most: u32) -> u32 {
+    pub fn upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState, most: u32) -> u32 {
         self.best_plan(ground, goal, state, most, false)
     }
 
     /// Length of the best plan in presses, where plans that do not reach the lower bound are tried again with one
     /// deviation (discrepancy) from the greedy choice.
-    pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
+    pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) -> u32 {
         let upper = self.upper(ground, goal, state, BLOCKED);
         if upper <= self.lower {
             return upper;
@@ -77,7 +77,7 @@ impl CostToGoBounds {
         &self,
         ground: &KitchenTables,
         goal: &ServingGoal,
-        state: &ContentClasses,
+        state: &CompactState,
         most: u32,
         second_thought: bool,
     ) -> u32 {
@@ -98,6 +98,6 @@ impl CostToGoBounds {
 }
 
 /// Whether the order in which the target dishes choose their items can matter.
-fn order_counts(goal: &ServingGoal, state: &ContentClasses) -> bool {
+fn order_counts(goal: &ServingGoal, state: &CompactState) -> bool {
     goal.targets_differ() && state.iter().any(|&class| goal.is_shared[usize::from(class)])
 }

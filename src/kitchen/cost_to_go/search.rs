@@ -6,11 +6,11 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::classes::ContentClasses;
+use super::classes::CompactState;
 use super::fidelity::Fidelity;
 use super::goal::ServingGoal;
 use super::partial_plan::{BLOCKED, PressPlan};
-use super::rating::CostToGoBounds;
+use super::rating::RankedAssignments;
 use super::store::{CostToGo, UNREACHABLE};
 use super::successors::successors;
 use crate::kitchen::{ContentId, State};
@@ -49,7 +49,7 @@ struct Open {
     met: usize,
     /// Number of presses from the search's start state to this state.
     presses: u32,
-    state: ContentClasses,
+    state: CompactState,
 }
 
 impl Open {
@@ -102,7 +102,7 @@ impl<'a> BestFirstSearch<'a> {
         costs: &'a mut CostToGo,
         slot: usize,
         goal: &'a ServingGoal,
-        start: &ContentClasses,
+        start: &CompactState,
         lower: u32,
         best: u32,
         reach: SearchLimits,
@@ -115,7 +115,7 @@ impl<'a> BestFirstSearch<'a> {
         costs: &'a mut CostToGo,
         slot: usize,
         goal: &'a ServingGoal,
-        start: &ContentClasses,
+        start: &CompactState,
         limit: u32,
         reach: SearchLimits,
     ) -> bool {
@@ -135,8 +135,8 @@ impl<'a> BestFirstSearch<'a> {
     }
 
     /// Runs the search, which stops once a solution reaches `lower`; returns the best solution's length.
-    fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
-        let rating = CostToGoBounds::new(&self.costs.ground, self.goal, start);
+    fn best(mut self, start: &CompactState, lower: u32) -> u32 {
+        let rating = RankedAssignments::new(&self.costs.ground, self.goal, start);
         self.fidelity(start, rating, 0, lower);
         // The presses that a plan settles first are nearly always right: therefore the start state itself is expanded
         // last among states with equal bounds.
@@ -147,7 +147,7 @@ impl<'a> BestFirstSearch<'a> {
                 break;
             }
             if next.gap == UNSEEN {
-                let rating = CostToGoBounds::new(&self.costs.ground, self.goal, &next.state);
+                let rating = RankedAssignments::new(&self.costs.ground, self.goal, &next.state);
                 self.fidelity(&next.state, rating, next.presses, next.bound);
                 continue;
             }
@@ -157,14 +157,14 @@ impl<'a> BestFirstSearch<'a> {
         self.best
     }
 
-    fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &ContentClasses) {
+    fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &CompactState) {
         self.met += 1;
         self.open.push(Open { bound, gap, met: self.met, presses, state: *state });
     }
 
     fn expand(&mut self, open: &Open) {
         let goal = self.goal;
-        let rating = CostToGoBounds::new(&self.costs.ground, goal, &open.state);
+        let rating = RankedAssignments::new(&self.costs.ground, goal, &open.state);
         if goal.targets.len() > 1 {
             for choice in rating.choices() {
                 let plan = PressPlan::new(&self.costs.ground, goal, &open.state, choice);
@@ -194,14 +194,14 @@ impl<'a> BestFirstSearch<'a> {
     }
 
     /// Handles a state that the search reaches after `presses` presses.
-    fn meet(&mut self, state: &ContentClasses, presses: u32, bound: u32) {
+    fn meet(&mut self, state: &CompactState, presses: u32, bound: u32) {
         let key = self.costs.key(self.slot, self.goal, state);
         if !self.is_new(key, presses) {
             return;
         }
         let (known, mut rating) = (self.costs.known(Fidelity::LowerBound, key), None);
         let lower = known.unwrap_or_else(|| {
-            let new = CostToGoBounds::new(&self.costs.ground, self.goal, state);
+            let new = RankedAssignments::new(&self.costs.ground, self.goal, state);
             let lower = new.lower;
             rating = Some(new);
             self.costs.keep(Fidelity::LowerBound, key, lower)
@@ -214,12 +214,12 @@ impl<'a> BestFirstSearch<'a> {
         if lower > bound {
             return self.keep(lower, UNSEEN, presses, state);
         }
-        let rating = rating.unwrap_or_else(|| CostToGoBounds::new(&self.costs.ground, self.goal, state));
+        let rating = rating.unwrap_or_else(|| RankedAssignments::new(&self.costs.ground, self.goal, state));
         self.fidelity(state, rating, presses, bound);
     }
 
     /// Computes the plan of a state, from the state after all presses that are certainly optimal.
-    fn fidelity(&mut self, state: &ContentClasses, mut rating: CostToGoBounds, presses: u32, bound: u32) {
+    fn fidelity(&mut self, state: &CompactState, mut rating: RankedAssignments, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
         let (settling, settled, served) = plan.settle();
@@ -234,7 +234,7 @@ impl<'a> BestFirstSearch<'a> {
             if !self.is_new(key, presses) {
                 return;
             }
-            rating = CostToGoBounds::new(&self.costs.ground, goal, &settled);
+            rating = RankedAssignments::new(&self.costs.ground, goal, &settled);
         }
         if presses + rating.lower >= self.best {
             return;
@@ -258,23 +258,16 @@ impl CostToGo {
         self.compute(fidelity, key, slot, &goal, &classes)
     }
 
-    fn compute(
-        &mut self,
-        fidelity: Fidelity,
-        key: u64,
-        slot: usize,
-        goal: &ServingGoal,
-        state: &ContentClasses,
-    ) -> u32 {
+    fn compute(&mut self, fidelity: Fidelity, key: u64, slot: usize, goal: &ServingGoal, state: &CompactState) -> u32 {
         let value = self.solve(fidelity, slot, goal, state);
         self.keep(fidelity, key, value)
     }
 
-    pub(super) fn solve(&mut self, fidelity: Fidelity, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
+    pub(super) fn solve(&mut self, fidelity: Fidelity, slot: usize, goal: &ServingGoal, state: &CompactState) -> u32 {
         if fidelity == Fidelity::LowerBound {
-            return CostToGoBounds::bound(&self.ground, goal, state);
+            return RankedAssignments::bound(&self.ground, goal, state);
         }
-        let rating = CostToGoBounds::new(&self.ground, goal, state);
+        let rating = RankedAssignments::new(&self.ground, goal, state);
         let upper = rating.close_upper(&self.ground, goal, state);
         if upper <= rating.lower || fidelity == Fidelity::PlanBound && upper < BLOCKED {
             return upper;
@@ -289,7 +282,7 @@ impl CostToGo {
     }
 
     /// Cost to go of a state after one of its target dishes has been served.
-    fn without(&mut self, goal: &ServingGoal, state: &ContentClasses, served: usize) -> u32 {
+    fn without(&mut self, goal: &ServingGoal, state: &CompactState, served: usize) -> u32 {
         let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
         let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
         if rest.is_empty() {
@@ -298,7 +291,7 @@ impl CostToGo {
         let slot = self.slot(&rest);
         self.make_goal(slot, &rest);
         let Some(rest) = self.goals[slot].clone() else { return UNREACHABLE };
-        let mut classes: ContentClasses = [0; 16];
+        let mut classes: CompactState = [0; 16];
         for location in self.ground.places() {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
         }

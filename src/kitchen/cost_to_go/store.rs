@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::cache::{DecisionCache, KIND_BITS, ValueCache};
-use super::classes::{ContentClasses, MAX_TARGETS};
+use super::classes::{CompactState, MAX_TARGETS};
 use super::fidelity::Fidelity;
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
@@ -122,7 +122,7 @@ impl CostToGo {
     }
 
     /// Cache key of a state's exact cost to go.
-    pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u64 {
+    pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &CompactState) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
     }
 
@@ -139,8 +139,8 @@ impl CostToGo {
         }
     }
 
-    pub(super) fn classes(&self, goal: &ServingGoal, state: State) -> ContentClasses {
-        let mut classes: ContentClasses = [0; 16];
+    pub(super) fn classes(&self, goal: &ServingGoal, state: State) -> CompactState {
+        let mut classes: CompactState = [0; 16];
         for location in self.ground.places() {
             classes[location] = goal.class_of[state.content(LocationId(location as u8)).index()];
         }

@@ -2,7 +2,7 @@
 
 use crate::kitchen::{Agent, ButtonAction};
 
-use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
+use super::classes::{CompactState, MAX_TARGETS, USELESS};
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 
@@ -11,9 +11,9 @@ use super::ground::KitchenTables;
 pub fn successors(
     ground: &KitchenTables,
     goal: &ServingGoal,
-    state: &ContentClasses,
+    state: &CompactState,
     wanted: [u8; MAX_TARGETS],
-    mut visit: impl FnMut(ContentClasses),
+    mut visit: impl FnMut(CompactState),
 ) {
     let is_wanted =
         |class: u8| (0..goal.targets.len()).any(|target| goal.fills[target][usize::from(class)] & wanted[target] != 0);

@@ -5,7 +5,7 @@ pub const STORAGE: u8 = u8::MAX;
 
 /// A task: an item to bring to the board, or a complete stack to serve.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct AssemblyTask {
+pub struct DeliveryTask {
     /// The index of the target dish for which the task is done.
     pub target: u8,
     /// Bit set of the target dish's items that the task provides; all bits for a complete stack.

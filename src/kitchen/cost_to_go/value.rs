@@ -3,7 +3,7 @@
 
 use super::fidelity::Fidelity;
 use super::partial_plan::BLOCKED;
-use super::rating::CostToGoBounds;
+use super::rating::RankedAssignments;
 use super::search::{BestFirstSearch, FAR, NEAR};
 use super::store::{CacheSlot, CostToGo, UNREACHABLE};
 use crate::kitchen::{ContentId, LocationId, OrderContent, Recipes, State};
@@ -86,7 +86,7 @@ impl CostToGo {
         }
         let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
         let classes = self.classes(&goal, state);
-        let rating = CostToGoBounds::new(&self.ground, &goal, &classes);
+        let rating = RankedAssignments::new(&self.ground, &goal, &classes);
         let lower = known.unwrap_or_else(|| self.keep(Fidelity::LowerBound, key, rating.lower));
         if lower > most {
             return (lower, None);

@@ -19,7 +19,7 @@ use crate::mind::model::InferenceSettings;
 use super::distinct::DistinctWorlds;
 use super::evidence_model::EvidenceModel;
 use super::human_act::HumanAction;
-use super::look_news::{SampledLooks, UnseenLooks, ValueSeenByLook};
+use super::look_news::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
 use super::moments::MixtureMoments;
 use super::urn::PolyaUrn;
 
@@ -74,7 +74,7 @@ pub struct BeliefSampler {
     /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
-    pub(super) looks: Vec<SampledLooks>,
+    pub(super) looks: Vec<SampleLookEffects>,
     pub(super) news: Vec<ValueSeenByLook>,
     /// Sums of probabilities for systematic sampling of readings: by location, and last for the signal.
     pub(super) read_sums: Vec<f64>,

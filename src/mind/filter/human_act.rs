@@ -5,7 +5,7 @@ use crate::kitchen::ButtonId;
 /// The likelihood of a press: p(a | belief) = `proposed` + `chosen` p(choice = a | belief). A press that the display
 /// proposes may be made because of the proposal, which is equally likely under any belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PressMixture {
+pub struct ProposalMixture {
     /// The button that the human pressed.
     pub button: ButtonId,
     /// Probability that the human presses the button because the display proposes it.
@@ -14,15 +14,15 @@ pub struct PressMixture {
     pub chosen: f64,
 }
 
-impl PressMixture {
+impl ProposalMixture {
     /// A press of `button` while the display proposes `proposed`, by a human who makes proposed presses with the
     /// probability `follows`.
-    pub fn new(button: ButtonId, proposed: Option<ButtonId>, follows: f64) -> PressMixture {
+    pub fn new(button: ButtonId, proposed: Option<ButtonId>, follows: f64) -> ProposalMixture {
         match proposed {
-            None => PressMixture { button, proposed: 0.0, chosen: 1.0 },
+            None => ProposalMixture { button, proposed: 0.0, chosen: 1.0 },
             Some(other) => {
                 let proposed = if other == button { follows } else { 0.0 };
-                PressMixture { button, proposed, chosen: 1.0 - follows }
+                ProposalMixture { button, proposed, chosen: 1.0 - follows }
             }
         }
     }
@@ -38,7 +38,7 @@ impl PressMixture {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HumanAction {
     /// The human presses a button. Likelihood: that of the mixture, times 1 - p(wait | b) where waiting is evidence.
-    Presses(PressMixture),
+    Presses(ProposalMixture),
     /// The human has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of
     /// the human's intervals between presses that are longer: the human still thinks, or has decided to wait.
     Waits {

@@ -11,12 +11,12 @@ pub struct UnseenLooks<'a> {
     /// By location, the distribution of the value that a look reads; empty where nothing can be read.
     pub readings: Vec<&'a [f64]>,
     /// The signal on the display, if it may have been read unseen by the tracker.
-    pub signal: Option<UnseenSignal>,
+    pub signal: Option<PossiblyReadSignal>,
 }
 
 /// A signal that the participant may have read while the gaze was unknown.
 #[derive(Clone, Debug)]
-pub struct UnseenSignal {
+pub struct PossiblyReadSignal {
     /// Probability that the signal was read.
     pub chance: f64,
     /// Index of each state aspect that the signal tells, with the distribution of the value that it is taken for.
@@ -25,7 +25,7 @@ pub struct UnseenSignal {
 
 /// What a belief sample has learned from looks at times of unknown gaze.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SampledLooks {
+pub struct SampleLookEffects {
     /// Bit set of the state aspects whose value differs from the sample's draws.
     pub changed: u32,
     /// Range of the sample's entries in `BeliefSampler::news`.

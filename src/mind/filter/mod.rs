@@ -27,7 +27,7 @@ use std::sync::Arc;
 
 use super::choice::ChoiceModel;
 use super::dirichlet::DirichletBelief;
-use super::gaze_presence::GazeAvailability;
+use super::gaze_presence::UnknownGazeTimer;
 use super::lapse_posterior::LapsePosterior;
 use super::model::{HumanModel, LookingModel};
 use super::observation::{Observation, ObservedEvidence, ProposedPresses};
@@ -40,7 +40,7 @@ use evidence::BeliefSampler;
 pub use evidence::PressEvidence;
 use evidence_model::EvidenceModel;
 use exchange::ExchangeUpdate;
-use human_act::{HumanAction, PressMixture};
+use human_act::{HumanAction, ProposalMixture};
 use look_news::UnseenLooks;
 use perception::GazeBeliefUpdate;
 use serving::ServingUpdate;
@@ -66,7 +66,7 @@ pub struct BeliefFilter {
     /// The prior distribution to which beliefs about recipes decay.
     prior: DirichletBelief,
     reader: GazeBeliefUpdate,
-    presence: GazeAvailability,
+    presence: UnknownGazeTimer,
     /// The probability that the next press needs each location, once it has been computed after the last event.
     needs: Option<Vec<f64>>,
     /// Time of unknown gaze since the last event or known gaze, if there was any.
@@ -107,7 +107,7 @@ impl BeliefFilter {
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {
             reader: GazeBeliefUpdate::new(&kitchen, &model.perception),
-            presence: GazeAvailability::new(&model),
+            presence: UnknownGazeTimer::new(&model),
             needs: None,
             stretch: None,
             watched: unknown_gaze::watched(&kitchen),
@@ -334,7 +334,7 @@ impl BeliefFilter {
     }
 
     /// Updates the estimate by the likelihood of a press, with the possible looks at unknown gaze before the press.
-    fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> PressEvidence {
+    fn weigh_press(&mut self, press: ProposalMixture, cost: &mut CostToGo, random: &mut Stream) -> PressEvidence {
         let stretch = self.stretch.take();
         let signal = stretch.as_ref().and_then(|stretch| self.unseen_signal(stretch.signal_hazard));
         let has_signal = signal.is_some();
@@ -390,7 +390,7 @@ impl BeliefFilter {
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
-        let press = PressMixture::new(button, self.proposed.next(), self.model.signal.follows);
+        let press = ProposalMixture::new(button, self.proposed.next(), self.model.signal.follows);
         self.proposed.pressed(button);
         self.evidence = Some(self.weigh_press(press, cost, random));
         let draws = self.model.inference.beliefs;

@@ -15,7 +15,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::model::{PerceptionModel, ReadingRate};
+use crate::mind::model::{LocationReadingRate, PerceptionModel};
 
 /// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
@@ -50,7 +50,7 @@ impl Look {
 pub struct GazeBeliefUpdate {
     /// Confusion matrix of each location: for each true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
-    rate: ReadingRate,
+    rate: LocationReadingRate,
     looks: Vec<Look>,
     /// Recent states of the display, each with the session time at which the state appeared.
     shown: VecDeque<(SessionTime, State)>,

@@ -16,10 +16,10 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, LocationId, LocationKind, OrderContent};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::HumanModel;
-use crate::mind::signal_model::SignalForecast;
+use crate::mind::signal_model::SignalReadingForecast;
 
 use super::BeliefFilter;
-use super::look_news::UnseenSignal;
+use super::look_news::PossiblyReadSignal;
 use super::perception::NEGLIGIBLE;
 use super::signals_so_far::{EndedSignal, SignalOnDisplay};
 
@@ -30,14 +30,14 @@ impl BeliefFilter {
     }
 
     /// The forecast of how a signal that is shown now will be read.
-    pub fn forecast(&self) -> SignalForecast {
+    pub fn forecast(&self) -> SignalReadingForecast {
         let model = &self.model.signal;
         if !model.takes_time() {
-            return SignalForecast::default();
+            return SignalReadingForecast::default();
         }
         let understood = |kind| (1.0 - model.misread) * self.signals.noticed(model, kind);
         let (recipe, highlight) = (understood(LocationKind::Order), understood(LocationKind::Place));
-        SignalForecast { recipe, highlight, delay_s: model.delay_s }
+        SignalReadingForecast { recipe, highlight, delay_s: model.delay_s }
     }
 
     /// An estimate in which the signal on the display has been read as far as is to be expected: the same advice must
@@ -120,7 +120,7 @@ impl BeliefFilter {
     }
 
     /// The signal on the display as a belief sample may have read it in unknown time with this hazard.
-    pub(super) fn unseen_signal(&self, hazard: f64) -> Option<UnseenSignal> {
+    pub(super) fn unseen_signal(&self, hazard: f64) -> Option<PossiblyReadSignal> {
         let standing = self.signals.standing.as_ref().filter(|_| hazard > 0.0)?;
         let reading = |aspect: &AspectId| {
             let values = self.kitchen.aspects[aspect.index()].values.len();
@@ -128,7 +128,7 @@ impl BeliefFilter {
             (aspect.index(), self.model.signal.understood(truth, values).collect())
         };
         let readings = standing.aspects.iter().map(reading).collect();
-        Some(UnseenSignal { chance: -(-hazard).exp_m1(), readings })
+        Some(PossiblyReadSignal { chance: -(-hazard).exp_m1(), readings })
     }
 
     /// Corrects the probability that the signal on the display was read in unknown time with this hazard: `read` is the

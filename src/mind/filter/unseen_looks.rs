@@ -15,7 +15,7 @@ use rand::RngExt;
 
 use super::evidence::{BeliefSampler, UNDRAWN};
 use super::evidence_model::EvidenceModel;
-use super::look_news::{SampledLooks, UnseenLooks, UnseenSignal, ValueSeenByLook};
+use super::look_news::{PossiblyReadSignal, SampleLookEffects, UnseenLooks, ValueSeenByLook};
 
 impl BeliefSampler {
     /// The probability that the human looks at each location before the next press, averaged over belief samples.
@@ -77,7 +77,7 @@ impl BeliefSampler {
             }
             let news = [begin, self.news.len()];
             let changed = self.news[begin..].iter().fold(0, |changed, news| changed | 1 << news.aspect);
-            self.looks.push(SampledLooks { changed, news, read_signal });
+            self.looks.push(SampleLookEffects { changed, news, read_signal });
             if changed != 0 {
                 self.believe_news(model, index, news);
             }
@@ -93,7 +93,7 @@ impl BeliefSampler {
     }
 
     /// Lets the next belief sample read the signal on the display, or miss it; returns whether the sample has read it.
-    fn hear(&mut self, signal: &UnseenSignal, random: &mut Stream) -> bool {
+    fn hear(&mut self, signal: &PossiblyReadSignal, random: &mut Stream) -> bool {
         let is_read = self.is_read(self.read_sums.len() - 1, signal.chance);
         for (aspect, reading) in signal.readings.iter().filter(|_| is_read) {
             self.news.push(ValueSeenByLook {

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::person::{Particle, press_chances, wait_chance};
-use super::plausible_looks::{self, PlausibleLooks};
+use super::plausible_looks::{self, LookNeedProbabilities};
 use super::reading_effect::LookTracker;
-use super::signal_reading::PlainSignals;
+use super::signal_reading::ReferenceSignalHistory;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -16,7 +16,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
-use crate::mind::gaze_presence::GazeAvailability;
+use crate::mind::gaze_presence::UnknownGazeTimer;
 use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
@@ -33,19 +33,19 @@ pub struct ParticleSet {
     /// The explicit beliefs of the set.
     pub of: Vec<Particle>,
     sight: LookTracker,
-    presence: GazeAvailability,
+    presence: UnknownGazeTimer,
     /// For each belief, the probability at the human's last press that the human presses rather than waits, where
     /// waiting is evidence.
     pub pressing: Vec<f64>,
     /// Where the human of each belief looks while the gaze is unknown, once it has been computed after the last event.
-    unseen: Option<PlausibleLooks>,
+    unseen: Option<LookNeedProbabilities>,
     shown: State,
     /// Time up to which forgetting of recipes has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
     /// Signals of the trial, as far as they take time to be read.
-    signals: PlainSignals,
+    signals: ReferenceSignalHistory,
     /// Possible lapses (shares of slips) of this person with their probabilities.
     pub lapses: Vec<(f64, f64)>,
 }
@@ -55,9 +55,10 @@ impl ParticleSet {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> ParticleSet {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
-        let (doubt, sight, presence) = (prior.clone(), LookTracker::default(), GazeAvailability::new(&model));
+        let (doubt, sight, presence) = (prior.clone(), LookTracker::default(), UnknownGazeTimer::new(&model));
         let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
-        let (proposed, signals, lapses) = (ProposedPresses::default(), PlainSignals::default(), lapses(&model));
+        let (proposed, signals, lapses) =
+            (ProposedPresses::default(), ReferenceSignalHistory::default(), lapses(&model));
         ParticleSet {
             kitchen,
             model,
@@ -85,7 +86,7 @@ impl ParticleSet {
         self.presence.rest(now);
         self.unseen = None;
         self.proposed = ProposedPresses::default();
-        self.signals = PlainSignals::default();
+        self.signals = ReferenceSignalHistory::default();
         self.lapses = lapses(&self.model);
         self.show(now, state);
     }
@@ -113,7 +114,8 @@ impl ParticleSet {
             true => [looking.other_looks_hz, looking.looks_hz],
             false => [looking.display_lost_looks_hz; 2],
         };
-        let unseen = self.unseen.get_or_insert_with(|| PlausibleLooks::before(kitchen, model, &self.of, cost, random));
+        let unseen =
+            self.unseen.get_or_insert_with(|| LookNeedProbabilities::before(kitchen, model, &self.of, cost, random));
         unseen.look(kitchen, model, &mut self.of, self.shown, rates_hz.map(|hz| hz * seconds), random);
         if self.presence.display_in_view {
             self.signals.look_unseen(kitchen, model, &mut self.of, (seconds, until), self.shown, random);

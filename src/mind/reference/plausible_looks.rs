@@ -11,11 +11,11 @@ use crate::mind::model::HumanModel;
 
 /// For each explicit belief, the probability that the human needs to look at each location before the next press.
 #[derive(Clone, Debug)]
-pub struct PlausibleLooks {
+pub struct LookNeedProbabilities {
     needs: Vec<Vec<f64>>,
 }
 
-impl PlausibleLooks {
+impl LookNeedProbabilities {
     /// Computes which locations the human of every belief needs to look at, from the press probabilities under that
     /// belief.
     pub fn before(
@@ -24,7 +24,7 @@ impl PlausibleLooks {
         people: &[Particle],
         cost: &mut CostToGo,
         random: &mut Stream,
-    ) -> PlausibleLooks {
+    ) -> LookNeedProbabilities {
         let own_hand = kitchen.hands[Agent::Human.index()];
         let mut needs_of = |person: &Particle| {
             let chances = person.press_chances(kitchen, cost, &model.decision, model.inference.states, random);
@@ -36,7 +36,7 @@ impl PlausibleLooks {
             }
             needs
         };
-        PlausibleLooks { needs: people.iter().map(&mut needs_of).collect() }
+        LookNeedProbabilities { needs: people.iter().map(&mut needs_of).collect() }
     }
 
     /// Draws looks for every belief at a display that shows `state`. `looks` are the expected looks at a location: if

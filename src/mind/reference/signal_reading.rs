@@ -20,13 +20,13 @@ struct ShownContent {
 
 /// The signal on the display, and how many earlier signals of the trial were read.
 #[derive(Clone, Debug, Default)]
-pub struct PlainSignals {
+pub struct ReferenceSignalHistory {
     shown: Option<ShownContent>,
     /// Expected number of signals that were read, and number of signals that have left the display.
     counts: [f64; 2],
 }
 
-impl PlainSignals {
+impl ReferenceSignalHistory {
     /// A signal takes the place of the one before it, which the share `read` of the beliefs has read.
     pub fn show(
         &mut self,

@@ -7,8 +7,8 @@ use crate::kitchen::AspectId;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Event;
 use crate::session::probe_sampling::{aspect, questions};
-use crate::session::probes::{DueProbe, ProbeEvent, ProbeSubject, of_trial, upcoming};
-use crate::session::wall_display::AnswerEntry;
+use crate::session::probes::{DueProbeEvent, ProbeEvent, ProbeSubject, of_trial, upcoming};
+use crate::session::wall_display::AnswerDevice;
 
 impl SessionEngine {
     /// Session time of the next event of a freeze probe.
@@ -39,10 +39,10 @@ impl SessionEngine {
         }
     }
 
-    fn probe(&mut self, now: SessionTime, what: DueProbe) {
+    fn probe(&mut self, now: SessionTime, what: DueProbeEvent) {
         let (probe, origin, uses_estimate) = match what {
-            DueProbe::Event(event) => return self.record_own(now, Event::Probe(event)),
-            DueProbe::Begin { probe, origin, uses_estimate } => (probe, origin, uses_estimate),
+            DueProbeEvent::Event(event) => return self.record_own(now, Event::Probe(event)),
+            DueProbeEvent::Begin { probe, origin, uses_estimate } => (probe, origin, uses_estimate),
         };
         let is_wrong = uses_estimate.then(|| self.believed_wrong(now));
         let session = self.session();
@@ -78,7 +78,7 @@ impl SessionEngine {
         };
         let asks_confidence = of_trial(&session.spec).is_some_and(|spec| spec.confidence);
         let confidence = aspect.filter(|_| asks_confidence && answer.is_some()).map(|one| participant.confidence(one));
-        let on = AnswerEntry::Display;
+        let on = AnswerDevice::Display;
         self.record_own(now, Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on }));
     }
 }

@@ -5,7 +5,7 @@ use crate::arm::worker::RobotTaskExecutor;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonId, KitchenChange};
 use crate::participant::SimulatedParticipant;
-use crate::robot::RobotActivity;
+use crate::robot::RobotEvent;
 use crate::session::{Event, TimestampedEvent};
 
 impl SessionEngine {
@@ -22,24 +22,24 @@ impl SessionEngine {
         }
     }
 
-    pub(super) fn record_deed(&mut self, now: SessionTime, deed: RobotActivity) {
+    pub(super) fn record_deed(&mut self, now: SessionTime, deed: RobotEvent) {
         let kitchen = self.session().kitchen.clone();
         let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
         let event = match deed {
-            RobotActivity::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
-            RobotActivity::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
-            RobotActivity::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
-            RobotActivity::Idle(reason) => Event::RobotIdles { reason },
-            RobotActivity::Move(moment) => Event::RobotMoves(moment),
-            RobotActivity::Safety { mode, force_n, joint } => Event::RobotSafety { mode, force_n, joint },
-            RobotActivity::Touched { force_n } => Event::RobotTouched { force_n },
+            RobotEvent::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
+            RobotEvent::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
+            RobotEvent::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
+            RobotEvent::Idle(reason) => Event::RobotIdles { reason },
+            RobotEvent::Move(moment) => Event::RobotMoves(moment),
+            RobotEvent::Safety { mode, force_n, joint } => Event::RobotSafety { mode, force_n, joint },
+            RobotEvent::Touched { force_n } => Event::RobotTouched { force_n },
         };
         self.record_own(now, event);
     }
 
     /// Tells the robot about an applied event (an intervention of the wizard, or a press of the human); returns the
     /// robot's reactions.
-    pub(super) fn tell_robot(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) -> Vec<RobotActivity> {
+    pub(super) fn tell_robot(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) -> Vec<RobotEvent> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
         if let Some(press) = change.human_press() {

@@ -15,7 +15,7 @@ use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
-use crate::session::wall_display::{AnswerEntry, DisplayEvent};
+use crate::session::wall_display::{AnswerDevice, DisplayEvent};
 use crate::session::{Event, Session};
 
 /// The participant's display during one recording.
@@ -190,14 +190,14 @@ fn believe(
         Some(number) => Some(asked.choices.get(usize::from(number).checked_sub(1)?)?.clone()),
         None => None,
     };
-    let on = AnswerEntry::Display;
+    let on = AnswerDevice::Display;
     let event = Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on });
     admit(session, &event).is_ok().then_some(event)
 }
 
 /// Converts an answer to a questionnaire to an event, if participants answer on the display in this session.
 fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
-    (session.spec.display.questionnaire == AnswerEntry::Display).then_some(Event::Protocol(event))
+    (session.spec.display.questionnaire == AnswerDevice::Display).then_some(Event::Protocol(event))
 }
 
 /// Session time of an instant shortly before `now`.

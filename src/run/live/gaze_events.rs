@@ -8,7 +8,7 @@ use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{TrackerMessage, TrackerTime};
 use crate::gaze::GazeSample;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
-use crate::gaze::quality::{DroppedInputCounts, RateLimit};
+use crate::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
 use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Session, TrialPhase};
@@ -20,7 +20,7 @@ const NONE: [Option<Event>; 2] = [None, None];
 #[derive(Debug, Default)]
 pub(super) struct GazeInput {
     clock: DeviceClock,
-    limit: RateLimit,
+    limit: GazeRateLimiter,
     dropped: DroppedInputCounts,
     /// Whether the wizard was already told of a wrong time stamp of gaze.
     has_complained: bool,

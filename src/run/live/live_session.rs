@@ -9,9 +9,9 @@ use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::analysis::watcher::ComparisonFollower;
+use crate::analysis::watcher::SenderComparisonFollower;
 use crate::communication::recommendation::Recommendation;
-use crate::console::compared::ComparisonView;
+use crate::console::compared::SenderComparisonView;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleModel, KeyBindings};
@@ -20,15 +20,15 @@ use crate::edge::doctor::free_bytes;
 use crate::edge::key_file::key_map;
 use crate::edge::log::{LogWriter, RecordingLock, RecordingWriteError};
 use crate::edge::terminal::{TerminalScreen, theme};
-use crate::run::advisor_desk::{LiveAdvisor, next_advice};
+use crate::run::advisor_desk::{AdvisorThreadHandle, next_advice};
 use crate::run::desk::{GazeTracker, OperatorDesk};
 use crate::run::engine::SessionEngine;
 use crate::run::error::{LiveError, TerminalError};
 use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
-use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialCompletion};
+use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialProgress};
 use crate::run::options::SessionStart;
 use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
-use crate::run::watch_desk::LiveComparison;
+use crate::run::watch_desk::ComparisonThreadHandle;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::wizard_screen::WizardScreenContent;
@@ -42,9 +42,9 @@ const RESTING: Duration = Duration::from_millis(250);
 pub(super) struct Live {
     pub(super) engine: SessionEngine,
     /// Connection to the assistant's thread, if the session requests advice.
-    pub(super) advisor: Option<LiveAdvisor>,
+    pub(super) advisor: Option<AdvisorThreadHandle>,
     /// The comparison of wizard and assistants, if the console shows it.
-    pub(super) comparison: Option<LiveComparison>,
+    pub(super) comparison: Option<ComparisonThreadHandle>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
     pub(super) model: ConsoleModel,
@@ -160,10 +160,10 @@ impl Live {
         let size = TerminalScreen::size().map_err(TerminalError)?;
         let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
         model.recording = RecordingStatus::On(log.folder().display().to_string());
-        model.comparison = compare.as_ref().map(|_| ComparisonView::default());
-        let comparison = compare
-            .as_ref()
-            .map(|request| ComparisonFollower::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request));
+        model.comparison = compare.as_ref().map(|_| SenderComparisonView::default());
+        let comparison = compare.as_ref().map(|request| {
+            SenderComparisonFollower::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request)
+        });
         let comparison = comparison.map(|follower| follower.without_causes().on_thread());
         let (display, health) = ParticipantDisplay::at(desk);
         model.display = health;
@@ -272,7 +272,7 @@ impl Live {
             None => {
                 let again = (leaving == LeavingReason::Redo).then(|| self.beginning_again());
                 let standing = ExclusionStatus::at_console(self.engine.session());
-                let tutorial = TutorialCompletion::from_session(self.engine.session());
+                let tutorial = TutorialProgress::from_session(self.engine.session());
                 let figures = TrialSummary::from_follower(&self.engine.into_follower());
                 Ok(LiveOutcome { folder, leaving, figures, tutorial, standing, again })
             }

@@ -3,7 +3,7 @@
 use super::live_session::Live;
 use crate::console::screen::screen;
 use crate::console::{click_question, hands};
-use crate::run::watch_desk::LiveComparison;
+use crate::run::watch_desk::ComparisonThreadHandle;
 use crate::session::wall_display::DisplayEvent;
 use crate::session::{Event, TrialPhase};
 
@@ -20,7 +20,7 @@ impl Live {
         click_question::expire(&mut self.model, self.engine.session());
         hands::expire(&mut self.model, self.engine.session());
         if let (Some(newest), Some(compared)) =
-            (self.comparison.as_ref().and_then(LiveComparison::newest), &mut self.model.comparison)
+            (self.comparison.as_ref().and_then(ComparisonThreadHandle::newest), &mut self.model.comparison)
         {
             compared.show(newest);
         }

@@ -40,7 +40,7 @@ use crate::study::tables::concept_table::{ConceptRow, concepts};
 use crate::study::tables::participants::{ParticipantRow, participants};
 use crate::study::tables::probe_table::{ProbeRow, probes};
 use crate::study::tables::questionnaires::{AnswerRow, answers};
-use crate::study::tables::tutorial_answers::TutorialAnswer;
+use crate::study::tables::tutorial_answers::TutorialQuestionRow;
 use crate::study::trial_statistics::{TrialStatistics, arrange};
 
 /// Error of analysing a study.
@@ -222,7 +222,7 @@ fn conclude(
     filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents))?);
     filled.extend(export.table::<TrialStatistics>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
-    filled.extend(export.table::<TutorialAnswer>(&tutorials)?);
+    filled.extend(export.table::<TutorialQuestionRow>(&tutorials)?);
     filled.extend(export.table::<ConceptRow>(trials.iter().filter(|trial| trial.counts()).flat_map(concepts))?);
     filled.extend(export.table::<ProbeRow>(trials.iter().flat_map(probes))?);
     filled.extend(export.table::<DataDictionaryRow>(dictionary())?);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::coded_errors::CodedErrors;
 use super::questionnaire_answers;
-use super::rows::{PressFacts, RowCollector};
+use super::rows::{RowCollector, TrialPressAnalyses};
 use super::sweep::ConceptSweep;
 use super::twin::useful_signals;
 use crate::analysis::exclusion_status::ExclusionStatus;
@@ -14,7 +14,7 @@ use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::analysis::watcher::{ComparisonFollower, ComparisonRequest};
+use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
@@ -25,7 +25,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
 use crate::measures::attribution::{ErrorAttributor, ErrorCause};
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_kinds::CauseKindCounts;
+use crate::measures::cause_kinds::BeliefErrorCounts;
 use crate::measures::matching::{CommunicationEvent, WINDOW};
 use crate::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect};
 use crate::measures::{JudgedPress, median};
@@ -37,9 +37,9 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 use crate::study::acting_arm::SignalSenderWithParameter;
-use crate::study::belief_trace::BeliefTrace;
+use crate::study::belief_trace::BeliefEvidence;
 use crate::study::facts::RecordingFacts;
-use crate::study::known_beliefs::{FalseBeliefAgreement, KnownFalseBeliefs};
+use crate::study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use crate::study::prevention::TrialGroundTruth;
 use crate::study::robot_tally::{RobotEventSummary, RobotEventTally};
 use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics};
@@ -68,7 +68,7 @@ pub struct AnalysisScope {
 enum Pass {
     Plain(Box<SessionFollower>),
     /// Replay of a wizard trial with the assistant's hypothetical signals.
-    Beside(Box<ComparisonFollower>),
+    Beside(Box<SenderComparisonFollower>),
     /// Replay of an unassisted trial with hypothetical signals of all compared concepts.
     Swept(Box<ConceptSweep>),
 }
@@ -81,9 +81,9 @@ impl Pass {
         let cost = CostToGo::new(session.kitchen.clone());
         match spec.trial.condition {
             Condition::Wizard if extent.concepts => {
-                let request = ComparisonRequest { with: Vec::new(), window: WINDOW };
+                let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
                 session.spec.assistant.concept = ConceptName::TomCom;
-                Pass::Beside(Box::new(ComparisonFollower::new(session, &request)))
+                Pass::Beside(Box::new(SenderComparisonFollower::new(session, &request)))
             }
             // Prevented errors can be counted only where false beliefs are known.
             Condition::None if extent.concepts && is_known => Pass::Swept(Box::new(ConceptSweep::new(session, cost))),
@@ -167,7 +167,7 @@ pub fn read(
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
     let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded);
-    let mut trace = BeliefTrace::default();
+    let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
         attributor: ErrorAttributor::new(header.session.human.decision.clone(), log.session().seed()),
         cost: CostToGo::new(kitchen.clone()),
@@ -224,7 +224,7 @@ pub fn read(
     }
     let follower = pass.follower();
     let sequences = sequences(&judged);
-    let presses = PressFacts {
+    let presses = TrialPressAnalyses {
         judged: &judged,
         sequences: &sequences,
         by_estimate: by_estimate.as_deref(),
@@ -234,7 +234,7 @@ pub fn read(
     trial.probes = Some(probes.finish(&follower.session)).filter(ProbedTrial::is_any);
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters)) {
-        trial.shared_beliefs = coded.raters.as_ref().map(FalseBeliefAgreement::count);
+        trial.shared_beliefs = coded.raters.as_ref().map(RaterFalseBeliefAgreement::count);
         trial.raters = coded.raters;
     }
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
@@ -290,7 +290,7 @@ fn known_beliefs(
     judged: &[JudgedPress],
     basis: BeliefSource,
     coded: &CodedErrors,
-    trace: &BeliefTrace,
+    trace: &BeliefEvidence,
 ) -> Option<KnownFalseBeliefs> {
     let kitchen = &follower.session.kitchen;
     match basis {
@@ -320,7 +320,7 @@ fn beliefs(
         errors: count(|cause| matches!(cause, ErrorCause::Belief { .. })),
         of_two: count(|cause| matches!(cause, ErrorCause::Belief { with: Some(_), .. })),
         lengths: lengths(&all),
-        causes: CauseKindCounts::from_presses(&follower.session.kitchen, judged, episodes),
+        causes: BeliefErrorCounts::from_presses(&follower.session.kitchen, judged, episodes),
         lengths_any_aspect: lengths(&sequences_any_aspect(judged)),
         recovery_s: all.iter().filter_map(recovery).collect(),
         episodes: known.map(|known| known.episodes.iter().filter(|episode| episode.errors > 0).count() as u64),

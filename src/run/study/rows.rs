@@ -51,7 +51,7 @@ impl EventRows {
 
 /// Analyses of the human's presses, which are complete after the replay.
 #[derive(Clone, Copy, Debug)]
-pub struct PressFacts<'a> {
+pub struct TrialPressAnalyses<'a> {
     /// The human's presses with their judgements, in order.
     pub judged: &'a [JudgedPress],
     /// Error sequences (errors that follow from one false belief) of the trial.
@@ -64,7 +64,7 @@ pub struct PressFacts<'a> {
     pub known: Option<&'a KnownFalseBeliefs>,
 }
 
-impl<'a> PressFacts<'a> {
+impl<'a> TrialPressAnalyses<'a> {
     /// Analysis of the human's press with this sequence number; `None` for presses of the robot.
     fn analysis(&self, seq: u64, session: &Session) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
@@ -197,7 +197,7 @@ impl RowCollector {
     pub fn finish(
         mut self,
         session: &Session,
-        known: &PressFacts,
+        known: &TrialPressAnalyses,
         lanes: &[(String, Vec<CommunicationEvent>)],
         window: u32,
     ) -> [Vec<u8>; 5] {

@@ -20,7 +20,7 @@ use crate::run::parallel;
 use crate::run::replay::SameKitchenCheck;
 use crate::run::simulate::SimulationShard;
 use crate::study::figures::StudySummary;
-use crate::study::study_part::{PART_FORMAT, PartAnalysis, PartHeader, check_parts, trial_index};
+use crate::study::study_part::{PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;
@@ -69,7 +69,7 @@ pub fn analyse_shard(
         shard: shard.number,
         shards: shard.of,
         recordings: own.len() as u64,
-        analysis: PartAnalysis { concepts, events, raters: analysis.raters.clone() },
+        analysis: PartAnalysisOptions { concepts, events, raters: analysis.raters.clone() },
         plans,
     };
     let Some((first, _)) = own.first() else {
@@ -112,7 +112,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
             kitchen.admit(part.path(), &Arc::new(own.kitchen))?;
         }
     }
-    let PartAnalysis { concepts, events, .. } = headers[0].analysis.clone();
+    let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
     let export = AnalysisFolder::create(&analysis.out)?;
     let (mut analysed, mut names) = (Vec::new(), BTreeSet::new());
     for part in &mut parts {

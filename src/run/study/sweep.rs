@@ -18,7 +18,7 @@ use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent};
 use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
-use crate::study::roc::{CONCEPTS, LEAST_COST, PreventedTrialErrors, parameters};
+use crate::study::roc::{CONCEPTS, ConceptPreventionCounts, LEAST_COST, parameters};
 
 /// A concept with one value of its parameter, and the signals that the concept would have sent.
 #[derive(Debug)]
@@ -124,13 +124,13 @@ impl ConceptSweep {
 
     /// Number of errors that each concept would have prevented with each parameter value, given the trial's true errors
     /// and false beliefs; to be called after the last event.
-    pub fn swept(&self, truth: &TrialGroundTruth) -> Vec<PreventedTrialErrors> {
-        let signalled = self.swept_concepts.iter().map(|swept| PreventedTrialErrors {
+    pub fn swept(&self, truth: &TrialGroundTruth) -> Vec<ConceptPreventionCounts> {
+        let signalled = self.swept_concepts.iter().map(|swept| ConceptPreventionCounts {
             concept: swept.concept,
             parameter: swept.parameter,
             count: truth.count_signals(&swept.sent),
         });
-        let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| PreventedTrialErrors {
+        let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| ConceptPreventionCounts {
             concept: ConceptName::Dev,
             parameter,
             count: truth.count_proposals(parameter as usize),

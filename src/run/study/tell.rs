@@ -8,7 +8,7 @@ use crate::session::event::TrialEndReason;
 use crate::study::arm_comparison::StudyArmComparison;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
-use crate::study::live_arms::LiveStudyArm;
+use crate::study::live_arms::SignalSenderResults;
 use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 
 /// Summary of a study as lines of text.
@@ -136,7 +136,7 @@ pub fn describe(figures: &StudySummary) -> String {
 }
 
 /// Results of concepts that sent signals by themselves, as one line of text each.
-fn of_live(arms: &[LiveStudyArm]) -> String {
+fn of_live(arms: &[SignalSenderResults]) -> String {
     let Some(first) = arms.first() else { return String::new() };
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let mut text = format!(

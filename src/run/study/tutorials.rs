@@ -3,16 +3,16 @@
 
 use crate::edge::file_error::FileResult;
 use crate::edge::log::LogReader;
-use crate::study::tables::tutorial_answers::{TutorialAnswer, TutorialAnswers};
+use crate::study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
 
 /// The participant's answers in a log of which nothing was read yet; `name` is the recording's name in tables. None if
 /// the recording has no tutorial.
 ///
 /// # Errors
 /// The recording cannot be read.
-pub(super) fn read(mut log: LogReader, name: &str) -> FileResult<Vec<TutorialAnswer>> {
+pub(super) fn read(mut log: LogReader, name: &str) -> FileResult<Vec<TutorialQuestionRow>> {
     let spec = log.header.session.clone();
-    let Some(mut answers) = TutorialAnswers::new(name, &spec) else { return Ok(Vec::new()) };
+    let Some(mut answers) = TutorialAnswerCollector::new(name, &spec) else { return Ok(Vec::new()) };
     while let Some(line) = log.next_line()? {
         answers.note(&line.stamped);
     }

@@ -21,7 +21,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::attribution::ErrorCause;
 use crate::measures::sequences::FalseBeliefEpisode;
 use crate::run::engine::SessionEngine;
-use crate::run::headless::SimulatedAttendant;
+use crate::run::headless::SimulatedRobotOperator;
 use crate::session::admit::is_external;
 use crate::session::settings::Condition;
 use crate::session::{Event, Session, TimestampedEvent, TrialPhase};
@@ -120,7 +120,7 @@ fn run_to(
 fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinResult {
     let scope = SignalScope::of_signal(engine.session(), signal);
     let presses = engine.judged().len();
-    let mut attendant = SimulatedAttendant::default();
+    let mut attendant = SimulatedRobotOperator::default();
     while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         attendant.step(&mut engine);
         let _ = engine.take_questions();

@@ -29,6 +29,6 @@ pub use plan_spec::{FamiliarisationSpec, Participants, PlanSpec, QuestionnaireSp
 pub use planned_study::{PlannedTrial, Study, WantedRecording};
 pub use progress::{NextRecording, ParticipantProgress, PlanRecording, PlannedTrialProgress, RecordingOutcome};
 pub use questionnaire::{Questionnaire, QuestionnaireItem, ScoreRule};
-pub use step::{PhaseSpec, PracticeCriterion, StepSpec};
+pub use step::{PhaseSpec, PlanPosition, PracticeCriterion};
 pub use study_aims::{PrimaryOutcome, StudyAims};
 pub use tutorial::{Tutorial, TutorialStep, TutorialStepKind, TutorialTarget};

@@ -7,7 +7,7 @@ use super::study_aims::StudyAims;
 use crate::session::console_settings::WizardVisibility;
 use crate::session::setting_checks::{SettingError, is_code};
 use crate::session::study_arm::StudyArm;
-use crate::session::wall_display::AnswerEntry;
+use crate::session::wall_display::AnswerDevice;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub struct PlanSpec {
     /// How the participant consents: by holding a button on the display, or by telling the wizard, who confirms the
     /// consent at the console.
     #[serde(default = "on_console", skip_serializing_if = "is_console")]
-    pub consent_on: AnswerEntry,
+    pub consent_on: AnswerDevice,
     /// Steps of the wizard's instruction to the participant.
     #[serde(default)]
     pub instruction: Vec<String>,
@@ -54,12 +54,12 @@ fn default_consent() -> String {
     "The participant was told what is recorded and for what it is used, and agrees to it.".to_string()
 }
 
-fn on_console() -> AnswerEntry {
-    AnswerEntry::Console
+fn on_console() -> AnswerDevice {
+    AnswerDevice::Console
 }
 
-fn is_console(consent_on: &AnswerEntry) -> bool {
-    *consent_on == AnswerEntry::Console
+fn is_console(consent_on: &AnswerDevice) -> bool {
+    *consent_on == AnswerDevice::Console
 }
 
 /// The participants of a plan: their number, from which codes follow (P01, P02, …), or a list of their codes.

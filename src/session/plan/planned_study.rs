@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::groups::StartingGroup;
 use super::plan_spec::PlanSpec;
 use super::questionnaire::Questionnaire;
-use super::step::{PhaseSpec, PracticeCriterion, StepSpec};
+use super::step::{PhaseSpec, PlanPosition, PracticeCriterion};
 use super::tutorial::Tutorial;
 use crate::base::rng::mix;
 use crate::communication::settings::ShadowMode;
@@ -14,7 +14,7 @@ use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, Se
 use crate::session::stream_settings::RerunSpec;
 use crate::session::study_arm::StudyArm;
 use crate::session::tracker::TrackerSpec;
-use crate::session::wall_display::{AnswerEntry, DisplaySpec};
+use crate::session::wall_display::{AnswerDevice, DisplaySpec};
 use crate::wizard::settings::WizardKind;
 
 /// A planned trial in a participant's series (familiarisation or counted trial): it needs one complete recording.
@@ -86,7 +86,7 @@ impl Study {
     }
 
     /// The event that the participant consented to the plan's text, at the display or at the console.
-    pub fn consent_given(&self, on: AnswerEntry) -> ProtocolEvent {
+    pub fn consent_given(&self, on: AnswerDevice) -> ProtocolEvent {
         let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
         ProtocolEvent::ConsentGiven { on: Some(on), text: Some(text), digest: Some(digest) }
     }
@@ -114,7 +114,7 @@ impl Study {
             spec.trial.seconds = practice.seconds;
             spec.trial.orders = Some(practice.orders);
         }
-        spec.step = Some(StepSpec {
+        spec.step = Some(PlanPosition {
             plan: self.plan.name.clone(),
             digest: self.digest.clone(),
             participant: wanted.participant as u32,
@@ -152,7 +152,7 @@ impl Study {
         let mut spec = self.session.clone();
         spec.participant.code = code.to_string();
         spec.adopt_person();
-        spec.step = Some(StepSpec {
+        spec.step = Some(PlanPosition {
             plan: format!("{}-tutorial", self.plan.name),
             digest: self.digest.clone(),
             participant: 0,

@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::planned_study::{PlannedTrial, Study, WantedRecording};
-use super::step::StepSpec;
+use super::step::PlanPosition;
 
 /// State of a recording of a plan: complete, open, excluded or void.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -34,7 +34,7 @@ pub struct PlanRecording {
     /// The participant's code.
     pub code: String,
     /// Position of the recording in the study plan.
-    pub step: StepSpec,
+    pub step: PlanPosition,
     /// Whether the participant consented to being recorded.
     pub consent: bool,
     /// Whether the participant completed the instruction, if there is one.

@@ -11,7 +11,7 @@ use crate::session::study_arm::StudyArm;
 /// Position of a recording in its study plan, and its phases; part of the settings of every recording of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StepSpec {
+pub struct PlanPosition {
     /// The name of the study plan to which the recording belongs.
     pub plan: String,
     /// Digest of the plan, its settings and questionnaires, by which another version of the plan is recognised.
@@ -113,7 +113,7 @@ impl PhaseSpec {
     }
 }
 
-impl StepSpec {
+impl PlanPosition {
     /// Whether the recording has only the participant's tutorial, without a trial.
     pub fn is_tutorial_alone(&self) -> bool {
         matches!(self.phases[..], [PhaseSpec::Tutorial { .. }])

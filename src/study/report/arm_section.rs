@@ -4,7 +4,7 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, nothing, number, p_value, scroll, section, with_interval};
 use crate::study::arm_chart;
-use crate::study::arm_comparison::{NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmOutcome};
+use crate::study::arm_comparison::{NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts};
 use crate::study::figures::StudySummary;
 use crate::study::group_orders::GroupOrder;
 use crate::study::trial_statistics::TrialStatistics;
@@ -56,7 +56,7 @@ fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
 }
 
 fn rates(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
-    let columns: [PageColumn<StudyArmOutcome>; 5] = [
+    let columns: [PageColumn<StudyArmCounts>; 5] = [
         ("condition", |one| one.arm.title().render()),
         ("trials", |one| one.trials.render()),
         ("events", |one| one.events.render()),

@@ -5,8 +5,8 @@ use maud::{Markup, Render, html};
 use super::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, percent, range, scroll, section, with_interval,
 };
-use crate::analysis::probe_accuracy::{ProbeAccuracy, ProbeAccuracyGrouping};
-use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, TrueBeliefComparison};
+use crate::analysis::probe_accuracy::{ProbeAccuracyGrouping, ProbeAnswerAccuracy};
+use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, RecordedBeliefComparison};
 use crate::base::words;
 use crate::measures::belief_detection::CALIBRATED;
 use crate::study::charts;
@@ -93,7 +93,7 @@ fn left_out(counts: &ProbeCounts) -> Markup {
 }
 
 fn accuracies(captions: &mut Captions, found: &ProbeSummary) -> Markup {
-    let columns: [PageColumn<ProbeAccuracy>; 4] = [
+    let columns: [PageColumn<ProbeAnswerAccuracy>; 4] = [
         ("", |one| one.group.render()),
         ("answers", |one| one.n.render()),
         ("“I don’t know”", |one| one.unsure.render()),
@@ -146,7 +146,7 @@ fn scores(captions: &mut Captions, found: &ProbeSummary) -> Markup {
     captions.table(caption, &["", "log score", "gain of the estimate"], &rows)
 }
 
-fn by_true_beliefs(known: &TrueBeliefComparison) -> Markup {
+fn by_true_beliefs(known: &RecordedBeliefComparison) -> Markup {
     let value = |value: Option<f64>| value.map_or(UNKNOWN.to_string(), |value| number(Some(value), 3));
     html! {
         p class="note" {

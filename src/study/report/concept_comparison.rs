@@ -7,7 +7,7 @@ use crate::base::words::count;
 use crate::measures::belief_basis::BeliefSource;
 use crate::study::charts::{self, MOST_SIGNALS};
 use crate::study::figures::StudySummary;
-use crate::study::live_arms::LiveStudyArm;
+use crate::study::live_arms::SignalSenderResults;
 use crate::study::roc::EQUAL_SIGNALS;
 
 /// Section of the report that compares communication concepts by the errors that they prevent.
@@ -63,7 +63,8 @@ fn cut_off(figures: &StudySummary) -> String {
 
 /// Table of the concepts that sent signals by themselves, with the predictions from the analysis of unassisted trials.
 fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let parameter = |arm: &LiveStudyArm| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
+    let parameter =
+        |arm: &SignalSenderResults| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
     let rows = figures.live.iter().map(|arm| {
         let values = [
             number(arm.belief_related_per_100, 2),

@@ -6,7 +6,7 @@ use super::elements::{arm, section};
 use crate::base::words;
 use crate::measures::belief_basis::BeliefSource;
 use crate::session::event::TrialEndReason;
-use crate::study::arm_group::RobotArmGroup;
+use crate::study::arm_group::RobotArmTotals;
 use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 
@@ -138,7 +138,7 @@ fn endings(figures: &StudySummary) -> String {
 /// Sentence about the kinds of robot arm.
 fn arms(figures: &StudySummary) -> String {
     let trials =
-        |group: &RobotArmGroup| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+        |group: &RobotArmTotals| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
     match &figures.robot[..] {
         [] => String::new(),
         [one] => format!(" The robot\u{2019}s arm was {}.", arm(one.kind)),

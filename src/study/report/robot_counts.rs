@@ -5,9 +5,9 @@ use maud::{Markup, Render, html};
 use super::elements::{Captions, arm, count, nothing, number, section};
 use crate::base::words;
 use crate::robot::AbortReason;
-use crate::study::arm_group::RobotArmGroup;
+use crate::study::arm_group::RobotArmTotals;
 use crate::study::figures::StudySummary;
-use crate::study::robot_tally::RobotArmSummary;
+use crate::study::robot_tally::ArmSafetySummary;
 
 /// Table of robot statistics with one column per kind of robot arm.
 pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
@@ -15,15 +15,15 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     if groups.is_empty() {
         return nothing();
     }
-    let row = |what: &str, of: &dyn Fn(&RobotArmGroup) -> String| -> Vec<Markup> {
+    let row = |what: &str, of: &dyn Fn(&RobotArmTotals) -> String| -> Vec<Markup> {
         std::iter::once(what.render()).chain(groups.iter().map(|group| of(group).render())).collect()
     };
     let felt =
-        |what: &str, of: fn(&RobotArmSummary) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
-    let seconds = |what: &str, of: fn(&RobotArmSummary) -> Option<f64>| {
+        |what: &str, of: fn(&ArmSafetySummary) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
+    let seconds = |what: &str, of: fn(&ArmSafetySummary) -> Option<f64>| {
         row(what, &|group| number(group.robot.arm.as_ref().and_then(of), 1))
     };
-    let did = |what: &str, of: fn(&RobotArmGroup) -> u64| row(what, &|group| of(group).to_string());
+    let did = |what: &str, of: fn(&RobotArmTotals) -> u64| row(what, &|group| of(group).to_string());
     let mut rows = vec![
         felt("protective stops after a contact", |arm| arm.protective_stops),
         felt("stops because a joint did not follow", |arm| arm.faults),
@@ -45,7 +45,7 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
         did("locations corrected by the wizard", |group| group.robot.corrected),
     ]);
     let head =
-        |group: &RobotArmGroup| format!("{}, {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+        |group: &RobotArmTotals| format!("{}, {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
     let heads: Vec<String> = std::iter::once("arm".to_string()).chain(groups.iter().map(head)).collect();
     let caption = html! {
         "Sums over trials, pauses included, by arm. A timed arm has no contacts. Values of each trial are in "

@@ -3,14 +3,14 @@
 use crate::communication::concept::ConceptName;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::prevention::PreventionCounts;
-use crate::study::roc::PreventedTrialErrors;
+use crate::study::roc::ConceptPreventionCounts;
 use crate::study::trial_statistics::TrialStatistics;
 
 /// Row of the table of concepts: a concept with one value of its parameter in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
     trial: &'a TrialStatistics,
-    swept: &'a PreventedTrialErrors,
+    swept: &'a ConceptPreventionCounts,
 }
 
 /// Rows for all communication concepts that were evaluated on a trial.

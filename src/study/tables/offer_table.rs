@@ -2,7 +2,7 @@
 
 use crate::analysis::offer_summary::TimedOffer;
 use crate::communication::Signal;
-use crate::communication::offer::{OfferCloseReason, OfferKeyUse, OfferedCommunication};
+use crate::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
@@ -36,10 +36,10 @@ fn kind_name(what: &OfferedCommunication) -> &'static str {
     }
 }
 
-fn key_name(how: OfferKeyUse) -> &'static str {
+fn key_name(how: OfferKeyKind) -> &'static str {
     match how {
-        OfferKeyUse::Taken => "enter",
-        OfferKeyUse::OwnKey => "own",
+        OfferKeyKind::Taken => "enter",
+        OfferKeyKind::OwnKey => "own",
     }
 }
 

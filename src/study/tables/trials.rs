@@ -3,15 +3,15 @@
 use super::trial_column::TrialColumn::{self, Compared};
 use super::trial_column::plain;
 use crate::analysis::offer_summary::OfferSummary;
-use crate::measures::cause_kinds::CauseKindCounts;
+use crate::measures::cause_kinds::BeliefErrorCounts;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
 use crate::session::event::TrialEndReason;
-use crate::session::wall_display::DisplayedArm;
+use crate::session::wall_display::RobotDepiction;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::StudyMeasure;
-use crate::study::known_beliefs::FalseBeliefAgreement;
-use crate::study::robot_tally::RobotArmSummary;
+use crate::study::known_beliefs::RaterFalseBeliefAgreement;
+use crate::study::robot_tally::ArmSafetySummary;
 use crate::study::tables::arm_columns;
 use crate::study::tables::probe_table::PROBES_WRONG;
 use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean_length};
@@ -210,7 +210,7 @@ fn pace() -> Vec<TrialColumn> {
 fn robot() -> Vec<TrialColumn> {
     fn of_arm<T: Into<CsvCell<'static>>>(
         trial: &TrialStatistics,
-        value: fn(&RobotArmSummary) -> T,
+        value: fn(&ArmSafetySummary) -> T,
     ) -> CsvCell<'static> {
         trial.robot.arm.as_ref().map(value).into()
     }
@@ -283,7 +283,7 @@ fn by_hand() -> Vec<TrialColumn> {
 
 /// Columns with error sequences, lost presses (regret), and errors by kind of state aspect.
 fn work() -> Vec<TrialColumn> {
-    fn cause(name: &'static str, meaning: &'static str, count: fn(&CauseKindCounts) -> u64) -> TrialColumn {
+    fn cause(name: &'static str, meaning: &'static str, count: fn(&BeliefErrorCounts) -> u64) -> TrialColumn {
         TrialColumn::Plain(TrialStatistics::column(name, "errors", meaning, move |trial| {
             trial.beliefs.as_ref().map(|beliefs| count(&beliefs.causes)).into()
         }))
@@ -358,12 +358,12 @@ fn offered() -> Vec<TrialColumn> {
 fn shown() -> Vec<TrialColumn> {
     let arm =
         "how the participant's display showed the robot: none, hand or arm; empty: no display, or none could be shown";
-    vec![plain("display_arm", "", arm, |t| t.display_arm.map(DisplayedArm::name).into())]
+    vec![plain("display_arm", "", arm, |t| t.display_arm.map(RobotDepiction::name).into())]
 }
 
 /// Columns about false belief episodes, raters' agreement on them, and a wizard's hits.
 fn false_beliefs() -> Vec<TrialColumn> {
-    fn shared(name: &'static str, meaning: &'static str, count: fn(FalseBeliefAgreement) -> u64) -> TrialColumn {
+    fn shared(name: &'static str, meaning: &'static str, count: fn(RaterFalseBeliefAgreement) -> u64) -> TrialColumn {
         TrialColumn::Plain(TrialStatistics::column(name, "errors", meaning, move |trial| {
             trial.shared_beliefs.map(count).into()
         }))

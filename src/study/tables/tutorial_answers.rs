@@ -11,7 +11,7 @@ use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
 /// Row of the table of tutorials: a question of a tutorial with the participant's answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TutorialAnswer {
+pub struct TutorialQuestionRow {
     /// The recording's name in tables.
     pub recording: String,
     /// The participant's code.
@@ -32,7 +32,7 @@ pub struct TutorialAnswer {
     pub seconds: Option<f64>,
 }
 
-impl TutorialAnswer {
+impl TutorialQuestionRow {
     /// Whether the participant's first answer was right.
     pub fn is_right_at_once(&self) -> bool {
         self.tries == 1 && self.right == Some(true)
@@ -43,20 +43,20 @@ impl TutorialAnswer {
 struct OpenQuestion<'a> {
     step: &'a TutorialStep,
     shown: Option<SessionTime>,
-    answer: TutorialAnswer,
+    answer: TutorialQuestionRow,
 }
 
 /// Collects the answers to the questions of a recording's tutorial from its events.
-pub struct TutorialAnswers<'a> {
+pub struct TutorialAnswerCollector<'a> {
     first: Option<&'a str>,
     open: Vec<OpenQuestion<'a>>,
     /// Whether the tutorial has begun in the recording.
     has_begun: bool,
 }
 
-impl<'a> TutorialAnswers<'a> {
+impl<'a> TutorialAnswerCollector<'a> {
     /// A collector for the tutorial among the phases of a recording; `None` if the recording has no tutorial.
-    pub fn new(recording: &str, spec: &'a SessionSpec) -> Option<TutorialAnswers<'a>> {
+    pub fn new(recording: &str, spec: &'a SessionSpec) -> Option<TutorialAnswerCollector<'a>> {
         let tutorial = spec.step.as_ref()?.phases.iter().find_map(|phase| match phase {
             PhaseSpec::Tutorial { tutorial } => Some(tutorial),
             _ => None,
@@ -65,7 +65,7 @@ impl<'a> TutorialAnswers<'a> {
         let open = questions.map(|step| OpenQuestion {
             step,
             shown: None,
-            answer: TutorialAnswer {
+            answer: TutorialQuestionRow {
                 recording: recording.to_string(),
                 participant: spec.participant.code.clone(),
                 tutorial: tutorial.name.clone(),
@@ -78,7 +78,7 @@ impl<'a> TutorialAnswers<'a> {
             },
         });
         let first = tutorial.steps.first().map(|step| step.id.as_str());
-        Some(TutorialAnswers { first, open: open.collect(), has_begun: false })
+        Some(TutorialAnswerCollector { first, open: open.collect(), has_begun: false })
     }
 
     /// Notes the next event of the recording.
@@ -120,13 +120,13 @@ impl<'a> TutorialAnswers<'a> {
     }
 
     /// The tutorial's questions with their answers, in the tutorial's order; empty if the tutorial did not begin.
-    pub fn finish(self) -> Vec<TutorialAnswer> {
+    pub fn finish(self) -> Vec<TutorialQuestionRow> {
         let has_begun = self.has_begun;
         self.open.into_iter().filter(|_| has_begun).map(|question| question.answer).collect()
     }
 }
 
-impl CsvRow for TutorialAnswer {
+impl CsvRow for TutorialQuestionRow {
     const TABLE: CsvTable = CsvTable::Tutorial;
 
     fn columns() -> Vec<CsvColumn<Self>> {

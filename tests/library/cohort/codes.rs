@@ -10,7 +10,7 @@ use tomcom::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKi
 use tomcom::measures::consensus::{RaterConsensus, unsettled};
 use tomcom::measures::rater_choice::RaterChoice;
 use tomcom::run::code_exchange::{export, import};
-use tomcom::run::codes::{CodedRecording, RaterCodesSummary, describe};
+use tomcom::run::codes::{CodedRecording, InterRaterSummary, describe};
 use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 
@@ -142,7 +142,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     let (coded, [one, other]) = two_raters(&recording);
     let open = unsettled(&coded.codable.errors, [&one, &other]);
     assert!(open.len() > 2, "{open:?}");
-    let before = RaterCodesSummary::from_recordings(std::slice::from_ref(&coded));
+    let before = InterRaterSummary::from_recordings(std::slice::from_ref(&coded));
     // The last one is not coded by the second rater: to be settled, and no disagreement.
     assert_eq!(before.disagreements.len(), open.len() - 1);
     let first = &before.disagreements[0];
@@ -156,7 +156,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     assert_eq!(read.as_ref(), Some(&settled), "it is read as it was written");
 
     let after = CodedRecording::open(&recording).expect("a recording");
-    let figures = RaterCodesSummary::from_recordings(std::slice::from_ref(&after));
+    let figures = InterRaterSummary::from_recordings(std::slice::from_ref(&after));
     assert_eq!(figures.agreements, before.agreements, "kappa is that of the raters' own codes");
     assert_eq!(after.codes.len(), 2, "a consensus is no rater");
     let found = figures.recordings[0].consensus.clone().expect("a consensus");
@@ -191,7 +191,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     let mut later = other.clone();
     later.0.insert(open[0], ErrorCauseCode::Other);
     write(&recording, "R2", &later).expect("written");
-    let stale = RaterCodesSummary::from_recordings(&[CodedRecording::open(&recording).expect("a recording")]);
+    let stale = InterRaterSummary::from_recordings(&[CodedRecording::open(&recording).expect("a recording")]);
     let found = stale.recordings[0].consensus.clone().expect("a consensus");
     assert_eq!((found.open, found.stale.len()), (1, 1));
     assert_eq!((found.stale[0].press, found.stale[0].rater.as_str()), (open[0], "R2"));
@@ -215,7 +215,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     assert_eq!(read_all(&recording, &coded[0].codable).expect("readable")["R1"], truth);
 
     coded = vec![CodedRecording::open(&recording).expect("a recording")];
-    let figures = RaterCodesSummary::from_recordings(&coded);
+    let figures = InterRaterSummary::from_recordings(&coded);
     assert_eq!(figures.agreements.len(), 1);
     let right: Vec<(&str, u64)> =
         figures.known.iter().map(|pair| (pair.of.as_str(), pair.agreement.same_cause)).collect();

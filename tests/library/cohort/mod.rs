@@ -12,7 +12,7 @@ mod wizard;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::log::LogReader;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::session::TimestampedEvent;
@@ -24,14 +24,14 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// The paper's plan with short trials.
-fn paper(presses: u32) -> SessionFiles {
+fn paper(presses: u32) -> SessionSetup {
     let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
     files.spec.trial.presses = presses;
     files
 }
 
 fn run(
-    files: &SessionFiles,
+    files: &SessionSetup,
     trials: u64,
     shard: SimulationShard,
     out: &Path,

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use tomcom::edge::files::SessionFiles;
+use tomcom::edge::files::SessionSetup;
 use tomcom::run::pool::{PoolRequest, simulate};
 use tomcom::run::simulate::SimulationShard;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::simulation_pool::{PoolTrialPosition, SimulationPool};
+use tomcom::study::simulation_pool::{PoolTrialPair, SimulationPool};
 
 use super::{folder, paper, run};
 
@@ -14,12 +14,12 @@ use super::{folder, paper, run};
 const PERSONS: u32 = 4;
 const PRESSES: u32 = 80;
 
-fn pool(files: &SessionFiles, shard: SimulationShard, [arms, unassisted]: [bool; 2]) -> SimulationPool {
+fn pool(files: &SessionSetup, shard: SimulationShard, [arms, unassisted]: [bool; 2]) -> SimulationPool {
     let request = PoolRequest { files: files.clone(), participants: PERSONS, shard, arms, unassisted };
     simulate(&request, Path::new("paper.toml"), || ()).expect("a pool")
 }
 
-fn trials(pool: &SimulationPool) -> impl Iterator<Item = &PoolTrialPosition> {
+fn trials(pool: &SimulationPool) -> impl Iterator<Item = &PoolTrialPair> {
     pool.persons.iter().flat_map(|person| &person.trials)
 }
 
@@ -59,7 +59,7 @@ fn the_shards_of_a_pool_are_the_whole() {
 
 #[test]
 fn what_cannot_be_simulated_is_told_beforehand() {
-    let refused = |files: SessionFiles| {
+    let refused = |files: SessionSetup| {
         let request =
             PoolRequest { files, participants: 2, shard: SimulationShard::WHOLE, arms: true, unassisted: true };
         simulate(&request, Path::new("plan.toml"), || ()).expect_err("refused").to_string()

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable, describe_row, legend};
-use tomcom::edge::battery_file::{BatteryFiles, read_battery};
+use tomcom::edge::battery_file::{CohortBattery, read_battery};
 use tomcom::measures::flags::ThresholdSource;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
@@ -18,7 +18,7 @@ const TRIALS: u64 = 3;
 const PRESSES: u32 = 90;
 
 /// Two cohorts with short trials and few rollouts.
-fn battery() -> BatteryFiles {
+fn battery() -> CohortBattery {
     let mut battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("the battery");
     battery.cohorts.retain(|cohort| ["base", "confident wrong recipes"].contains(&cohort.name.get_ref().as_str()));
     let spec = &mut battery.session.spec;
@@ -27,7 +27,7 @@ fn battery() -> BatteryFiles {
     battery
 }
 
-fn table(battery: &BatteryFiles, seed: u64) -> RobustnessTable {
+fn table(battery: &CohortBattery, seed: u64) -> RobustnessTable {
     let request = RobustnessRequest { battery: battery.clone(), trials: TRIALS, seed, choose_seed: 51 };
     let mut finished: Vec<CohortRow> = Vec::new();
     let table = measure(&request, || (), |row| finished.push(row.clone()));

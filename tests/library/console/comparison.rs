@@ -7,7 +7,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::Signal;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::{Recommendation, SignalOption};
-use tomcom::console::compared::ComparisonView;
+use tomcom::console::compared::SenderComparisonView;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::panel::Panel;
 use tomcom::console::screen::screen;
@@ -62,7 +62,7 @@ fn compared(assistants: usize) -> Stage {
         lane("dev", Some(ConceptName::Dev), vec![said(6, 15.0, proposed)]),
     ];
     lanes.truncate(assistants + 1);
-    let mut comparison = ComparisonView::default();
+    let mut comparison = SenderComparisonView::default();
     comparison.show(SenderComparison::new(lanes, 3, 10, false));
     stage.model.comparison = Some(comparison);
     stage

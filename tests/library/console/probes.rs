@@ -10,7 +10,7 @@ use tomcom::session::Event;
 use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
-use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::wall_display::AnswerDevice;
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;
@@ -94,7 +94,7 @@ fn the_sheet_of_a_probe_fits_every_size() {
         let mut stage = probed("sushi", true, true);
         stage.model.size = size;
         stage.begin(&ASPECTS);
-        let (answer, confidence, on) = (Some("rice cooked".to_string()), Some(2), AnswerEntry::Display);
+        let (answer, confidence, on) = (Some("rice cooked".to_string()), Some(2), AnswerDevice::Display);
         stage.probe(66.0, ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on });
         stage.probe(66.0, ProbeEvent::Asked { probe: 1, question: 2 });
         check_snapshot("console", format!("probe_on_display_{columns}x{rows}"), stage.screen(size));
@@ -119,7 +119,7 @@ fn an_answer_is_entered_where_no_page_is_connected() {
         question: 1,
         answer: answer.cloned(),
         confidence,
-        on: AnswerEntry::Console,
+        on: AnswerDevice::Console,
     };
     assert_eq!(stage.type_keys(&[KeyCode::Enter]), None, "nothing is chosen yet");
     assert!(stage.notice().contains("the number of the choice first"), "{}", stage.notice());
@@ -220,7 +220,7 @@ fn answers_are_seen_where_beliefs_are_and_nothing_says_whether_they_are_right() 
             let mut stage = probed("sushi", true, false);
             stage.session.spec.console.visibility = visibility;
             stage.begin(&["cooking_pot", "counter"]);
-            let (answer, confidence, on) = (Some(answer.to_string()), None, AnswerEntry::Display);
+            let (answer, confidence, on) = (Some(answer.to_string()), None, AnswerDevice::Display);
             stage.probe(66.0, ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on });
             stage.probe(66.0, ProbeEvent::Asked { probe: 1, question: 2 });
             screens.push(stage.screen((200, 60)));

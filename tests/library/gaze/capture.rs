@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use rmpv::Value;
 use tomcom::base::time::SessionTime;
-use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationMerger, FixationWindow};
+use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom::session::settings::GazeSource;
@@ -29,7 +29,7 @@ fn messages() -> Vec<(f64, String, Vec<u8>)> {
 }
 
 /// Fixations and blinks of messages that arrive at these times.
-fn merge(messages: &[(f64, String, Vec<u8>)]) -> (Vec<FixationWindow>, Vec<PupilBlink>) {
+fn merge(messages: &[(f64, String, Vec<u8>)]) -> (Vec<FixationFragment>, Vec<PupilBlink>) {
     let start = Instant::now();
     let (mut fixations, mut blinks) = (FixationMerger::default(), BlinkMerger::default());
     let (mut whole, mut lids) = (Vec::new(), Vec::new());
@@ -41,7 +41,7 @@ fn merge(messages: &[(f64, String, Vec<u8>)]) -> (Vec<FixationWindow>, Vec<Pupil
         assert_eq!(told.malformed, 0);
         for found in told.fixations {
             let span_s = [found.timestamp, found.timestamp + found.duration_ms / 1000.0];
-            let window = FixationWindow {
+            let window = FixationFragment {
                 id: found.id,
                 at: None,
                 span_s,
@@ -84,7 +84,7 @@ fn windows_of_one_fixation_are_one_fixation_and_repeated_onsets_one_blink() {
 fn a_fixation_ends_with_silence_and_ids_may_begin_anew() {
     let start = Instant::now();
     let at = |ms: u64| start + Duration::from_millis(ms);
-    let window = |id, begin_s: f64, x: Option<f64>| FixationWindow {
+    let window = |id, begin_s: f64, x: Option<f64>| FixationFragment {
         id,
         at: x.map(|x| [x, 0.5]),
         span_s: [begin_s, begin_s + 0.3],

@@ -3,7 +3,7 @@
 use tomcom::base::time::SessionTime;
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::device_clock::DeviceClock;
-use tomcom::gaze::quality::{GazeFault, GazeFaultDetector, RateLimit};
+use tomcom::gaze::quality::{GazeFault, GazeFaultDetector, GazeRateLimiter};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
@@ -138,8 +138,8 @@ fn samples_that_were_held_up_together_set_no_clock() {
 
 #[test]
 fn a_flood_is_let_through_at_the_rate_of_the_fastest_tracker() {
-    let mut limit = RateLimit::default();
-    let passed = |limit: &mut RateLimit, hz: u64, from_s: u64, seconds: u64| {
+    let mut limit = GazeRateLimiter::default();
+    let passed = |limit: &mut GazeRateLimiter, hz: u64, from_s: u64, seconds: u64| {
         let times = (0..hz * seconds).map(|n| SessionTime(from_s * 1_000_000_000 + n * 1_000_000_000 / hz));
         times.filter(|&time| limit.admits(time)).count() as u64
     };

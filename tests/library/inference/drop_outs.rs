@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{AspectId, AspectKind, Kitchen, State};
 use tomcom::mind::filter::BeliefFilter;
@@ -31,7 +31,7 @@ enum Tracker {
     Missing,
 }
 
-fn settings(files: &SessionFiles, tracker: Tracker) -> SessionSpec {
+fn settings(files: &SessionSetup, tracker: Tracker) -> SessionSpec {
     let mut spec = files.spec.clone();
     (spec.seed, spec.trial.condition, spec.robot.arm) = (SEED, Condition::None, ArmKind::Timed);
     spec.assistant.shadow = tomcom::communication::settings::ShadowMode::Off;
@@ -53,7 +53,7 @@ struct Judged {
 
 /// Plays a session; at each end of a drop-out `edge` gets the filter from before, the engine after the first sample, and its time.
 fn play(
-    files: &SessionFiles,
+    files: &SessionSetup,
     kitchen: &Arc<Kitchen>,
     trial: u64,
     tracker: Tracker,

@@ -11,7 +11,7 @@ use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, Kitchen};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::gaze_presence::GazeAvailability;
+use tomcom::mind::gaze_presence::UnknownGazeTimer;
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::belief_set::ParticleSet;
@@ -41,7 +41,7 @@ pub struct GridFilter {
     /// On the grid, everybody thinks every press of the robot through.
     people: ParticleSet,
     sight: LookTracker,
-    presence: GazeAvailability,
+    presence: UnknownGazeTimer,
     looks: Vec<Look>,
     pub belief: DirichletBelief,
     /// The largest grid so far.
@@ -58,7 +58,7 @@ impl GridFilter {
         let belief = people.prior.clone();
         let places = belief.aspects.iter().take(kitchen.locations.len());
         let looks = places.map(|of| Look { before: of.clone(), unread: 1.0, survived: 1.0 }).collect();
-        let (sight, presence) = (LookTracker::default(), GazeAvailability::new(&model));
+        let (sight, presence) = (LookTracker::default(), UnknownGazeTimer::new(&model));
         GridFilter { kitchen, people, model, sight, presence, looks, belief, nodes: 0 }
     }
 

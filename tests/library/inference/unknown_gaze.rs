@@ -11,7 +11,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, State};
 use tomcom::mind::dirichlet::Dirichlet;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::gaze_presence::GazeAvailability;
+use tomcom::mind::gaze_presence::UnknownGazeTimer;
 use tomcom::mind::model::{HumanModel, LookingModel};
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::participant::gaze_gaps::GazeDropoutSchedule;
@@ -151,7 +151,7 @@ fn a_look_elsewhere_is_evidence_and_a_missing_sample_is_not() {
 /// follows, in seconds.
 fn unknown_s(confidence: f64, gap_s: f64) -> f64 {
     let model = HumanModel::default();
-    let mut presence = GazeAvailability::new(&model);
+    let mut presence = UnknownGazeTimer::new(&model);
     presence.rest(at(0.0));
     let mut sum = 0.0;
     for step in 0..240 {
@@ -177,7 +177,7 @@ fn confidence_joins_smoothly_and_a_blink_is_not_unknown() {
 
 #[test]
 fn without_a_source_all_time_is_unknown() {
-    let mut presence = GazeAvailability::new(&HumanModel::default());
+    let mut presence = UnknownGazeTimer::new(&HumanModel::default());
     presence.rest(at(2.0));
     assert!((presence.pass(at(7.0)) - 5.0).abs() < 1e-9);
     assert_eq!(presence.pass(at(7.0)), 0.0, "time counts once");

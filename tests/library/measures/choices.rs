@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::likelihood::PressLogLikelihood;
-use tomcom::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
+use tomcom::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, WeightedWorlds, World};
@@ -143,10 +143,10 @@ fn what_nobody_knows_stays_unknown() {
             Session::new(kitchen.clone(), settings(participant), 0),
             CostToGo::new(kitchen.clone()),
         );
-        BeliefErrorSummary::from_trials([&TrialSummary::from_follower(&follower)])
+        FalseBeliefErrorSummary::from_trials([&TrialSummary::from_follower(&follower)])
     };
     let nobody = figures("kind = \"keyboard\"\ngaze = \"none\"");
-    assert_eq!(nobody, BeliefErrorSummary::default(), "a person tells no beliefs");
+    assert_eq!(nobody, FalseBeliefErrorSummary::default(), "a person tells no beliefs");
     let simulated = figures("");
     assert_eq!((simulated.belief_related_errors, simulated.sequences), (Some(0), Some(0)));
     assert_eq!(simulated.mean_sequence_length, None, "no mean of nothing");

@@ -4,7 +4,7 @@ use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::kitchen::LocationId;
 use tomcom::measures::matching::{
-    CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, MatchCriterion, Similarity, matched,
+    CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
 };
 
 use super::at;
@@ -25,7 +25,7 @@ fn lane(text: &str) -> Vec<CommunicationEvent> {
         CommunicationEvent {
             press,
             clock: at(2.0 * f64::from(press)),
-            content: CommunicationTarget { kind, target: target.map(LocationId) },
+            content: ComparedContent { kind, target: target.map(LocationId) },
         }
     };
     text.split_whitespace().map(said).collect()

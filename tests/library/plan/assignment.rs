@@ -3,17 +3,17 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::kitchen::DishId;
 use tomcom::session::orders::OrderList;
 use tomcom::session::plan::{Participants, QuestionnaireItem, Study, WantedRecording, orders as orders_of_conditions};
 use tomcom::session::settings::{ArmKind, ColourTheme, ParticipantKind, WizardVisibility};
-use tomcom::session::wall_display::DisplayedArm;
+use tomcom::session::wall_display::RobotDepiction;
 
 use super::{folder, study};
 
 /// A change of a session's files, with its name.
-type NamedChange = (&'static str, fn(&mut SessionFiles));
+type NamedChange = (&'static str, fn(&mut SessionSetup));
 
 /// The same questionnaire in another language: only words differ, so that answers are analysed together.
 #[test]
@@ -141,7 +141,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 
 #[test]
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
-    let digest = |change: fn(&mut SessionFiles)| study(change).digest;
+    let digest = |change: fn(&mut SessionSetup)| study(change).digest;
     let original = digest(|_| ());
     let others: [NamedChange; 16] = [
         ("presses", |files| files.spec.trial.presses += 1),
@@ -155,7 +155,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
         ("sounds of the display", |files| files.spec.display.sound = true),
         ("the clock on the display", |files| files.spec.display.clock = true),
         ("the count on the display", |files| files.spec.display.served = Some(true)),
-        ("the robot on the display", |files| files.spec.display.arm = Some(DisplayedArm::Arm)),
+        ("the robot on the display", |files| files.spec.display.arm = Some(RobotDepiction::Arm)),
         ("seed", |files| files.spec.seed += 1),
         ("aims", |files| files.spec.plan.as_mut().expect("a plan").aims.margin += 0.1),
         ("layout", |files| files.kitchen.layout.text.push('\n')),

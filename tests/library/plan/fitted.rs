@@ -10,7 +10,7 @@ use tomcom::mind::fitted_people::{FittedPeople, HumanModelFile};
 use tomcom::mind::fitting::HumanModelParameter;
 use tomcom::mind::model::HumanModel;
 use tomcom::run::simulate::settings_of_trial;
-use tomcom::session::fitted_parameters::ParameterOwner;
+use tomcom::session::fitted_parameters::ParameterSource;
 use tomcom::session::plan::Study;
 use tomcom::session::{LogHeader, Session, SessionSpec, preflight_checks};
 
@@ -43,8 +43,8 @@ fn each_participant_has_its_own_parameters_and_the_others_those_of_the_populatio
         (spec.human.decision.tau, spec.human.decision.lapse, spec.human.perception.reading_rate_hz, spec.parameters_of)
     };
     let usual = HumanModel::default().perception.reading_rate_hz;
-    assert_eq!(of(&simulated(0)), (4.0, 0.05, usual, Some(ParameterOwner::Population)));
-    assert_eq!(of(&simulated(1)), (1.5, 0.05, 3.0, Some(ParameterOwner::Person)));
+    assert_eq!(of(&simulated(0)), (4.0, 0.05, usual, Some(ParameterSource::Population)));
+    assert_eq!(of(&simulated(1)), (1.5, 0.05, 3.0, Some(ParameterSource::Person)));
     assert_eq!(of(&simulated(2)), of(&simulated(0)));
     // The same outside of a plan, where a trial's participant is not in the file.
     let alone = read_session(&session).expect("a study").spec;

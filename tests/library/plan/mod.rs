@@ -11,14 +11,14 @@ mod tutorial;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::session::plan::Study;
 
-fn files() -> SessionFiles {
+fn files() -> SessionSetup {
     read_session(Path::new("sessions/study.toml")).expect("the study of the project")
 }
 
-fn study(change: impl Fn(&mut SessionFiles)) -> Study {
+fn study(change: impl Fn(&mut SessionSetup)) -> Study {
     let mut files = files();
     change(&mut files);
     files.study().expect("a plan")

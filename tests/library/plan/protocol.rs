@@ -17,7 +17,7 @@ use tomcom::session::event::TrialEndReason;
 use tomcom::session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, LogHeader, TrialPhase};
 
 use super::{files, folder, study};
@@ -109,7 +109,7 @@ impl Run {
 }
 
 fn consent() -> ProtocolEvent {
-    study(|_| ()).consent_given(AnswerEntry::Console)
+    study(|_| ()).consent_given(AnswerDevice::Console)
 }
 
 fn wanted(slot: usize, instructed: bool) -> WantedRecording {

@@ -10,7 +10,7 @@ use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
-use tomcom::run::leaving::TutorialCompletion;
+use tomcom::run::leaving::TutorialProgress;
 use tomcom::run::verify::verify;
 use tomcom::session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
@@ -120,7 +120,7 @@ fn a_participant_goes_through_the_whole_tutorial() {
     let wrong = session.tutorial().expect("a tutorial").1.wrong_answers.iter().sum::<u32>();
     assert_eq!(wrong, 3, "each question was answered wrongly once");
     assert_eq!(sight(session).stage, DisplayStage::Over);
-    let reached = TutorialCompletion::from_session(session).expect("a tutorial");
+    let reached = TutorialProgress::from_session(session).expect("a tutorial");
     let presses = session.tutorial().expect("a tutorial").0.steps.iter().map(|step| step.presses.len() as u64).sum();
     assert_eq!((reached.done, reached.presses, reached.wrong_answers), (reached.steps, presses, 3));
     assert_eq!(lesson.input(Event::SessionEnded), None);

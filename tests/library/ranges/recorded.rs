@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tomcom::base::time::SessionTime;
-use tomcom::edge::log::{LOG_NAME, LogReader, SimulatedLog};
+use tomcom::edge::log::{LOG_NAME, LogReader, SimulatedLogState};
 use tomcom::mind::choice::ChoiceModel;
 use tomcom::mind::choice_parameters::ChoiceParameters;
 use tomcom::robot::moment::ArmSample;
@@ -74,8 +74,8 @@ fn a_number_that_is_not_finite_comes_into_no_log() {
     let folder = folder("finite");
     let header = LogReader::open(Path::new("tests/golden/format-1-hand.jsonl")).expect("a golden log").header;
     let recording = folder.join("recording");
-    let begun = SimulatedLog::open(&recording, &header).expect("a recording can be begun");
-    let SimulatedLog::Begun { mut log, .. } = begun else { panic!("there is no recording yet") };
+    let begun = SimulatedLogState::open(&recording, &header).expect("a recording can be begun");
+    let SimulatedLogState::Begun { mut log, .. } = begun else { panic!("there is no recording yet") };
     let stamped = |seq, event| TimestampedEvent { seq, time: SessionTime::ZERO, event };
     for force_n in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let moment = ArmSample { force_n, ..ArmSample::default() };

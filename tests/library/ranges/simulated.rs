@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tomcom::base::number_range::NumberRange;
 use tomcom::communication::settings::ShadowMode;
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::log::LogReader;
 use tomcom::kitchen::layout_ranges;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
@@ -38,7 +38,7 @@ fn in_use(spec: &mut SessionSpec, path: &str) {
 }
 
 /// Simulates a trial and reads its log.
-fn check(name: &str, files: SessionFiles, out: &Path) {
+fn check(name: &str, files: SessionSetup, out: &Path) {
     let spec = files.spec.clone();
     let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.to_path_buf() };
     let figures = simulate(&request, || ()).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -6,19 +6,19 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use tomcom::analysis::advisor::Advisor;
-use tomcom::analysis::watcher::{ComparisonFollower, ComparisonRequest};
+use tomcom::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::Recommendation;
 use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
-use tomcom::edge::files::SessionFiles;
+use tomcom::edge::files::SessionSetup;
 use tomcom::edge::log::{LOG_NAME, LogReader};
 use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
-use tomcom::measures::matching::CommunicationTarget;
+use tomcom::measures::matching::ComparedContent;
 use tomcom::mind::signal_model::SignalModel;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
@@ -165,7 +165,7 @@ fn advice_that_was_not_given_is_no_verified_advice() {
 
 /// The events of a trial in which somebody presses buttons every two seconds, whatever is shown, and a wizard sends these
 /// signals, each so many seconds after the beginning.
-fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<TimestampedEvent>) {
+fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<TimestampedEvent>) {
     let mut files = session(name);
     (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
     files.spec.assistant.concept = ConceptName::Tom;
@@ -228,13 +228,15 @@ fn advice_that_nobody_sees_changes_nothing_else() {
 
 /// What was known at every moment at which the concepts were asked, with the presses of the human until then.
 fn asked(
-    files: &SessionFiles,
+    files: &SessionSetup,
     events: &[TimestampedEvent],
     window: u32,
-) -> (Vec<(u32, Arc<CommunicationContext>)>, ComparisonFollower) {
-    let request = ComparisonRequest { with: vec![ConceptName::Dev], window };
-    let mut watcher =
-        ComparisonFollower::new(Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0), &request);
+) -> (Vec<(u32, Arc<CommunicationContext>)>, SenderComparisonFollower) {
+    let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window };
+    let mut watcher = SenderComparisonFollower::new(
+        Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0),
+        &request,
+    );
     let mut known: Vec<(u32, Arc<CommunicationContext>)> = Vec::new();
     for stamped in events {
         let press = watcher.presses();
@@ -296,8 +298,8 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
-    let request = ComparisonRequest { with: vec![ConceptName::Dev], window: 3 };
-    let watcher = || ComparisonFollower::new(log.session(), &request);
+    let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window: 3 };
+    let watcher = || SenderComparisonFollower::new(log.session(), &request);
     let (mut here, there) = (watcher(), watcher().on_thread());
     let mut compared = 0;
     // Locations that were known or had just changed, each with the number of presses until then.
@@ -327,7 +329,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     here.finish();
     let found = here.comparison(true);
     // With what lay there: who tells of something else says nothing again.
-    let mut last: Vec<((CommunicationTarget, u8), u32)> = Vec::new();
+    let mut last: Vec<((ComparedContent, u8), u32)> = Vec::new();
     let mut again = 0;
     for spoken in &found.lanes[1].spoken {
         let (said, state) = (spoken.said, spoken.known.as_ref().expect("an answer").state);

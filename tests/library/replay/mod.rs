@@ -17,7 +17,7 @@ use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::{Sender, signals};
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
@@ -33,7 +33,7 @@ const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
 
 /// A session file of the project, with an inference that is coarse and quick: what is held against each other here has the
 /// same fineness.
-fn session(name: &str) -> SessionFiles {
+fn session(name: &str) -> SessionSetup {
     let mut files = read_session(&Path::new("sessions").join(name)).expect("a session file of the project");
     let inference = &mut files.spec.human.inference;
     (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
-use tomcom::edge::files::SessionFiles;
+use tomcom::edge::files::SessionSetup;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
@@ -18,7 +18,7 @@ use tomcom::run::verify::verify;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::probes::{ProbeEndReason, ProbeEvent};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
-use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, LogHeader};
 
 use super::{anything, folder, session};
@@ -81,7 +81,7 @@ fn a_changed_question_or_time_of_a_probe_does_not_verify() {
 }
 
 /// Files of a session with somebody at keyboard and mouse.
-fn by_hand(seed: u64) -> SessionFiles {
+fn by_hand(seed: u64) -> SessionSetup {
     let mut files = session("probes.toml");
     files.spec.robot.arm = ArmKind::Timed;
     files.spec.trial.condition = Condition::Wizard;
@@ -107,7 +107,7 @@ fn around_probes(engine: &SessionEngine, random: &mut impl RngExt) -> Event {
             question: index as u32 + 1,
             answer: random.random_bool(0.8).then(|| question.choices[0].clone()),
             confidence: None,
-            on: AnswerEntry::Console,
+            on: AnswerDevice::Console,
         },
         _ => return anything(&engine.session().kitchen, random),
     })
@@ -167,7 +167,7 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
         let open = engine.session().probes.open.as_ref().expect("a probe");
         let (shown, asked) = open.question().expect("a question");
         let (question, answer) = (shown as u32 + 1, Some(asked.choices[0].clone()));
-        let on = AnswerEntry::Display;
+        let on = AnswerDevice::Display;
         let event = Event::Probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on });
         (engine.session().time + SessionTime::from_secs_f64(after_s), event)
     };

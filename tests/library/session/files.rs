@@ -6,7 +6,7 @@ use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
-use tomcom::session::wall_display::{DisplaySpec, DisplayedArm};
+use tomcom::session::wall_display::{DisplaySpec, RobotDepiction};
 
 #[test]
 fn every_session_file_loads_and_its_keys_are_unambiguous() {
@@ -34,7 +34,7 @@ fn the_default_session_spells_out_every_default() {
     let robot = RobotSpec { arm: ArmKind::Timed, ..spec.robot };
     assert_ne!(spec.human, only_layout.human);
     assert_eq!((spec.display.reasons, only_layout.display.reasons), (Some(true), None));
-    assert_eq!((spec.display.arm, only_layout.display.arm), (Some(DisplayedArm::Hand), None));
+    assert_eq!((spec.display.arm, only_layout.display.arm), (Some(RobotDepiction::Hand), None));
     assert_eq!((spec.display.served, only_layout.display.served), (Some(false), None));
     let display = DisplaySpec { reasons: None, served: None, arm: None, ..spec.display };
     assert_eq!(SessionSpec { human: only_layout.human.clone(), robot, display, ..spec }, only_layout);

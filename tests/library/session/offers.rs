@@ -2,7 +2,7 @@
 
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::offer::OfferCloseReason;
-use tomcom::communication::recommendation::{PressProposal, Recommendation, SignalOption};
+use tomcom::communication::recommendation::{HumanPressProposal, Recommendation, SignalOption};
 use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
 use tomcom::kitchen::OrderContent;
@@ -119,7 +119,7 @@ fn the_thresholds_of_tom_are_probabilities() {
 fn dev_offers_presses_that_cannot_be_sent() {
     let proposes = |seconds, presses: &[&str]| {
         let presses: Vec<String> = presses.iter().map(|press| press.to_string()).collect();
-        let proposal = (!presses.is_empty()).then_some(PressProposal { error: 0, presses });
+        let proposal = (!presses.is_empty()).then_some(HumanPressProposal { error: 0, presses });
         (seconds, Event::Advised(Recommendation { proposal, ..Recommendation::silent(0, at(seconds)) }))
     };
     let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Dev);

@@ -9,7 +9,7 @@ use tomcom::session::event::TrialEndReason;
 use tomcom::session::probe_sampling::aspect;
 use tomcom::session::probes::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin};
 use tomcom::session::settings::{Condition, GazeSource, ProbeSpec, SessionSpec};
-use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, TimestampedEvent, TrialPhase};
 
 use super::{at, check, engine, kitchen, press, refused};
@@ -35,7 +35,7 @@ fn requested() -> Event {
 fn answered(engine: &SessionEngine, question: u32) -> Event {
     let open = engine.session().probes.open.as_ref().expect("a probe is held");
     let answer = Some(open.questions[question as usize - 1].choices[0].clone());
-    probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on: AnswerEntry::Display })
+    probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on: AnswerDevice::Display })
 }
 
 /// What probes did, with their times.
@@ -115,7 +115,7 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
     assert!(refused(&mut engine, 22.0, second).contains("another question"));
     let answer = |answer: &str, confidence| {
         let answer = Some(answer.to_string());
-        probe(ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on: AnswerEntry::Console })
+        probe(ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on: AnswerDevice::Console })
     };
     assert!(refused(&mut engine, 22.0, answer("a violin", None)).contains("no such choice"));
     let choice = engine.session().probes.open.as_ref().expect("a probe").questions[0].choices[0].clone();
@@ -123,8 +123,13 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
     assert!(refused(&mut engine, 22.0, requested()).contains("already"));
     let corrected = Event::KitchenCorrected { location: "counter".to_string(), content: "nori".to_string() };
     assert!(refused(&mut engine, 22.0, corrected).contains("after the freeze probe"));
-    let unknown =
-        probe(ProbeEvent::Answered { probe: 1, question: 1, answer: None, confidence: None, on: AnswerEntry::Display });
+    let unknown = probe(ProbeEvent::Answered {
+        probe: 1,
+        question: 1,
+        answer: None,
+        confidence: None,
+        on: AnswerDevice::Display,
+    });
     check(&mut engine, &[(23.0, unknown)]);
     let no_reason = probe(ProbeEvent::Skipped { probe: 1, reason: " ".to_string() });
     assert!(refused(&mut engine, 23.0, no_reason).contains("reason"));

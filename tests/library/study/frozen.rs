@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::edge::files::{SessionFiles, read_session};
+use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::frozen_file::{freeze, read_frozen};
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::CsvTable;
@@ -15,7 +15,7 @@ use tomcom::study::report;
 
 use super::trials;
 
-fn files() -> SessionFiles {
+fn files() -> SessionSetup {
     read_session(Path::new("sessions/arms.toml")).expect("the study of arms")
 }
 

@@ -16,7 +16,7 @@ mod tutorials;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::measures::belief_basis::BeliefSource;
-use tomcom::measures::cause_kinds::CauseKindCounts;
+use tomcom::measures::cause_kinds::BeliefErrorCounts;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use tomcom::session::study_arm::StudyArm;
@@ -66,7 +66,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
             basis: BeliefSource::Recorded,
             errors: related,
             of_two: 0,
-            causes: CauseKindCounts { places: related, ..CauseKindCounts::default() },
+            causes: BeliefErrorCounts { places: related, ..BeliefErrorCounts::default() },
             lengths_any_aspect: lengths.clone(),
             lengths,
             recovery_s: vec![6.0],

@@ -5,7 +5,7 @@ use tomcom::kitchen::AspectId;
 use tomcom::study::prevention::{
     FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
 };
-use tomcom::study::roc::{PreventedTrialErrors, compare};
+use tomcom::study::roc::{ConceptPreventionCounts, compare};
 
 use super::{at, near};
 
@@ -125,7 +125,7 @@ fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_e
 
 #[test]
 fn concepts_are_compared_where_they_say_equally_much() {
-    let swept = |concept, parameter, signals, prevented, useless| PreventedTrialErrors {
+    let swept = |concept, parameter, signals, prevented, useless| ConceptPreventionCounts {
         concept,
         parameter,
         count: PreventionCounts {

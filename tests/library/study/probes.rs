@@ -8,7 +8,7 @@ use tomcom::analysis::probe_accuracy::ProbeAccuracyGrouping;
 use tomcom::analysis::probe_detection::{ProbeDetection, WeightedProbeBelief};
 use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{
-    AspectAtFreeze, BeliefAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial,
+    AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
 use tomcom::base::rng::{Stream, stream};
 use tomcom::communication::concept::ConceptName;
@@ -58,7 +58,7 @@ impl Synthetic {
             frozen: Some(AspectAtFreeze {
                 estimate_p_truth: self.estimate,
                 estimate_p_false: 1.0 - self.estimate,
-                believed: Some(BeliefAtFreeze { believes: believes.to_string(), p_truth: self.belief }),
+                believed: Some(RecordedBeliefAtFreeze { believes: believes.to_string(), p_truth: self.belief }),
                 ..frozen(self.is_recipe)
             }),
             ..question(kind)

@@ -11,8 +11,8 @@ use tomcom::measures::attribution::FalseBeliefTarget;
 use tomcom::measures::belief_basis::BeliefSource;
 use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom::measures::errors::PressJudge;
-use tomcom::study::belief_trace::{BeliefTrace, BeliefTraceEvent};
-use tomcom::study::known_beliefs::{FalseBeliefAgreement, KnownFalseBeliefs};
+use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
+use tomcom::study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use tomcom::study::prevention::TrialGroundTruth;
 use tomcom::study::rater_episodes::rater_episodes;
 
@@ -23,7 +23,7 @@ struct Log {
     kitchen: Arc<Kitchen>,
     cost: CostToGo,
     judge: PressJudge,
-    trace: BeliefTrace,
+    trace: BeliefEvidence,
     judged: Vec<JudgedPress>,
     coded: Vec<(u64, FalseBeliefTarget)>,
     state: State,
@@ -37,7 +37,7 @@ impl Log {
         at(self.trace.events.len() as f64)
     }
 
-    fn add(&mut self, event: BeliefTraceEvent) {
+    fn add(&mut self, event: BeliefEvidenceEvent) {
         let now = self.now();
         self.trace.events.push((now, event));
     }
@@ -49,14 +49,14 @@ impl Log {
         let location = |name: &str| kitchen.location_named(name).unwrap_or_else(|| panic!("no location {name}"));
         let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
         match verb {
-            "wait" => self.add(BeliefTraceEvent::Told { aspects: Vec::new() }),
-            "look" => self.add(BeliefTraceEvent::Looked { location: location(rest) }),
+            "wait" => self.add(BeliefEvidenceEvent::Told { aspects: Vec::new() }),
+            "look" => self.add(BeliefEvidenceEvent::Looked { location: location(rest) }),
             "tell" => {
                 let mut aspects = vec![AspectId::of_location(location(rest))];
                 if let OrderContent::Dish(dish) = self.state.order(location(rest)) {
                     aspects.extend(rest.starts_with("order").then(|| kitchen.aspect_of_dish(dish)));
                 }
-                self.add(BeliefTraceEvent::Told { aspects });
+                self.add(BeliefEvidenceEvent::Told { aspects });
             }
             "press" => self.press(rest),
             place => {
@@ -65,7 +65,7 @@ impl Log {
                     true => self.state.set_order(place, OrderContent::Dish(kitchen.dish_named(rest).expect("a dish"))),
                     false => self.state.set_content(place, kitchen.content_named(rest).expect("a content")),
                 }
-                self.add(BeliefTraceEvent::Changed { before, after: self.state });
+                self.add(BeliefEvidenceEvent::Changed { before, after: self.state });
             }
         }
     }
@@ -83,7 +83,7 @@ impl Log {
             self.coded.push((seq, target.expect("a target")));
         }
         self.state = press.after;
-        self.add(BeliefTraceEvent::Pressed { seq, press });
+        self.add(BeliefEvidenceEvent::Pressed { seq, press });
     }
 
     fn episodes(&mut self) -> Vec<Told> {
@@ -104,13 +104,13 @@ fn log(lines: &[&str]) -> Log {
     let mut log = Log {
         cost: CostToGo::new(kitchen.clone()),
         judge: PressJudge::new(kitchen.clone()),
-        trace: BeliefTrace::default(),
+        trace: BeliefEvidence::default(),
         judged: Vec::new(),
         coded: Vec::new(),
         state,
         kitchen,
     };
-    log.add(BeliefTraceEvent::Started { state });
+    log.add(BeliefEvidenceEvent::Started { state });
     lines.iter().for_each(|line| log.line(line));
     log
 }
@@ -255,9 +255,9 @@ fn only_what_both_raters_say_counts_and_the_rest_is_counted_beside_it() {
     let other = RaterCodes(
         [(1, belief("plate")), (2, belief("counter")), (3, ErrorCauseCode::Race), (4, ErrorCauseCode::Slip)].into(),
     );
-    let shared = FalseBeliefAgreement::count(&[one.clone(), other.clone()]);
+    let shared = RaterFalseBeliefAgreement::count(&[one.clone(), other.clone()]);
     assert_eq!((shared.same, shared.differing, shared.of_one), (1, 1, 1));
-    assert_eq!(FalseBeliefAgreement::count(&[other.clone(), one.clone()]), shared, "nobody is the first");
+    assert_eq!(RaterFalseBeliefAgreement::count(&[other.clone(), one.clone()]), shared, "nobody is the first");
     assert_eq!(one.agreed(&other).0.into_keys().collect::<Vec<_>>(), [1, 4]);
 }
 

@@ -7,7 +7,7 @@ use tomcom::analysis::offer_summary::TimedOffer;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::offer::{
-    Offer, OfferCloseReason, OfferKeyUse, OfferedAdvice, OfferedCommunication, UsedOffer,
+    Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
 };
 use tomcom::communication::{Sender, Signal};
 use tomcom::edge::log::{consensus_file, rater_codes};
@@ -29,8 +29,8 @@ use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::prevention::PreventionCounts;
 use tomcom::study::report::{self, page_head};
-use tomcom::study::robot_tally::{RobotArmSummary, RobotEventTally};
-use tomcom::study::roc::PreventedTrialErrors;
+use tomcom::study::robot_tally::{ArmSafetySummary, RobotEventTally};
+use tomcom::study::roc::ConceptPreventionCounts;
 use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::{at, near, trial, trials};
@@ -169,7 +169,7 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     trials[2].ended = Some(TrialEndReason::Time);
     trials[2].arm = ArmKind::Physics;
     trials[2].robot.arm =
-        Some(RobotArmSummary { contacts: 3, peak_force_n: Some(17.25), ..RobotArmSummary::default() });
+        Some(ArmSafetySummary { contacts: 3, peak_force_n: Some(17.25), ..ArmSafetySummary::default() });
     let count = PreventionCounts {
         presses: 100,
         signals: 4,
@@ -178,7 +178,7 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
         outside: 50,
         ..PreventionCounts::default()
     };
-    trials[0].swept = vec![PreventedTrialErrors { concept: ConceptName::TomCom, parameter: 1.0, count }];
+    trials[0].swept = vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 1.0, count }];
     let page = report(&trials, &CsvTable::ALL);
     assert!(page.contains("4 after the set number of presses, 1 after the set time, 1 early by the wizard."));
     assert!(page.contains("timed in 5 trials and simulated with contact forces in 1 trial; the statistics pool them."));
@@ -233,13 +233,13 @@ fn two_raters_say_why_people_erred() {
 
 #[test]
 fn what_was_offered_stands_beside_what_the_wizard_did() {
-    let offer = |seq: u64, stood_s: f64, how: Option<OfferKeyUse>, reason| {
+    let offer = |seq: u64, stood_s: f64, how: Option<OfferKeyKind>, reason| {
         let opened = SessionTime::from_secs_f64(10.0 * seq as f64);
         let sent = how.map(|_| opened + SessionTime::from_secs_f64(stood_s));
         let what = OfferedCommunication::Signal(Signal::ShowRecipe("order_1".to_string()));
         let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
         TimedOffer {
-            offer: Offer { seq, opened, used: how.zip(sent).map(|(how, at)| UsedOffer { how, at }), advice },
+            offer: Offer { seq, opened, used: how.zip(sent).map(|(how, at)| OfferUse { how, at }), advice },
             opened_s: opened.as_secs_f64(),
             stood_s: Some(stood_s),
             reason: Some(reason),
@@ -250,8 +250,8 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
     let mut trials = trials(&[[12, 5]], &[[9, 15]]);
     let wizards = trials.iter_mut().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
     wizards.offers = Some(vec![
-        offer(1, 3.0, Some(OfferKeyUse::Taken), OfferCloseReason::Taken),
-        offer(2, 2.0, Some(OfferKeyUse::OwnKey), OfferCloseReason::OwnKey),
+        offer(1, 3.0, Some(OfferKeyKind::Taken), OfferCloseReason::Taken),
+        offer(2, 2.0, Some(OfferKeyKind::OwnKey), OfferCloseReason::OwnKey),
         offer(3, 8.0, None, OfferCloseReason::Fell),
     ]);
     let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);

@@ -10,7 +10,7 @@ use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 use tomcom::study::column::{CsvCell, CsvRow};
-use tomcom::study::tables::tutorial_answers::{TutorialAnswer, TutorialAnswers};
+use tomcom::study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
 use tomcom::study::tutorial_summary::TutorialSummary;
 
 /// The settings of the first recording of a participant of the study, in which the tutorial is.
@@ -22,8 +22,8 @@ fn settings(kind: ParticipantKind) -> SessionSpec {
 }
 
 /// The rows of these events, each with its time in seconds.
-fn answers(spec: &SessionSpec, events: Vec<(f64, ProtocolEvent)>) -> Vec<TutorialAnswer> {
-    let mut answers = TutorialAnswers::new("first", spec).expect("a tutorial");
+fn answers(spec: &SessionSpec, events: Vec<(f64, ProtocolEvent)>) -> Vec<TutorialQuestionRow> {
+    let mut answers = TutorialAnswerCollector::new("first", spec).expect("a tutorial");
     for (seq, (time_s, event)) in events.into_iter().enumerate() {
         let time = SessionTime::from_secs_f64(time_s);
         answers.note(&TimestampedEvent { seq: seq as u64, time, event: Event::Protocol(event) });
@@ -84,5 +84,5 @@ fn a_recording_in_which_no_tutorial_began_has_no_rows() {
     assert!(answers(&spec, vec![(1.0, instruction)]).is_empty());
     assert_eq!(TutorialSummary::from_answers(&answers(&spec, vec![(1.0, begun())])), None);
     // At the keyboard there is no tutorial.
-    assert!(TutorialAnswers::new("first", &settings(ParticipantKind::Keyboard)).is_none());
+    assert!(TutorialAnswerCollector::new("first", &settings(ParticipantKind::Keyboard)).is_none());
 }

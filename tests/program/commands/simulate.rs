@@ -137,7 +137,7 @@ fn simulate_tells_what_holds_at_the_console_alone() {
     let told = |arguments: &[&str]| {
         let output = check(&[&["simulate", &session, "--out", &out], arguments].concat(), 0);
         let told = String::from_utf8_lossy(&output.stderr);
-        ["by --condition assistant", "by --shadow"].map(|option| told.contains(option))
+        ["if --condition assistant is given", "if --shadow is given"].map(|option| told.contains(option))
     };
     assert_eq!(told(&[]), [true, true]);
     assert_eq!(told(&["--shadow", "--seed", "2"]), [true, false]);

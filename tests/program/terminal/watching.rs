@@ -64,7 +64,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     assert!(simulated.status.success(), "{simulated:?}");
     let name = terminal.recording().display().to_string();
     terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
-    terminal.see("R1: 0 of");
+    terminal.see("R1: 0/");
     terminal.see("error 1 is the first without a code");
     for telling in ["Beliefs", "assistant", "Recommendation", "On the participant's display"] {
         assert!(!terminal.screen().contains(telling), "{}", terminal.screen());
@@ -94,7 +94,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     assert!(matches!(&kept[..], [a, b] if a.ends_with(",slip,") && b.ends_with(",belief,cooking_pot")), "{kept:?}");
 
     terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
-    terminal.see("R1: 2 of");
+    terminal.see("R1: 2/");
     terminal.see("error 3 is the first without a code");
     terminal.key("C-c");
     terminal.is_whole("0");

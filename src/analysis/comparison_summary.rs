@@ -113,8 +113,8 @@ pub struct UnmatchedCommunicationSummary {
 /// Context of a communication: beliefs, recommendation and the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommunicationContextSummary {
-    /// Estimated belief about every state aspect, without the effect of signals sent within the window of the
-    /// comparison.
+    /// Estimated belief about every state aspect before the communication, as if the signals sent shortly before (within
+    /// the window in which communications of different senders match) had not been sent.
     pub beliefs: Vec<ListedEstimatedBelief>,
     /// The assistant's recommendation at the time of the communication.
     pub advice: Option<Recommendation>,

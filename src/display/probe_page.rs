@@ -47,7 +47,7 @@ pub struct ProbeChoice {
     pub number: usize,
     /// Text of the choice.
     pub words: String,
-    /// Picture of the choice.
+    /// Picture beside the text of this answer choice; `None` for a choice without a picture.
     pub shows: Option<ProbePicture>,
 }
 

@@ -25,7 +25,7 @@ impl SimulatedParticipant {
         self.at_targets.as_ref().map(|eyes| eyes.due())
     }
 
-    /// The gaze sample of the accuracy check that is due now.
+    /// Produces the simulated participant's gaze sample that is due now in a gaze accuracy check.
     pub fn look_at_target(&mut self, now: SessionTime) -> Option<GazeSample> {
         self.at_targets.as_mut().map(|eyes| eyes.sample(now))
     }

@@ -70,7 +70,7 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
 /// Draws the text input of the wizard's note.
 pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
     let says = "The trial is paused and the robot stands, so the space bar types a space here.";
-    input_line(brush, screen, text, ("Note to be recorded", "the trial is paused"), says);
+    input_line(brush, screen, text, ("Note to be recorded", "the trial is paused: space types a space"), says);
 }
 
 /// Draws the text input of a questionnaire answer below its item.
@@ -78,7 +78,7 @@ pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextI
     let shown = session.protocol.as_ref().map_or(0, |protocol| protocol.item);
     let item = session.questionnaire().and_then(|asked| asked.items.get(shown));
     let says = item.map_or("", |item| item.text.as_str());
-    input_line(brush, screen, text, ("Answer", "no trial is running"), says);
+    input_line(brush, screen, text, ("Answer", "no trial is running: space types a space"), says);
 }
 
 fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remark): (&str, &str), says: &str) {

@@ -73,7 +73,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     let place = kitchen.locations.iter().find(|location| location.name == "cooking_pot").expect("a pot");
     let letter = place.signal_key.expect("a key").to_string();
     let first = [
-        ("9", "\"9\" has no meaning"),
+        ("9", "the key \"9\" does nothing here"),
         ("1", "saved: error 1, slip"),
         ("Enter", "coded, 1 since opening"),
         (&letter, "saved: error 2, wrong about cooking pot"),

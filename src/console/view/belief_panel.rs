@@ -52,9 +52,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if area.area() == 0 || visibility(session, model) < WizardVisibility::Belief {
         return;
     }
-    let now = if session.is_running() { model.now } else { model.now.min(session.time) };
     let moments = model.belief.until(model.now);
-    let panel = Panel { session, now, moments, beliefs: beliefs(session, model) };
+    let panel = Panel { session, now: model.now, moments, beliefs: beliefs(session, model) };
     if area.height < FRAMED {
         return panel.lines(brush, area);
     }
@@ -252,7 +251,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the estimated probability of the truth over the last minute, with axes.
+    /// Draws the estimated probability of the truth over the last minute of the trial's clock, with axes.
     fn chart(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect) {
         let (thinks, truth) = self.values(belief);
         let style = brush.style(role(belief));
@@ -301,7 +300,8 @@ impl Panel<'_> {
     fn curve(&self, brush: &mut Painter, aspect: AspectId, area: Rect) {
         let Rect { x, y, width: columns, height: rows } = area;
         let levels = brush.theme.signs().levels;
-        let course = belief_track::course(self.moments, aspect.index(), self.now, SHOWN_S, usize::from(columns));
+        let (moments, aspect, columns) = (self.moments, aspect.index(), usize::from(columns));
+        let course = belief_track::course(moments, aspect, self.session, self.now, SHOWN_S, columns);
         for (column, p) in course.iter().enumerate() {
             let Some(p) = p else { continue };
             let style = brush.style(if *p < FALSE_BELOW { TextRole::FalseBelief } else { TextRole::Quiet });

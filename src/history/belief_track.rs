@@ -23,6 +23,10 @@ pub struct AspectBeliefSnapshot {
     pub p: f32,
     /// Expected probability that the participant gives to the true value.
     pub p_truth: f32,
+    /// Index of the wrong value that the participant most probably believes.
+    pub wrong: u8,
+    /// Expected probability that the participant gives to the wrong value most probably believed.
+    pub p_wrong: f32,
 }
 
 impl AspectBeliefSnapshot {
@@ -56,11 +60,17 @@ impl BeliefSnapshot {
     ) -> BeliefSnapshot {
         let held = |index: usize| {
             let of_aspect = &belief.aspects[index];
-            let believes = of_aspect.most_likely();
+            let (mean, aspect) = (of_aspect.mean(), AspectId(index as u8));
+            let (believes, truth) = (of_aspect.most_likely(), kitchen.true_value(state, aspect));
+            let others = (0..mean.len()).filter(|&value| value != truth);
+            let wrong = others.reduce(|best, value| if mean[value] > mean[best] { value } else { best });
+            let wrong = wrong.unwrap_or(truth);
             AspectBeliefSnapshot {
                 believes: believes as u8,
-                p: of_aspect.mean()[believes] as f32,
-                p_truth: belief.p_truth(kitchen, state, AspectId(index as u8)) as f32,
+                p: mean[believes] as f32,
+                p_truth: belief.p_truth(kitchen, state, aspect) as f32,
+                wrong: wrong as u8,
+                p_wrong: mean[wrong] as f32,
             }
         };
         let held: Vec<AspectBeliefSnapshot> = (0..kitchen.aspects.len()).map(held).collect();
@@ -133,17 +143,17 @@ pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionT
 pub fn course(
     moments: &[BeliefSnapshot],
     aspect: usize,
+    session: &Session,
     now: SessionTime,
     seconds: f64,
     columns: usize,
 ) -> Vec<Option<f64>> {
+    let clock_s = session.trial_clock(now).as_secs_f64();
     let at = |column: usize| {
         let back_s = seconds * (columns - 1 - column) as f64 / columns.max(2) as f64;
         let is_as_old = |moment: &BeliefSnapshot| session.age(moment.time, now).as_secs_f64() >= back_s;
         let last = moments[..moments.partition_point(is_as_old)].last();
         last.filter(|_| clock_s >= back_s).map(|moment| f64::from(moment.held[aspect].p_truth))
-    session: &Session,
     };
     (0..columns).map(at).collect()
 }
-    let clock_s = session.trial_clock(now).as_secs_f64();

@@ -159,13 +159,14 @@ impl Panel<'_> {
         (value(belief.thinks), value(belief.truth))
     }
 
-    /// Probability of what the participant believes, and the time for which the truth has been improbable: "83 % 0:22".
+    /// Probability of what the participant thinks or may think, as the line says, and the time for which the truth has
+    /// been improbable: "83 % 0:22".
     fn certainty(&self, belief: &EstimatedBelief) -> String {
         let age = belief.since.map(|since| self.session.age(since, self.now).to_string()).unwrap_or_default();
         format!("{:>5} {age:>5}", percent(f64::from(belief.p)))
     }
 
-    /// Name of a belief's state aspect; for an unsure belief with its most probable value.
+    /// Name of a belief's state aspect; for an unsure belief with its most probable wrong value.
     fn title(&self, belief: &EstimatedBelief) -> String {
         let name = name(self.session, belief.aspect);
         match belief.standing {
@@ -259,7 +260,8 @@ impl Panel<'_> {
         let name = name(self.session, belief.aspect);
         let thought = match belief.standing {
             BeliefCorrectness::Right => format!("{name}: {truth}"),
-            _ => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
+            BeliefCorrectness::Unsure => format!("{name}: may think {thinks} {}, is {truth}", percent(belief.p.into())),
+            BeliefCorrectness::False => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
         };
         // The curve is the probability of the truth; if there is no room for both, the title says this instead of what
         // is believed.

@@ -96,18 +96,15 @@ impl ShownOffer<'_> {
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
-        // Each belief has one certainty on the screen, that of the belief panel. Where the panel says that the truth is
-        // thought most, the value for which the signal was offered has no certainty there.
+        // Each belief has one value and one certainty on the screen, those of the belief panel.
         let (believes, p) = match &belief {
-            Some(belief) if belief.thinks == belief.truth => (reason.believes.as_str(), None),
-            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), Some(belief.p.into())),
-            None => (reason.believes.as_str(), Some(reason.p_believes)),
+            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), f64::from(belief.p)),
+            None => (reason.believes.as_str(), reason.p_believes),
         };
         let since = belief.and_then(|belief| belief.since);
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
-        let thinks = if p.is_some_and(|p| p >= 0.5) { "thinks" } else { "may think" };
-        let certainty = p.map_or("unsure".to_string(), percent);
-        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{certainty}{age}")];
+        let thinks = if p >= 0.5 { "thinks" } else { "may think" };
+        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{}{age}", percent(p))];
         said.extend(reason.prevents.as_ref().map(|button| format!("next error: {}", wording::location(button))));
         said
     }

@@ -98,7 +98,9 @@ impl Panel<'_> {
             self.beliefs.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).collect();
         let right = self.beliefs.len() - told.len();
         for (index, belief) in told.iter().enumerate() {
-            let lines = if is_wide { Vec::new() } else { self.told(belief, area.width - 2) };
+            // A wide panel gives a belief a line of its own, and further ones if its words need them.
+            let is_row = is_wide && self.fits_row(belief, area.width);
+            let lines = if is_row { Vec::new() } else { self.told(belief, area.width - 2) };
             let rows = 1 + lines.len() as u16;
             // The panel's last line counts the beliefs that have no room.
             if y + rows >= area.bottom() {
@@ -110,7 +112,7 @@ impl Panel<'_> {
                 brush.text(area.x, y, area.width, &words, style);
                 return;
             }
-            match is_wide {
+            match is_row {
                 true => self.row(brush, belief, area, y),
                 false => self.head(brush, belief, area, y, &lines),
             }
@@ -175,11 +177,41 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a belief in a narrow panel: its name and certainty, and below them what the participant believes and, if
+    /// What stands at the right end of a belief's first line: its certainty, and in a wide panel the presses that it
+    /// costs: "83 % 0:22   4 presses".
+    fn end(&self, belief: &EstimatedBelief, columns: u16) -> String {
+        let certainty = self.certainty(belief);
+        if columns < ONE_LINE || !are_by_cost(self.session) {
+            return certainty;
+        }
+        let cost = match belief.cost.round() {
+            cost if cost < 1.0 => String::new(),
+            1.0 => " 1 press".to_string(),
+            cost => format!("{cost:>2} presses"),
+        };
+        format!("{certainty}  {cost:<10}")
+    }
+
+    /// What stands at the left of a belief that has one line: aspect and believed value, and what is true.
+    fn sides(&self, belief: &EstimatedBelief) -> (String, String) {
+        let (thinks, truth) = self.values(belief);
+        match belief.standing {
+            BeliefCorrectness::Unsure => (self.title(belief), String::new()),
+            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
+        }
+    }
+
+    /// Whether a belief's words fit into one line beside its certainty.
+    fn fits_row(&self, belief: &EstimatedBelief, columns: u16) -> bool {
+        let (head, is) = self.sides(belief);
+        width(&head) + width(&is) + width(&self.end(belief, columns)) < columns
+    }
+
+    /// Draws a belief in several lines: its name and certainty, and below them what the participant believes and, if
     /// that is false, what is true.
     fn head(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16, lines: &[String]) {
         let style = brush.style(role(belief));
-        let end = self.certainty(belief);
+        let end = self.end(belief, area.width);
         let (title, room) = (name(self.session, belief.aspect), area.width.saturating_sub(width(&end) + 1));
         brush.text(area.x, y, room, &title, style);
         brush.text_right(area.right(), y, area.width, &end, style);
@@ -192,21 +224,9 @@ impl Panel<'_> {
     /// Draws an estimated belief in one line of a wide panel.
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
         let style = brush.style(role(belief));
-        let mut end = self.certainty(belief);
-        if are_by_cost(self.session) {
-            let cost = match belief.cost.round() {
-                cost if cost < 1.0 => String::new(),
-                1.0 => " 1 press".to_string(),
-                cost => format!("{cost:>2} presses"),
-            };
-            end = format!("{end}  {cost:<10}");
-        }
+        let end = self.end(belief, area.width);
         brush.text_right(area.right(), y, area.width, &end, style);
-        let (thinks, truth) = self.values(belief);
-        let (head, is) = match belief.standing {
-            BeliefCorrectness::Unsure => (self.title(belief), String::new()),
-            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
-        };
+        let (head, is) = self.sides(belief);
         // Words have priority over the probability bar, since the number shows the same.
         let mut room = area.width.saturating_sub(width(&end) + 1);
         if width(&head) + width(&is) + BAR < room {

@@ -32,11 +32,12 @@ pub struct EstimatedBelief {
     pub aspect: AspectId,
     /// Whether the belief is probably false, unsure or right.
     pub standing: BeliefCorrectness,
-    /// Index of the value that the participant most probably believes.
+    /// Index of the value that the participant most probably believes; for an unsure belief of the wrong values only,
+    /// since the true value would tell nothing.
     pub thinks: usize,
     /// Index of the state aspect's true value.
     pub truth: usize,
-    /// Expected probability of the value that the participant most probably believes.
+    /// Expected probability that the participant gives to the value [`EstimatedBelief::thinks`].
     pub p: f32,
     /// Session time since which the true value has been improbable in the estimate; `None` while it is not.
     pub since: Option<SessionTime>,
@@ -63,8 +64,12 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
             false if offered.contains(&aspect) => BeliefCorrectness::Unsure,
             false => BeliefCorrectness::Right,
         };
+        let (thinks, p) = match standing {
+            BeliefCorrectness::Unsure => (usize::from(held.wrong), held.p_wrong),
+            BeliefCorrectness::False | BeliefCorrectness::Right => (thinks, held.p),
+        };
         let since = belief_track::wrong_since(moments, index);
-        EstimatedBelief { aspect, standing, thinks, truth, p: held.p, since, cost: costs[index] }
+        EstimatedBelief { aspect, standing, thinks, truth, p, since, cost: costs[index] }
     });
     let mut beliefs: Vec<EstimatedBelief> = told.collect();
     beliefs.sort_by(|a, b| {

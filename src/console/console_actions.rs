@@ -7,7 +7,7 @@ use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form;
 use super::hands;
-use super::held_keys::ANSWER_S;
+use super::held_keys::is_right_after_list;
 use super::key_action::{KeyAction, KeyLayer};
 use super::list_cursor::ListCursor;
 use super::notice::NoticeLevel;
@@ -25,7 +25,7 @@ use crate::session::{Event, Session, TrialPhase};
 
 /// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
-    if model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S) {
+    if is_right_after_list(model) {
         model.say(NoticeLevel::Refused, "signal not sent: enter came right after a list closed; press it again");
         return None;
     }

@@ -48,6 +48,11 @@ pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> KeyPressKind {
     touch
 }
 
+/// Whether a list has closed so recently that an enter key was probably meant for the list.
+pub(super) fn is_right_after_list(model: &ConsoleModel) -> bool {
+    model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S)
+}
+
 /// Whether a second press shortly after the first counts although the terminal cannot tell it from a held key. It does
 /// not count for actions that toggle, nor for actions that are recorded each time.
 pub(super) fn may_follow_at_once(action: &KeyAction) -> bool {

@@ -85,7 +85,7 @@ pub(super) fn press(
         }
         // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
         _ if touch == KeyPressKind::Held && !probe_keys::takes_digit(model, session, code) => {
-            if model.dialog.is_none() {
+            if model.dialog.is_none() || reopens(model, action.as_ref()) {
                 model.say(NoticeLevel::Refused, format!("the key \"{chord}\" is held down: it counts as one press"));
             }
             None
@@ -95,7 +95,7 @@ pub(super) fn press(
             on_sheet(model, session, code, action, touch)
         }
         Some(action) if touch == KeyPressKind::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            model.say(NoticeLevel::Refused, format!("the key \"{chord}\" may still be held down: press it again"));
+            ask_again(model, chord);
             None
         }
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
@@ -184,6 +184,20 @@ fn on_sheet(
     }
 }
 
+/// Whether the key is the one that opened the question on the screen, whether to quit or to end the trial.
+fn reopens(model: &ConsoleModel, action: Option<&KeyAction>) -> bool {
+    match model.dialog {
+        Some(Dialog::Quit) => action == Some(&KeyAction::Quit),
+        Some(Dialog::EndTrial) => action == Some(&KeyAction::EndTrial),
+        _ => false,
+    }
+}
+
+/// Says that a key did not count, since it cannot be told from one that is held down.
+fn ask_again(model: &mut ConsoleModel, chord: KeyChord) {
+    model.say(NoticeLevel::Refused, format!("the key \"{chord}\" may still be held down: press it again"));
+}
+
 /// Stops the robot (space bar), in every view; has no effect if the wizard has stopped the robot already.
 fn stop_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.robot.is_stopped_by_wizard() {
@@ -218,13 +232,10 @@ fn answer(
         report(model, chord.code, action);
         return None;
     }
-    let again = match dialog {
-        Dialog::Quit => action == Some(KeyAction::Quit),
-        Dialog::EndTrial => action == Some(KeyAction::EndTrial),
-        _ => false,
-    };
+    let again = reopens(model, action.as_ref());
     // The key that opened the question answers it with yes, but not while it may still be held down.
     if again && touch == KeyPressKind::Again {
+        ask_again(model, chord);
         return None;
     }
     model.dialog = None;

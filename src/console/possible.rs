@@ -5,6 +5,7 @@ use super::compared::ComparisonAction;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
 use super::hands::skippable;
+use super::held_keys::is_right_after_list;
 use super::key_action::{KeyAction, ManualAction, RaterAction, ViewAction};
 use super::playback::{Playback, ReplayAction, SPEEDS};
 use super::preflight;
@@ -92,7 +93,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
             let event = Event::SignalShown { by, signal, accepted: None, offer: None };
             refusal(session, model.now, &event).is_none()
         }
-        KeyAction::Accept => offers::enter(session, model.now).is_ok(),
+        KeyAction::Accept => !is_right_after_list(model) && offers::enter(session, model.now).is_ok(),
         KeyAction::TakeBack => admits(Event::SignalEnded { reason: SignalEndReason::TakenBack }),
         KeyAction::Press(_) => session.is_running(),
         KeyAction::Note(_) => session.phase != TrialPhase::Closed,

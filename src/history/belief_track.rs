@@ -4,14 +4,12 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, State};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
+use crate::session::Session;
 
 /// Least time between two snapshots of the belief estimate that differ little, in seconds.
 const STEP_S: f64 = 0.2;
 /// Change of a P(truth), the estimated probability of an aspect's true value, for which a snapshot is kept at once.
 const JUMP: f64 = 0.1;
-/// On screens, a change of a P(truth) by gaze of at least [`NEWS`] is marked for this long, in seconds.
-const NEWS_S: f64 = 2.0;
-const NEWS: f64 = 0.2;
 
 /// Longest period that the console's chart of one state aspect shows, in seconds.
 pub const SHOWN_S: f64 = 60.0;
@@ -25,6 +23,10 @@ pub struct AspectBeliefSnapshot {
     pub p: f32,
     /// Expected probability that the participant gives to the true value.
     pub p_truth: f32,
+    /// Index of the wrong value that the participant most probably believes.
+    pub wrong: u8,
+    /// Expected probability that the participant gives to the wrong value most probably believed.
+    pub p_wrong: f32,
 }
 
 impl AspectBeliefSnapshot {
@@ -58,11 +60,17 @@ impl BeliefSnapshot {
     ) -> BeliefSnapshot {
         let held = |index: usize| {
             let of_aspect = &belief.aspects[index];
-            let believes = of_aspect.most_likely();
+            let (mean, aspect) = (of_aspect.mean(), AspectId(index as u8));
+            let (believes, truth) = (of_aspect.most_likely(), kitchen.true_value(state, aspect));
+            let others = (0..mean.len()).filter(|&value| value != truth);
+            let wrong = others.reduce(|best, value| if mean[value] > mean[best] { value } else { best });
+            let wrong = wrong.unwrap_or(truth);
             AspectBeliefSnapshot {
                 believes: believes as u8,
-                p: of_aspect.mean()[believes] as f32,
-                p_truth: belief.p_truth(kitchen, state, AspectId(index as u8)) as f32,
+                p: mean[believes] as f32,
+                p_truth: belief.p_truth(kitchen, state, aspect) as f32,
+                wrong: wrong as u8,
+                p_wrong: mean[wrong] as f32,
             }
         };
         let held: Vec<AspectBeliefSnapshot> = (0..kitchen.aspects.len()).map(held).collect();
@@ -87,9 +95,10 @@ impl BeliefHistory {
     /// Adds a snapshot of the estimate, unless only gaze samples with little effect came since the previous snapshot.
     pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
-            let pairs = || last.held.iter().zip(&moment.held);
-            let is_news = pairs().any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
-            if !is_news && moment.time.secs_since(last.time) < STEP_S {
+            let mut pairs = last.held.iter().zip(&moment.held);
+            let is_news = pairs.any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
+            // In a pause the estimate stands although gaze samples come.
+            if !is_news && (moment.time.secs_since(last.time) < STEP_S || moment.held == last.held) {
                 return;
             }
         }
@@ -101,9 +110,10 @@ impl BeliefHistory {
         self.moments.push(moment);
     }
 
-    /// Removes snapshots older than `kept_s` seconds, so that memory does not grow with the length of a session.
-    pub fn forget(&mut self, now: SessionTime, kept_s: f64) {
-        let old = self.moments.partition_point(|moment| now.secs_since(moment.time) > kept_s);
+    /// Removes snapshots that at `now` are older than `kept_s` seconds on the trial's clock, so that memory does not grow
+    /// with the length of a session.
+    pub fn forget(&mut self, session: &Session, now: SessionTime, kept_s: f64) {
+        let old = self.moments.partition_point(|moment| session.age(moment.time, now).as_secs_f64() > kept_s);
         // Old snapshots are removed in batches; the last snapshot before the limit stays, since that estimate still
         // holds at the limit.
         if old > 2 * (self.moments.len() - old) {
@@ -128,30 +138,22 @@ pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionT
     moments.last()?.wrong_since[aspect]
 }
 
-/// Time of the last change of an aspect's estimate by gaze, if that change is recent enough to be marked on screens.
-pub fn read_at(moments: &[BeliefSnapshot], aspect: usize, now: SessionTime) -> Option<SessionTime> {
-    let recent = moments.windows(2).rev().take_while(|pair| now.secs_since(pair[1].time) <= NEWS_S);
-    let is_news = |pair: &&[BeliefSnapshot]| {
-        let [then, at] = [&pair[0].held[aspect], &pair[1].held[aspect]];
-        pair[1].by_gaze && (then.believes != at.believes || f64::from((at.p_truth - then.p_truth).abs()) >= NEWS)
-    };
-    recent.into_iter().find(is_news).map(|pair| pair[1].time)
-}
-
-/// P(truth) of one state aspect at evenly spaced times over the last `seconds`; `None` before the first snapshot.
+/// P(truth) of one state aspect at evenly spaced times over the last `seconds` of the trial's clock, which stands before
+/// the start, in a pause and after the end of the trial; `None` before the trial's start and before the first snapshot.
 pub fn course(
     moments: &[BeliefSnapshot],
     aspect: usize,
+    session: &Session,
     now: SessionTime,
     seconds: f64,
     columns: usize,
 ) -> Vec<Option<f64>> {
+    let clock_s = session.trial_clock(now).as_secs_f64();
     let at = |column: usize| {
         let back_s = seconds * (columns - 1 - column) as f64 / columns.max(2) as f64;
-        let time = now - SessionTime::from_secs_f64(back_s);
-        let index = moments.partition_point(|moment| moment.time <= time);
-        let is_there = now.as_secs_f64() >= back_s;
-        moments[..index].last().filter(|_| is_there).map(|moment| f64::from(moment.held[aspect].p_truth))
+        let is_as_old = |moment: &BeliefSnapshot| session.age(moment.time, now).as_secs_f64() >= back_s;
+        let last = moments[..moments.partition_point(is_as_old)].last();
+        last.filter(|_| clock_s >= back_s).map(|moment| f64::from(moment.held[aspect].p_truth))
     };
     (0..columns).map(at).collect()
 }

@@ -87,7 +87,13 @@ impl LiveOutcome {
         };
         format!(
             "{reached}\n{standing}recorded in {folder}\n\
-             look at the recording: tomcom replay {folder}, or in Rerun: tomcom review {folder}"
+             {}",
+            ways_to_look("the recording", &folder.to_string())
         )
     }
+}
+
+/// The commands that show a recording, in words; each command stands on a line of its own, to be copied.
+pub(super) fn ways_to_look(what: &str, folder: &str) -> String {
+    format!("look at {what}:\n  tomcom replay {folder}\nin Rerun:\n  tomcom review {folder}")
 }

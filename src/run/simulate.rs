@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::engine::SessionEngine;
 use super::error::RunError;
+use super::leaving::ways_to_look;
 use super::parallel::WorkerPool;
 use super::replay::RecordingReplay;
 use super::{headless, options};
@@ -291,9 +292,8 @@ pub fn describe(figures: &SimulationSummary) -> String {
         [one] if one.arm == StudyArm::None => String::new(),
         several => several.iter().map(describe_arm).collect(),
     };
-    let look = figures.recordings.first().map_or(String::new(), |first| {
-        format!("look at a recording: tomcom replay {first}, or in Rerun: tomcom review {first}\n")
-    });
+    let look =
+        figures.recordings.first().map_or(String::new(), |first| format!("{}\n", ways_to_look("a recording", first)));
     format!(
         "{moved}{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
          presses: {} of the human, {} of the robot\n\

@@ -144,6 +144,10 @@ impl Terminal {
         self.key("y");
         self.is_whole("0");
         self.see("recorded in");
+        let screen = self.screen();
+        let has_line = |start: &str| screen.lines().any(|line| line.starts_with(start));
+        let both = ["  tomcom replay ", "  tomcom review "].iter().all(|start| has_line(start));
+        assert!(both, "each command stands on a line of its own, to be copied:\n{screen}");
     }
 
     pub fn verifies(&self) {

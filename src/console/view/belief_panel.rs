@@ -52,9 +52,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if area.area() == 0 || visibility(session, model) < WizardVisibility::Belief {
         return;
     }
-    let now = if session.is_running() { model.now } else { model.now.min(session.time) };
     let moments = model.belief.until(model.now);
-    let panel = Panel { session, now, moments, beliefs: beliefs(session, model) };
+    let panel = Panel { session, now: model.now, moments, beliefs: beliefs(session, model) };
     if area.height < FRAMED {
         return panel.lines(brush, area);
     }
@@ -99,7 +98,9 @@ impl Panel<'_> {
             self.beliefs.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).collect();
         let right = self.beliefs.len() - told.len();
         for (index, belief) in told.iter().enumerate() {
-            let lines = if is_wide { Vec::new() } else { self.told(belief, area.width - 2) };
+            // A wide panel gives a belief a line of its own, and further ones if its words need them.
+            let is_row = is_wide && self.fits_row(belief, area.width);
+            let lines = if is_row { Vec::new() } else { self.told(belief, area.width - 2) };
             let rows = 1 + lines.len() as u16;
             // The panel's last line counts the beliefs that have no room.
             if y + rows >= area.bottom() {
@@ -111,7 +112,7 @@ impl Panel<'_> {
                 brush.text(area.x, y, area.width, &words, style);
                 return;
             }
-            match is_wide {
+            match is_row {
                 true => self.row(brush, belief, area, y),
                 false => self.head(brush, belief, area, y, &lines),
             }
@@ -160,13 +161,14 @@ impl Panel<'_> {
         (value(belief.thinks), value(belief.truth))
     }
 
-    /// Probability of what the participant believes, and the time for which the truth has been improbable: "83 % 0:22".
+    /// Probability of what the participant thinks or may think, as the line says, and the time for which the truth has
+    /// been improbable: "83 % 0:22".
     fn certainty(&self, belief: &EstimatedBelief) -> String {
         let age = belief.since.map(|since| self.session.age(since, self.now).to_string()).unwrap_or_default();
         format!("{:>5} {age:>5}", percent(f64::from(belief.p)))
     }
 
-    /// Name of a belief's state aspect; for an unsure belief with its most probable value.
+    /// Name of a belief's state aspect; for an unsure belief with its most probable wrong value.
     fn title(&self, belief: &EstimatedBelief) -> String {
         let name = name(self.session, belief.aspect);
         match belief.standing {
@@ -175,11 +177,41 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a belief in a narrow panel: its name and certainty, and below them what the participant believes and, if
+    /// What stands at the right end of a belief's first line: its certainty, and in a wide panel the presses that it
+    /// costs: "83 % 0:22   4 presses".
+    fn end(&self, belief: &EstimatedBelief, columns: u16) -> String {
+        let certainty = self.certainty(belief);
+        if columns < ONE_LINE || !are_by_cost(self.session) {
+            return certainty;
+        }
+        let cost = match belief.cost.round() {
+            cost if cost < 1.0 => String::new(),
+            1.0 => " 1 press".to_string(),
+            cost => format!("{cost:>2} presses"),
+        };
+        format!("{certainty}  {cost:<10}")
+    }
+
+    /// What stands at the left of a belief that has one line: aspect and believed value, and what is true.
+    fn sides(&self, belief: &EstimatedBelief) -> (String, String) {
+        let (thinks, truth) = self.values(belief);
+        match belief.standing {
+            BeliefCorrectness::Unsure => (self.title(belief), String::new()),
+            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
+        }
+    }
+
+    /// Whether a belief's words fit into one line beside its certainty.
+    fn fits_row(&self, belief: &EstimatedBelief, columns: u16) -> bool {
+        let (head, is) = self.sides(belief);
+        width(&head) + width(&is) + width(&self.end(belief, columns)) < columns
+    }
+
+    /// Draws a belief in several lines: its name and certainty, and below them what the participant believes and, if
     /// that is false, what is true.
     fn head(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16, lines: &[String]) {
         let style = brush.style(role(belief));
-        let end = self.certainty(belief);
+        let end = self.end(belief, area.width);
         let (title, room) = (name(self.session, belief.aspect), area.width.saturating_sub(width(&end) + 1));
         brush.text(area.x, y, room, &title, style);
         brush.text_right(area.right(), y, area.width, &end, style);
@@ -192,21 +224,9 @@ impl Panel<'_> {
     /// Draws an estimated belief in one line of a wide panel.
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
         let style = brush.style(role(belief));
-        let mut end = self.certainty(belief);
-        if are_by_cost(self.session) {
-            let cost = match belief.cost.round() {
-                cost if cost < 1.0 => String::new(),
-                1.0 => " 1 press".to_string(),
-                cost => format!("{cost:>2} presses"),
-            };
-            end = format!("{end}  {cost:<10}");
-        }
+        let end = self.end(belief, area.width);
         brush.text_right(area.right(), y, area.width, &end, style);
-        let (thinks, truth) = self.values(belief);
-        let (head, is) = match belief.standing {
-            BeliefCorrectness::Unsure => (self.title(belief), String::new()),
-            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
-        };
+        let (head, is) = self.sides(belief);
         // Words have priority over the probability bar, since the number shows the same.
         let mut room = area.width.saturating_sub(width(&end) + 1);
         if width(&head) + width(&is) + BAR < room {
@@ -252,7 +272,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the estimated probability of the truth over the last minute, with axes.
+    /// Draws the estimated probability of the truth over the last minute of the trial's clock, with axes.
     fn chart(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect) {
         let (thinks, truth) = self.values(belief);
         let style = brush.style(role(belief));
@@ -260,7 +280,8 @@ impl Panel<'_> {
         let name = name(self.session, belief.aspect);
         let thought = match belief.standing {
             BeliefCorrectness::Right => format!("{name}: {truth}"),
-            _ => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
+            BeliefCorrectness::Unsure => format!("{name}: may think {thinks} {}, is {truth}", percent(belief.p.into())),
+            BeliefCorrectness::False => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
         };
         // The curve is the probability of the truth; if there is no room for both, the title says this instead of what
         // is believed.
@@ -301,7 +322,8 @@ impl Panel<'_> {
     fn curve(&self, brush: &mut Painter, aspect: AspectId, area: Rect) {
         let Rect { x, y, width: columns, height: rows } = area;
         let levels = brush.theme.signs().levels;
-        let course = belief_track::course(self.moments, aspect.index(), self.now, SHOWN_S, usize::from(columns));
+        let (moments, aspect, columns) = (self.moments, aspect.index(), usize::from(columns));
+        let course = belief_track::course(moments, aspect, self.session, self.now, SHOWN_S, columns);
         for (column, p) in course.iter().enumerate() {
             let Some(p) = p else { continue };
             let style = brush.style(if *p < FALSE_BELOW { TextRole::FalseBelief } else { TextRole::Quiet });

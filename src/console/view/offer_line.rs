@@ -7,19 +7,20 @@ use super::recommendation_panel::NOTHING;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::base::words::count;
-use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::offer::OfferedCommunication;
 use crate::communication::recommendation::SignalReason;
+use crate::communication::{Sender, Signal, unavailable};
 use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, beliefs, percent};
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::history::wording;
-use crate::kitchen::LocationId;
+use crate::kitchen::{AspectId, LocationId};
+use crate::session::admit::may_send;
 use crate::session::offers;
 use crate::session::settings::{Condition, WizardVisibility};
-use crate::session::{Session, TrialPhase};
+use crate::session::{Session, TimelineEvent, TrialPhase};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
@@ -69,8 +70,10 @@ impl ShownOffer<'_> {
         };
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
-        // The enter key is named only where it sends the offer: not in dialogs, replays and pauses.
+        // The enter key is named only where it sends the offer: not in dialogs, replays, pauses, nor where the wizard
+        // may not send.
         let is_free = model.playback.is_none() && model.dialog.is_none() && session.is_running();
+        let is_free = is_free && may_send(session, Sender::Wizard).is_ok();
         let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| is_free);
         let enter = enter.map_or(String::new(), |key| format!("{key}  "));
         format!(" {enter}{}{own} ", words.to_uppercase())
@@ -96,18 +99,15 @@ impl ShownOffer<'_> {
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
-        // Each belief has one certainty on the screen, that of the belief panel. Where the panel says that the truth is
-        // thought most, the value for which the signal was offered has no certainty there.
+        // Each belief has one value and one certainty on the screen, those of the belief panel.
         let (believes, p) = match &belief {
-            Some(belief) if belief.thinks == belief.truth => (reason.believes.as_str(), None),
-            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), Some(belief.p.into())),
-            None => (reason.believes.as_str(), Some(reason.p_believes)),
+            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), f64::from(belief.p)),
+            None => (reason.believes.as_str(), reason.p_believes),
         };
         let since = belief.and_then(|belief| belief.since);
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
-        let thinks = if p.is_some_and(|p| p >= 0.5) { "thinks" } else { "may think" };
-        let certainty = p.map_or("unsure".to_string(), percent);
-        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{certainty}{age}")];
+        let thinks = if p >= 0.5 { "thinks" } else { "may think" };
+        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{}{age}", percent(p))];
         said.extend(reason.prevents.as_ref().map(|button| format!("next error: {}", wording::location(button))));
         said
     }
@@ -161,7 +161,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
 }
 
-/// Why no signal is offered to the wizard, in words: how many beliefs are false, and the best signal.
+/// Why no signal is offered to the wizard, in words: the signal on the participant's display; else how many beliefs are
+/// false, and the best signal or, as far as it is known, why none is offered.
 fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
     let only = |words: &str| vec![words.to_string()];
     if session.spec.trial.condition == Condition::Assistant {
@@ -175,14 +176,42 @@ fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
         TrialPhase::Ready => return only("The assistant advises while the trial runs"),
         TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
     }
-    let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefCorrectness::False).count();
-    let best = best_signal(session);
-    let first = match (wrong, &best) {
-        (0, _) => QUIET.to_string(),
-        (_, Some(_)) => count(wrong as u64, "false belief", "false beliefs"),
-        (_, None) => format!("{}, no signal is offered", count(wrong as u64, "false belief", "false beliefs")),
+    let believed = beliefs(session, model);
+    let wrong = believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False);
+    let wrong: Vec<AspectId> = wrong.map(|belief| belief.aspect).collect();
+    let first = match wrong.len() {
+        0 => QUIET.to_string(),
+        number => count(number as u64, "false belief", "false beliefs"),
     };
-    [first].into_iter().chain(best).collect()
+    if let Some(shown) = &session.shown {
+        return vec![format!("On the display: {}", wording::signal(&shown.signal)), first];
+    }
+    let why = best_signal(session).or_else(|| withheld(session, model, &wrong));
+    [first].into_iter().chain(why).collect()
+}
+
+/// Why no signal about these false beliefs is offered, where the session knows it: one was sent just now, or one was
+/// sent and is not repeated yet.
+fn withheld(session: &Session, model: &ConsoleModel, wrong: &[AspectId]) -> Option<String> {
+    if wrong.is_empty() {
+        return None;
+    }
+    let cool_down_s = session.spec.signals.cool_down_s;
+    if session.signalled_at.is_some_and(|sent| model.now.secs_since(sent) < cool_down_s) {
+        return Some(format!("signals need {cool_down_s} s between them"));
+    }
+    let advice = session.advice.as_ref()?;
+    let places: Vec<LocationId> = wrong.iter().filter_map(|&aspect| beliefs::place(session, aspect)).collect();
+    let is_about = |signal: &Signal| signal.location(&session.kitchen).is_some_and(|place| places.contains(&place));
+    // A recommendation lists every signal that can be sent, except those that were sent and must not be repeated yet.
+    let is_listed = |signal: &Signal| advice.options.iter().any(|option| option.signal == *signal);
+    let sent =
+        session.timeline.iter().rev().filter(|entry| entry.time <= model.now).find_map(|entry| match &entry.what {
+            TimelineEvent::Signal { signal, .. } if is_about(signal) && !is_listed(signal) => Some(signal),
+            _ => None,
+        })?;
+    let can_be_sent = unavailable(&session.kitchen, session.state, sent).is_none();
+    can_be_sent.then(|| format!("{} was sent and is not repeated yet", wording::signal(sent)))
 }
 
 /// The best signal in words, where it would save something, but less than it costs.

@@ -48,7 +48,7 @@ impl Live {
                 lsl.tell(events, &self.engine, &moment, &self.clock);
             }
             self.model.belief.note(moment);
-            self.model.belief.forget(last.time, belief_track::SHOWN_S);
+            self.model.belief.forget(session, last.time, belief_track::SHOWN_S);
             self.model.signals.note(session, |aspect| self.engine.is_false(aspect));
         }
         for question in self.engine.take_questions() {

@@ -9,12 +9,13 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
+use tomcom::console::panel::Panel;
 use tomcom::console::view;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
 use tomcom::session::event::{Event, SignalEndReason};
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom::session::settings::{Condition, ParticipantKind, WizardVisibility};
 
-use super::{SIZES, Stage, input};
+use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;
 
 /// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
@@ -105,7 +106,6 @@ fn a_belief_has_one_certainty_on_the_screen() {
     for (held, p, words) in [
         ("shrimp nigiri", 0.44, "may think shrimp nigiri, is tuna nigiri · 44 % for 0:0"),
         ("shrimp nigiri", 0.71, "thinks shrimp nigiri, is tuna nigiri · 71 % for 0:0"),
-        ("tuna nigiri", 0.46, "may think salmon nigiri, is tuna nigiri · unsure"),
     ] {
         let mut stage = advised(true);
         stage.estimate(&[("recipe of tuna nigiri", held, p)], false);
@@ -115,6 +115,115 @@ fn a_belief_has_one_certainty_on_the_screen() {
             assert!(!screen.contains("83 %"), "what the assistant thought then is no second certainty:\n{screen}");
         }
     }
+}
+
+/// That somebody may think the truth tells nothing: offer and list name the wrong value, and its probability.
+#[test]
+fn of_an_unsure_belief_the_likeliest_wrong_value_is_named() {
+    let mut stage = advised(true);
+    stage.estimate(&[("recipe of tuna nigiri", "tuna nigiri", 0.46)], false);
+    let kitchen = stage.session.kitchen.clone();
+    let aspect = kitchen.aspects.iter().find(|aspect| aspect.name == "recipe of tuna nigiri").expect("an aspect");
+    let wrong = aspect.labels.iter().position(|label| label != "tuna nigiri").expect("another recipe");
+    // The others are equally probable: the first is named.
+    let (thinks, p) = (&aspect.wordings[wrong], format!("{:.0} %", 54.0 / (aspect.labels.len() - 1) as f64));
+    stage.model.belief_focus = Some(kitchen.aspect_named("recipe of tuna nigiri").expect("an aspect"));
+    for size in SIZES {
+        for alone in [None, Some(Panel::Belief)] {
+            stage.model.alone = alone;
+            let screen = stage.screen(size);
+            let offer = format!("may think {thinks}, is tuna nigiri · {p} for");
+            assert!(screen.contains(&offer), "{offer} at {size:?}:\n{screen}");
+            assert!(!screen.contains("may think tuna nigiri"), "{size:?}:\n{screen}");
+            let list = match alone {
+                None => format!("unsure, may think {thinks}"),
+                Some(_) => format!("recipe of order 1: may think {thinks} {p}, is tuna nigiri"),
+            };
+            // On a small screen the title of the chart says only what is true.
+            let is_named = screen.contains(&list) && screen.contains(&format!(" {p} "));
+            assert!(is_named || (alone.is_some() && size.0 == 80), "{list} at {size:?}:\n{screen}");
+        }
+    }
+}
+
+/// Where a belief's words need more than one line, they have a second one: nothing is cut on a large screen.
+#[test]
+fn a_belief_is_told_in_full_on_a_large_screen() {
+    let screen = advised(true).screen((200, 60));
+    let lines: Vec<&str> = screen.lines().collect();
+    let at = lines.iter().position(|line| line.contains("  recipe of order 1  ")).expect("a belief in two lines");
+    assert!(lines[at].contains("83 %"), "{screen}");
+    assert!(lines[at + 1].contains("  thinks salmon nigiri, is tuna nigiri "), "{screen}");
+    assert!(screen.contains(" order 2: thinks none, is crab maki"), "a short one needs one line:\n{screen}");
+}
+
+/// The lines of the offer, as far as they say something.
+fn offer_lines(stage: &Stage, size: (u16, u16)) -> Vec<String> {
+    let screen = stage.screen(size);
+    let rows = if size.0 < 200 { 2 } else { 1 };
+    let lines = screen.lines().skip(1).take(rows).map(|line| line.trim_matches('"').trim().to_string());
+    lines.filter(|line| !line.is_empty()).collect()
+}
+
+#[test]
+fn where_no_signal_is_offered_the_line_says_what_was_sent_or_why() {
+    let check = |stage: &Stage, first: &str, second: &str| {
+        for size in SIZES {
+            let (first, second) = (first.to_string(), second.to_string());
+            let lines = match size.0 {
+                200 if !second.is_empty() => vec![format!("{first}; {second}")],
+                _ => [first, second].into_iter().filter(|line| !line.is_empty()).collect(),
+            };
+            assert_eq!(offer_lines(stage, size), lines, "{size:?}");
+        }
+    };
+    let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
+    let sent = |order| Event::SignalShown { by: Sender::Wizard, signal: recipe(order), accepted: None, offer: None };
+    let mut stage = advised(false);
+    // No signal saves anything, and that about the false belief can be sent again.
+    let advice = stage.session.advice.as_mut().expect("advice");
+    advice.options.iter_mut().for_each(|option| option.benefit = 0.0);
+    check(&stage, "3 false beliefs", "");
+    let options = advice_without(&stage, &recipe("order_1"));
+    stage.session.advice = Some(options);
+    check(&stage, "3 false beliefs", "recipe of order 1 was sent and is not repeated yet");
+    stage.at(23.0, sent("order_2"));
+    check(&stage, "On the display: recipe of order 2", "3 false beliefs");
+    stage.at(23.2, Event::SignalEnded { reason: SignalEndReason::TakenBack });
+    check(&stage, "3 false beliefs", "signals need 0.5 s between them");
+    stage.wait(1.0);
+    check(&stage, "3 false beliefs", "recipe of order 2 was sent and is not repeated yet");
+}
+
+/// The latest recommendation, without a signal.
+fn advice_without(stage: &Stage, signal: &Signal) -> Recommendation {
+    let mut advice = stage.session.advice.clone().expect("advice");
+    advice.options.retain(|option| option.signal != *signal);
+    advice
+}
+
+#[test]
+fn enter_is_named_only_where_it_sends() {
+    let hints = |stage: &Stage| stage.screen((200, 60)).contains("enter send offer");
+    let names = |stage: &Stage| stage.screen((200, 60)).contains("enter  SHOW RECIPE");
+    let mut stage = advised(true);
+    assert!(!hints(&stage), "the offer has just appeared");
+    stage.wait(0.4);
+    assert!(hints(&stage) && names(&stage));
+    stage.control('k');
+    type_in(&mut stage, "finish");
+    stage.key(KeyCode::Enter);
+    stage.model.dialog = None;
+    assert!(!hints(&stage), "a list has just closed");
+    stage.wait(0.3);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("right after a list"), "{}", stage.notice());
+    stage.wait(1.0);
+    assert!(hints(&stage));
+    assert!(input(stage.key(KeyCode::Enter)).is_some());
+    stage.session.spec.trial.condition = Condition::None;
+    stage.wait(1.0);
+    assert!(!hints(&stage) && !names(&stage), "nobody may send:\n{}", stage.screen((200, 60)));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::history::belief_track;
-use tomcom::session::event::Event;
+use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, panels};
@@ -46,6 +46,43 @@ fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
     check_snapshot("console", "belief_120x40", stage.screen((120, 40)));
 }
 
+/// The chart is on the trial's clock: in a pause and after the trial nothing moves, and a long pause removes nothing.
+#[test]
+fn the_chart_of_a_belief_stands_while_the_trial_does() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('b');
+    // As a running session does: gaze goes on in a pause and after the trial, and old estimates are forgotten.
+    let wait = |stage: &mut Stage, seconds: u32| {
+        for _ in 0..5 * seconds {
+            let now = stage.model.now.as_secs_f64() + 0.2;
+            stage.look(now, 0.4, 0.35);
+            stage.estimate(&[], true);
+            stage.model.belief.forget(&stage.session, stage.model.now, belief_track::SHOWN_S);
+        }
+    };
+    let charts = |stage: &Stage| {
+        SIZES.map(|size| {
+            let screen = stage.screen(size);
+            let lines: Vec<&str> = screen.lines().skip_while(|line| !line.contains("Beliefs")).collect();
+            lines[..lines.len() - 2].join("\n")
+        })
+    };
+    stage.at(23.0, Event::TrialPaused);
+    let paused = charts(&stage);
+    wait(&mut stage, 300);
+    assert_eq!(charts(&stage), paused, "in a pause");
+    let moments = stage.model.belief.until(stage.model.now).len();
+    assert!(moments < 20, "estimates that are the same are kept once: {moments}");
+    stage.at(324.0, Event::TrialResumed);
+    assert_eq!(charts(&stage), paused, "it goes on where it stood");
+    wait(&mut stage, 10);
+    assert_ne!(charts(&stage), paused, "in the running trial it moves");
+    stage.at(335.0, Event::TrialEnded { reason: TrialEndReason::Time });
+    let over = charts(&stage);
+    wait(&mut stage, 120);
+    assert_eq!(charts(&stage), over, "after the trial");
+}
+
 /// A long session needs no more memory than a short one, and still knows since when what is believed wrong.
 #[test]
 fn the_belief_forgets_what_no_panel_shows() {
@@ -57,7 +94,7 @@ fn the_belief_forgets_what_no_panel_shows() {
         stage.model.now = SessionTime::from_secs_f64(f64::from(second));
         let p = if second % 2 == 0 { 0.8 } else { 0.9 };
         stage.estimate(&[("cooking_pot", "rice raw", p)], false);
-        stage.model.belief.forget(stage.model.now, belief_track::SHOWN_S);
+        stage.model.belief.forget(&stage.session, stage.model.now, belief_track::SHOWN_S);
         let moments = stage.model.belief.until(stage.model.now);
         assert!(moments.len() <= 200, "{} moments", moments.len());
         assert!(second < 70 || moments[0].time.as_secs_f64() <= f64::from(second) - belief_track::SHOWN_S);

@@ -11,7 +11,7 @@ use tomcom::session::SessionSpec;
 use tomcom::session::event::{Event, SignalEndReason, TrialEndReason};
 use tomcom::session::settings::ParticipantKind;
 
-use super::{Stage, input, kitchen};
+use super::{SIZES, Stage, input, kitchen};
 
 #[test]
 fn each_signal_has_a_key_that_sends_it_once() {
@@ -78,10 +78,14 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
     stage.key(KeyCode::Char('?'));
     assert_eq!(stage.model.dialog, None, "help opens and closes");
     stage.control('c');
-    for gap_s in [0.5, 0.03, 0.03] {
+    for (gap_s, says) in [(0.5, "\"^c\" may still be held down: press it again"), (0.03, "\"^c\" is held down")] {
         stage.wait(gap_s);
         assert_eq!(stage.control('c'), None, "a held key does not answer its own question");
         assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+        assert!(stage.notice().contains(says), "{}", stage.notice());
+        for size in SIZES {
+            assert!(stage.screen(size).contains(says), "the dialog leaves the line free: {}", stage.screen(size));
+        }
     }
     assert!(stage.screen((80, 24)).contains("y or ^c yes"), "{}", stage.screen((80, 24)));
     assert_eq!(stage.key(KeyCode::Enter), None, "any other key is no");
@@ -93,6 +97,9 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
         assert_eq!(stage.control(key), None);
         let screen = stage.screen((80, 24));
         assert!(screen.contains(title) && screen.contains(&format!("y or ^{key} yes")), "{screen}");
+        stage.wait(0.5);
+        assert_eq!(stage.control(key), None, "too soon");
+        assert!(stage.notice().contains(&format!("\"^{key}\" may still be held down")), "{}", stage.notice());
         stage.wait(1.0);
         assert_eq!(stage.control(key), done, "a second press that is no held key is yes, as the question says");
         assert_eq!(stage.model.dialog, None);

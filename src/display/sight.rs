@@ -59,6 +59,8 @@ pub enum DisplayStage {
     Instruction,
     /// The participant goes through a tutorial.
     Tutorial,
+    /// The tutorial is over, and the participant is asked to tell the experimenter.
+    TutorialOver,
     /// The kitchen is shown before the trial starts.
     Ready,
     /// The trial is running.
@@ -200,7 +202,7 @@ fn stage(session: &Session) -> DisplayStage {
         (true, None) => DisplayStage::Welcome,
         (true, Some(PhaseSpec::Instruction { .. })) => DisplayStage::Instruction,
         // Whatever follows a tutorial, or nothing: the page promises no trial.
-        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::Over,
+        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::TutorialOver,
         (true, Some(PhaseSpec::Tutorial { .. })) => DisplayStage::Tutorial,
         (true, Some(PhaseSpec::Questionnaire { .. })) => {
             let is_confirmed = session.protocol.as_ref().is_some_and(|protocol| protocol.confirmed);

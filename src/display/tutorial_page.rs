@@ -33,12 +33,15 @@ pub struct DisplayedTutorial {
     pub presses: Option<[usize; 2]>,
     /// Whether the tutorial's page says how buttons are pressed: in the first step that requires presses.
     pub explains_buttons: bool,
-    /// Whether the participant's last press was another than the required press.
+    /// Whether the participant's last press was another than the required press; false once no press is required.
     pub missed: bool,
     /// Recipe cards, while they are shown.
     pub cards: Vec<RecipeCard>,
     /// Time for which the recipe cards are shown, in seconds; `None` until the participant goes on.
     pub seconds: Option<f64>,
+    /// Time for which the recipe cards were still to be shown when the step was last shown, in seconds; less than
+    /// `seconds` when the participant comes back to them.
+    pub left_s: Option<f64>,
     /// Comprehension question of the step, if it has one.
     pub question: Option<DisplayedTutorialQuestion>,
 }
@@ -83,6 +86,8 @@ pub struct DisplayedTutorialQuestion {
     pub wrong: Option<u8>,
     /// Explanation that the page shows after a wrong answer.
     pub explanation: Option<String>,
+    /// Number of characters of the explanation, for which the page keeps room before it knows the explanation.
+    pub explanation_length: usize,
     /// Number of the right answer, once the participant has given it.
     pub right: Option<u8>,
 }
@@ -105,8 +110,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let dishes = (0..kitchen.dishes.len()).filter(|_| are_shown);
     let hint = state.wanted(step).map(|button| {
         // After a wrong press, the page marks the required button at once.
-        let is_missed = state.last.is_some_and(|last| !last.is_right);
-        let after_s = if is_missed { 0.0 } else { step.hint_after_s(state.presses) };
+        let after_s = if state.is_missed(step) { 0.0 } else { step.hint_after_s(state.presses) };
         RequestedTutorialButton { button: button.clone(), after_s }
     });
     Some(DisplayedTutorial {
@@ -121,9 +125,10 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         hint,
         presses: step.has_presses().then_some([state.presses, step.presses.len()]),
         explains_buttons: tutorial.has_first_presses(state.step),
-        missed: state.last.is_some_and(|last| !last.is_right),
+        missed: state.is_missed(step),
         cards: dishes.map(|index| card(kitchen, DishId(index as u8))).collect(),
         seconds: step.seconds.filter(|_| step.is_timed() && are_shown),
+        left_s: state.cards_left_s(step),
         question: (step.kind == TutorialStepKind::Question).then(|| question(step, state)),
     })
 }
@@ -147,6 +152,7 @@ fn question(step: &TutorialStep, state: &TutorialState) -> DisplayedTutorialQues
         choices: step.choices.clone(),
         wrong: state.wrong,
         explanation: step.explanation.clone().filter(|_| state.wrong.is_some()),
+        explanation_length: step.explanation.as_ref().map_or(0, |text| text.chars().count()),
         right: step.right.filter(|_| state.is_done()),
     }
 }

@@ -178,7 +178,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
         Event::Probe(event) => effects.extend(probes::apply(session, now, event).map(SessionEffect::Postpone)),
-        Event::Protocol(event) => protocol::apply(session, event),
+        Event::Protocol(event) => protocol::apply(session, event, now),
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Screen(_) => session.has_console = true,
         Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {}

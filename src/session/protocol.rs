@@ -6,6 +6,7 @@ pub use super::protocol_event::{ProtocolEvent, StudyPhase};
 pub use super::protocol_state::{ItemAnswer, PracticeResult, StudyProtocolState};
 use super::session_state::Session;
 use super::tutorial;
+use crate::base::time::SessionTime;
 
 impl Session {
     /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.
@@ -172,8 +173,8 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
     }
 }
 
-/// Applies an event of the study protocol that the session accepts.
-pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
+/// Applies an event of the study protocol that the session accepts, at the event's session time `now`.
+pub(super) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
     let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
     let (steps, items) = match event {
         ProtocolEvent::PhaseStarted { number, .. } => sizes(session.spec.step.as_ref(), *number),
@@ -184,7 +185,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
         _ => None,
     };
     if let ProtocolEvent::Tutorial(event) = event {
-        return tutorial::apply(session, event);
+        return tutorial::apply(session, event, now);
     }
     let shown = session.protocol.as_ref().and_then(|protocol| session.questionnaire()?.form(protocol.item));
     let stays = shown.is_some_and(|form| form.stays());
@@ -198,7 +199,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
             protocol.answers = vec![None; items];
             protocol.item = 0;
             protocol.confirmed = false;
-            tutorial::begin(session);
+            tutorial::begin(session, now);
         }
         ProtocolEvent::Ticked { step, done } => {
             if let Some(tick) = step.checked_sub(1).and_then(|index| protocol.ticks.get_mut(index)) {

@@ -4,6 +4,7 @@ use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use super::session_state::Session;
 pub use super::tutorial_event::{TutorialEvent, TutorialPageTurner};
 pub use super::tutorial_state::{TutorialPress, TutorialState};
+use crate::base::time::SessionTime;
 use crate::kitchen::Agent;
 
 impl Session {
@@ -68,10 +69,10 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
     }
 }
 
-/// Begins the tutorial of the study phase that has just begun, if the phase has a tutorial.
-pub(super) fn begin(session: &mut Session) {
+/// Begins the tutorial of the study phase that has just begun, at session time `now`, if the phase has a tutorial.
+pub(super) fn begin(session: &mut Session, now: SessionTime) {
     let begun = match session.study_phase() {
-        Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen)),
+        Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen, now)),
         _ => None,
     };
     if let Some(protocol) = &mut session.protocol {
@@ -79,15 +80,15 @@ pub(super) fn begin(session: &mut Session) {
     }
 }
 
-/// Applies an event of the tutorial that the session accepts.
-pub(super) fn apply(session: &mut Session, event: &TutorialEvent) {
+/// Applies an event of the tutorial that the session accepts, at the event's session time `now`.
+pub(super) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTime) {
     let Some((tutorial, state)) = session.tutorial() else { return };
     let Some(step) = tutorial.steps.get(state.step) else { return };
     let (mut state, kitchen) = (state.clone(), &session.kitchen);
     match event {
         TutorialEvent::Shown { step, .. } => {
             if let Some(to) = tutorial.position(step) {
-                state.show(tutorial, kitchen, to);
+                state.show(tutorial, kitchen, to, now);
             }
         }
         TutorialEvent::Pressed { button } => {

@@ -1,6 +1,7 @@
 //! State of the participant's tutorial: its step, its kitchen, and the answers so far.
 
 use super::plan::{Tutorial, TutorialStep, TutorialStepKind};
+use crate::base::time::SessionTime;
 use crate::kitchen::no_effect::NoEffectReason;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 
@@ -23,6 +24,10 @@ pub struct TutorialPress {
 pub struct TutorialState {
     /// Index of the shown tutorial step.
     pub step: usize,
+    /// Session time since which the tutorial step is shown.
+    pub shown_since: SessionTime,
+    /// Total time for which each step of the tutorial was shown before it was last left.
+    pub shown_before: Vec<SessionTime>,
     /// The state of the tutorial's own kitchen: the content of every location.
     pub kitchen: State,
     /// Number of the presses requested by the tutorial step that are done.
@@ -44,11 +49,13 @@ pub struct TutorialState {
 }
 
 impl TutorialState {
-    /// A tutorial at its first step.
-    pub fn new(tutorial: &Tutorial, kitchen: &Kitchen) -> TutorialState {
+    /// A tutorial at its first step, which is shown from session time `now`.
+    pub fn new(tutorial: &Tutorial, kitchen: &Kitchen, now: SessionTime) -> TutorialState {
         let steps = tutorial.steps.len();
         let mut state = TutorialState {
             step: 0,
+            shown_since: now,
+            shown_before: vec![SessionTime::ZERO; steps],
             kitchen: kitchen.empty_state(),
             presses: 0,
             last: None,
@@ -59,12 +66,16 @@ impl TutorialState {
             wrong_answers: vec![0; steps],
             is_over: false,
         };
-        state.show(tutorial, kitchen, 0);
+        state.show(tutorial, kitchen, 0, now);
         state
     }
 
-    /// Shows a tutorial step from its beginning.
-    pub(super) fn show(&mut self, tutorial: &Tutorial, kitchen: &Kitchen, step: usize) {
+    /// Shows a tutorial step from its beginning, at session time `now`.
+    pub(super) fn show(&mut self, tutorial: &Tutorial, kitchen: &Kitchen, step: usize, now: SessionTime) {
+        if let Some(before) = self.shown_before.get_mut(self.step) {
+            *before = *before + (now - self.shown_since);
+        }
+        self.shown_since = now;
         self.step = step;
         self.kitchen = tutorial.state_at(kitchen, step);
         (self.presses, self.last, self.wrong) = (0, None, None);
@@ -77,6 +88,20 @@ impl TutorialState {
             TutorialStepKind::Press | TutorialStepKind::Order | TutorialStepKind::Question => false,
         });
         self.finish(needs_nothing);
+    }
+
+    /// Time for which the recipe cards of a step with a set time are still shown, in seconds, counted from when the
+    /// step was last shown: the time continues where the participant left the step. `None` if no cards with a set time
+    /// are shown.
+    pub fn cards_left_s(&self, step: &TutorialStep) -> Option<f64> {
+        let seconds = step.seconds.filter(|_| step.is_timed() && !self.are_cards_hidden)?;
+        let before = self.shown_before.get(self.step).copied().unwrap_or_default();
+        Some((seconds - before.as_secs_f64()).max(0.0))
+    }
+
+    /// Whether the participant's last press was not the press that the tutorial step still asks for.
+    pub fn is_missed(&self, step: &TutorialStep) -> bool {
+        self.wanted(step).is_some() && self.last.is_some_and(|last| !last.is_right)
     }
 
     /// Whether the participant may continue from the shown tutorial step.

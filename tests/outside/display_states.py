@@ -81,7 +81,7 @@ def forms():
 
 
 TUTORIAL_PAGE = {"kind": "text", "title": "The cooking pot", "text": "Rice and crab are cooked there. It holds one thing: what lies in it is in the way of what comes next.", "number": 3,
-                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "explains_buttons": False, "missed": False, "cards": [], "seconds": None, "question": None}
+                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "explains_buttons": False, "missed": False, "cards": [], "seconds": None, "left_s": None, "question": None}
 
 
 def tutorial_steps(scene, kitchen):
@@ -109,11 +109,11 @@ def tutorial_texts(scene, kitchen):
 def tutorial_pages(scene, dishes):
     """Pages of a tutorial, one of each kind."""
     button = next(button["name"] for button in scene["buttons"] if button["does"] == "process")
-    question = {"choices": [f"The {number}. of three choices" for number in range(1, 4)], "right": None, "wrong": 1, "explanation": "It is the second one, which is said here once more."}
+    question = {"choices": [f"The {number}. of three choices" for number in range(1, 4)], "right": None, "wrong": 1, "explanation": "It is the second one, which is said here once more.", "explanation_length": 54}
     return {
         "text": {"frames": [{"area": "human"}]},
         "press": {"kind": "press", "presses": [0, 2], "missed": True, "done": False, "hint": {"button": button, "after_s": 0.0}},
-        "cards": {"kind": "recipes", "seconds": 60.0, "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
+        "cards": {"kind": "recipes", "seconds": 60.0, "left_s": 60.0, "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
         "question": {"kind": "question", "done": False, "question": question},
     }
 
@@ -182,7 +182,7 @@ def states(scene, kitchen):
         return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "clock": "stands" if stage in ("ready", "running", "paused", "over") else None, "presses": [None, None], "intention": None,
                 "signal": None, "cue": None, "question": None, "tutorial": None, "probe": None, "target": None, "checks": False, **changed}
 
-    made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "thanks")}
+    made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "tutorial_over", "thanks")}
     made["practice"] = sight("ready", practice=True)
     for turn in range(len(names)):
         made[f"running {turn}"] = sight(turn=turn)

@@ -16,6 +16,15 @@ from console import Console
 from page import Page, browser, plain
 
 PORT = 20332
+# Presses of buttons that are not asked for.
+OTHERS = ("take nori", "take nori", "cooking_pot")
+# Whether the reason is shown, stands above the card, and what of that which is marked it hides.
+REASON = """(() => {
+    const made = document.querySelector(".why"), a = made.getBoundingClientRect(), layer = (one) => Number(getComputedStyle(one).zIndex);
+    const marked = [...document.querySelectorAll(".hinted")];
+    const hidden = marked.filter((one) => { const b = one.getBoundingClientRect(); return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom; });
+    return { says: made.classList.contains("says") && marked.length > 0, above: layer(made) > layer(document.querySelector(".sheet")), hides: hidden.map((one) => one.dataset.button) };
+})()"""
 
 
 def session_file(folder, seconds):
@@ -64,12 +73,46 @@ def checks_what_is_missing(page, way, step, words):
         assert not overflows(page), (step["id"], overflows(page))
 
 
-def checks_another_press(page, way, words):
-    """A press of a button that is not asked for says why it does nothing, on the card and at its place."""
+def checks_another_press(page, way, words, folder):
+    """A press of a button that is not asked for says why it does nothing: once, at its place, above the card, beside what is marked."""
+    for button, said in (("take nori", "page tutorial another first"), ("cooking_pot", "page why both_empty")):
+        if way != "gamepad":
+            turn(page, way)
+            page.wait_for(f"document.querySelector('.lesson .verdict.line').textContent === {json.dumps(words['page tutorial first press'])}")
+            assert page.ask("!document.querySelector('.why.says')"), "two messages"
+        page.press(button, way)
+        assert verdict(page) == "", verdict(page)
+        assert page.ask("document.querySelector('.why').textContent") == words[said]
+        assert page.ask(REASON) == {"says": True, "above": True, "hides": []}, (button, page.ask(REASON))
+        assert not overflows(page), overflows(page)
+        page.screenshot(folder / f"another-press-{button.replace(' ', '-')}.png")
+
+
+def checks_a_press_too_many(page, way, words, folder):
+    """A press after the last one that is asked for is no mistake."""
     page.press("take nori", way)
-    assert verdict(page) == words["page tutorial missed"], verdict(page)
-    assert page.ask("document.querySelector('.why').textContent") == words["page tutorial not now"]
-    assert not overflows(page), overflows(page)
+    assert verdict(page) == words["page tutorial right"], verdict(page)
+    assert page.ask("document.querySelector('.lesson .verdict.line').classList.contains('right')")
+    assert not page.ask("document.querySelector('.why.says')?.textContent ?? ''").startswith(words["page tutorial another first"])
+    page.screenshot(folder / "a-press-too-many.png")
+
+
+def checks_the_time_goes_on(page, way, words, step):
+    """The time of the recipe cards goes on where it was when the participant comes back to them, until it is over."""
+    page.page.wait_for_timeout(300)
+    turn(page, way, forward=False)
+    page.wait_for(f"Stage.shown().tutorial.step !== {json.dumps(step)}")
+    turn(page, way)
+    page.wait_for(f"Stage.shown().tutorial.step === {json.dumps(step)}")
+    seconds, left = page.ask("[Stage.shown().tutorial.seconds, Stage.shown().tutorial.left_s]")
+    assert left < seconds - 0.3, (seconds, left)
+    page.wait_for("Stage.shown().tutorial.done")
+    assert page.ask("document.querySelector('.lesson .says').textContent") == words["page tutorial recipes over"]
+
+
+def touchables(page):
+    """Where what can be touched on the card stands."""
+    return page.ask("[...document.querySelectorAll('.lesson button')].map((made) => { const { left, top } = made.getBoundingClientRect(); return [Math.round(left), Math.round(top)]; })")
 
 
 def checks_the_step_before(page, way, words):
@@ -104,7 +147,7 @@ def answer(page, way, choice):
 
 
 def plays(tomcom, chromium, folder, language, way, size):
-    session = session_file(folder, seconds=1.5)
+    session = session_file(folder, seconds=3.0)
     tutorial = tomllib.loads(Path("sessions/tutorials", "sushi.de.toml" if language == "de" else "sushi.toml").read_text())
     words = tomllib.loads(Path(f"src/display/languages/{language}.toml").read_text())
     console = Console(tomcom, [session, "--language", language, "--out", folder / "recordings"], command="tutorial")
@@ -125,27 +168,41 @@ def plays(tomcom, chromium, folder, language, way, size):
             assert not overflows(page), (name, overflows(page))
             checks_what_is_missing(page, way, step, words)
             if step["kind"] == "order":
-                checks_another_press(page, way, words)
+                checks_another_press(page, way, words, folder)
             if name == "stack" and way != "gamepad":
                 checks_the_step_before(page, way, words)
             for button in step.get("presses", []):
                 page.press(button, way)
+            if name == "take":
+                checks_a_press_too_many(page, way, words, folder)
+            if step["kind"] == "recipes":
+                checks_the_time_goes_on(page, way, words, name)
+                page.screenshot(folder / f"{number:02}-{name}-over.png")
             if step["kind"] == "question":
+                before = touchables(page)
                 answer(page, way, step["right"] % len(step["choices"]) + 1)
                 page.wait_for("Stage.shown().tutorial.question.wrong !== null")
                 page.screenshot(folder / f"{number:02}-{name}-wrong.png")
                 assert not overflows(page), (name, overflows(page))
                 assert page.page.locator(".verdict.wrong:not(.line)").inner_text().endswith(step["explanation"])
+                assert touchables(page) == before, (name, before, touchables(page))
+                turn(page, way)
+                page.wait_for(f"document.querySelector('.lesson .verdict.line').textContent === {json.dumps(words['page tutorial other answer'])}")
+                assert touchables(page) == before, (name, before, touchables(page))
                 answer(page, way, step["right"])
+                page.wait_for("Stage.shown().tutorial.done")
+                assert touchables(page) == before, (name, before, touchables(page))
             go_on(page, way, name)
-        page.stage("over")
+        page.stage("tutorial_over")
+        page.screenshot(folder / "over.png")
+        assert page.ask("document.querySelector('.card p').textContent") == words["page tutorial over text"]
         console.wait_for("leaves? the tutorial")
         console.quit()
         page.wait_for(f"document.querySelector('.toast.open')?.textContent === {json.dumps(words['page ended'])}")
         wanted = [button for step in tutorial["step"] for button in step.get("presses", [])]
         questions = sum(step["kind"] == "question" for step in tutorial["step"])
         steps = len(tutorial["step"])
-        said = f"tutorial: {steps} of {steps} steps done, {len(wanted) + 1} presses, {questions} wrong answers"
+        said = f"tutorial: {steps} of {steps} steps done, {len(wanted) + len(OTHERS)} presses, {questions} wrong answers"
         page.page.wait_for_timeout(300)
         assert said in plain(console.text()), console.text()
         page.close()
@@ -154,8 +211,7 @@ def plays(tomcom, chromium, folder, language, way, size):
     assert not [event for event in events if event["kind"] == "press"], "no press of a trial"
     told = [event for event in events if event.get("what") == "tutorial"]
     pressed = [event["button"] for event in told if event["did"] == "pressed"]
-    pressed.remove("take nori")
-    assert sorted(pressed) == sorted(wanted), pressed
+    assert sorted(pressed) == sorted([*wanted, *OTHERS]), pressed
     subprocess.run([tomcom, "replay", recording, "--verify"], check=True, stdout=subprocess.DEVNULL)
     print(f"tutorial in {language} by {way} at {size[0]}x{size[1]}: {len(tutorial['step'])} pages, the recording verifies", flush=True)
 

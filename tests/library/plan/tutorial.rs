@@ -119,7 +119,7 @@ fn a_participant_goes_through_the_whole_tutorial() {
     assert!(session.timeline.is_empty() && session.served.is_empty());
     let wrong = session.tutorial().expect("a tutorial").1.wrong_answers.iter().sum::<u32>();
     assert_eq!(wrong, 3, "each question was answered wrongly once");
-    assert_eq!(sight(session).stage, DisplayStage::Over);
+    assert_eq!(sight(session).stage, DisplayStage::TutorialOver);
     let reached = TutorialProgress::from_session(session).expect("a tutorial");
     let presses = session.tutorial().expect("a tutorial").0.steps.iter().map(|step| step.presses.len() as u64).sum();
     assert_eq!((reached.done, reached.presses, reached.wrong_answers), (reached.steps, presses, 3));
@@ -147,6 +147,18 @@ fn only_the_button_that_is_asked_for_moves_the_kitchen_on() {
     let back = TutorialEvent::Shown { step: "aside".to_string(), by: BY_PARTICIPANT };
     assert_eq!(lesson.tell(back), None);
     assert_eq!(sight(lesson.session()).contents, empty);
+}
+
+#[test]
+fn a_press_after_the_last_one_is_no_mistake() {
+    let mut lesson = Lesson::new(&folder("tutorial_more_presses"));
+    lesson.turn_to("take");
+    for button in ["take rice", "cooking_pot", "take nori"] {
+        assert_eq!(lesson.press(button), None);
+    }
+    let page = sight(lesson.session()).tutorial.expect("a page");
+    assert!(page.done && !page.missed && page.hint.is_none(), "{page:?}");
+    assert_eq!(page.presses, Some([2, 2]));
 }
 
 #[test]
@@ -181,6 +193,8 @@ fn the_page_is_told_recipes_only_while_they_are_shown() {
         assert_eq!(page.contents.contains(&ShownContent::Dish("salmon maki".to_string())), has_dish && !shows_recipe);
         assert!(told["tutorial"]["question"]["right"].is_null(), "{id}: the right answer is told before it was given");
         assert!(told["tutorial"]["question"]["explanation"].is_null(), "{id}");
+        let room = told["tutorial"]["question"]["explanation_length"].as_u64().unwrap_or(0);
+        assert_eq!(room > 0, kind == TutorialStepKind::Question, "{id}: the page keeps room for the explanation");
         if kind == TutorialStepKind::Recipes {
             assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: id }), None);
             assert!(sight(lesson.session()).tutorial.expect("a page").cards.is_empty());
@@ -272,6 +286,30 @@ fn cards_that_were_shown_for_their_time_do_not_come_back() {
     assert_eq!(lesson.tell(TutorialEvent::Shown { step: "recipes".to_string(), by: BY_PARTICIPANT }), None);
     let page = sight(lesson.session()).tutorial.expect("a page");
     assert!(page.done && page.cards.is_empty() && page.seconds.is_none(), "{page:?}");
+}
+
+#[test]
+fn the_time_of_recipe_cards_continues_when_they_are_shown_again() {
+    let out = folder("tutorial_cards_time");
+    let mut lesson = Lesson::new(&out);
+    lesson.turn_to("recipes");
+    let left_s = |lesson: &Lesson| sight(lesson.session()).tutorial.and_then(|page| page.left_s);
+    assert_eq!(left_s(&lesson), Some(60.0));
+    for left in [59.5, 59.0] {
+        // The lesson's clock goes on by half a second with every event.
+        for step in ["signal_highlight", "recipes"] {
+            assert_eq!(lesson.tell(TutorialEvent::Shown { step: step.to_string(), by: BY_PARTICIPANT }), None);
+        }
+        assert_eq!(left_s(&lesson), Some(left));
+    }
+    assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: "recipes".to_string() }), None);
+    assert_eq!(left_s(&lesson), None);
+    lesson.turn_to("order");
+    assert_eq!(left_s(&lesson), None, "only recipe cards have a time");
+    assert_eq!(lesson.input(Event::SessionEnded), None);
+    let log = lesson.log.folder().join(LOG_NAME);
+    lesson.log.flush().expect("the log can be written");
+    assert!(verify(&log).expect("a recording").verified);
 }
 
 #[test]

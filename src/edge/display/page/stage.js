@@ -223,11 +223,10 @@ const Stage = (() => {
     });
   }
 
-  /** Says why a press had no effect; in the tutorial, whose page says more, also that another button is asked for. */
-  function drawReason({ why, at }, made, { tutorial }) {
-    const { words } = scene, known = why ? (words[`why ${why.reason}`] || "").replace("#", scene.locations[why.about].label) : "";
-    const said = known || (tutorial && tutorial.missed ? words["tutorial not now"] : "");
-    Reason.draw(said, { place: made, isInside: room.isUpright || "storage" in at }, parts.kitchen, { room, text, put, replay });
+  /** Says why a press had no effect, beside what the tutorial has marked. */
+  function drawReason(press, made, { tutorial }) {
+    const marked = tutorial?.hint && Tutorial.buttonOf(tutorial.hint.button), isInside = room.isUpright || "storage" in press.at;
+    Reason.draw(Reason.wordsOf(press, tutorial, scene), { place: made, isInside, marked }, parts.kitchen, { room, text, put, replay });
   }
 
   function drawSignal(signal, contents) {
@@ -305,8 +304,7 @@ const Stage = (() => {
     root.dataset.stage = stage;
     // The reason of an ineffective press is removed when the phase of the trial changes.
     if (shown && shown.stage !== stage) Reason.hide();
-    const name = stage === "ready" && practice ? "practice" : stage;
-    const title = scene.words[name], more = scene.words[`${name} text`];
+    const name = stage === "ready" && practice ? "practice" : stage.replace("_", " ");
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
@@ -317,7 +315,7 @@ const Stage = (() => {
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
     Probe.end();
     const card = element("div", "card");
-    card.append(text("h1", "", title || ""), text("p", "", more || ""));
+    card.append(text("h1", "", scene.words[name] || ""), text("p", "", scene.words[`${name} text`] || ""));
     // The kitchen is explained during the instruction, so nothing covers it.
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
@@ -339,6 +337,9 @@ const Stage = (() => {
   /** Whether a signal is new: sent just now, or explained by another page of the tutorial. */
   const isNewSignal = (sight) => shown && sight.signal && (sight.cue !== shown.cue || (sight.tutorial && JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)));
 
+  /** What the sheet depends on; in the tutorial also presses, since each removes the line that says what is missing. */
+  const onSheet = ({ stage, practice, question, tutorial, probe, presses }) => [stage, practice, question, tutorial, probe, tutorial && presses];
+
   /** `left` tells the seconds that a probe or the trial still has. */
   function show(sight, left = () => 0) {
     if (!scene) return;
@@ -350,7 +351,7 @@ const Stage = (() => {
     drawIntention(sight.intention);
     if (sight.contents.length) Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
-    if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question, shown.tutorial, shown.probe]) !== JSON.stringify([sight.stage, sight.practice, sight.question, sight.tutorial, sight.probe])) drawSheet(sight, left);
+    if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
     Status.draw(sight, left);
     shown = sight;

@@ -2,7 +2,7 @@
 /** The tutorial: one card per step, frames around what the step explains, and a mark at the button to be pressed. */
 const Tutorial = (() => {
   // What a page with presses can say of them.
-  const PRESSED = ["tutorial missed", "tutorial first press", "tutorial right", "tutorial again"], TICK_MS = 250;
+  const PRESSED = ["tutorial first press", "tutorial right", "tutorial again"], ASKED = ["tutorial first question", "tutorial other answer"], TICK_MS = 250;
   let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
   // The choice that arrows or a gamepad are at, counted from 1; 0: none yet.
   let at = 0;
@@ -40,7 +40,7 @@ const Tutorial = (() => {
     clearTimeout(timer);
     clearInterval(ticker);
     if (page.seconds === null) return;
-    if (shownStep !== page.step) endsAt = performance.now() + 1000 * page.seconds;
+    if (shownStep !== page.step) endsAt = performance.now() + 1000 * page.left_s;
     const left = Math.max(0, endsAt - performance.now()), [line, seconds] = bar.children;
     line.animate([{ width: `${left / page.seconds / 10}%` }, { width: "0%" }], { duration: left, fill: "forwards" });
     const tick = () => { seconds.textContent = `${Math.max(0, Math.ceil((endsAt - performance.now()) / 1000))} s`; };
@@ -65,6 +65,9 @@ const Tutorial = (() => {
     return all;
   }
 
+  /** What is said of a wrong answer. */
+  const wrongOf = (words, explanation) => `${words["tutorial wrong"]} ${explanation || ""}`;
+
   function questionOf({ choices, wrong, right, explanation }, words, element, text) {
     const all = element("div", "choices");
     choices.forEach((choice, index) => {
@@ -75,16 +78,15 @@ const Tutorial = (() => {
       made.classList.toggle("at", right === null && at === index + 1);
       all.append(made);
     });
-    const made = element("div", "", all);
-    if (right !== null) made.append(text("p", "verdict right", words["tutorial right"]));
-    else if (wrong !== null) made.append(text("p", "verdict wrong", `${words["tutorial wrong"]} ${explanation || ""}`));
+    const made = element("div", "", all), isRight = right !== null;
+    made.append(text("p", `verdict ${isRight ? "right" : "wrong"}`, isRight ? words["tutorial right"] : wrong === null ? "" : wrongOf(words, explanation)));
     return made;
   }
 
   /** What was done, or what is still to be done, and the class of the line that says it. `isAsked`: the participant tried to go on before that. */
   function verdictOf(page, isAsked) {
     const all = page.presses && page.presses[0] === page.presses[1];
-    if (page.missed) return ["tutorial missed", "wrong"];
+    if (isAsked && page.question && page.question.wrong !== null) return ["tutorial other answer", "wrong"];
     if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`, "wrong"];
     if (all) return ["tutorial right", "right"];
     return page.presses && page.done ? ["tutorial again", ""] : ["", ""];
@@ -117,14 +119,29 @@ const Tutorial = (() => {
     return row;
   }
 
-  /** Puts the card into the first of these areas in which its words need not be much smaller, with room for what it can say until the step is done. */
+  /** The longest texts that the lines of the card can have until the step is done, line by line. */
+  function longestOf({ presses, question }, words) {
+    const longest = (names) => names.map((name) => words[name]).reduce((a, b) => (b.length > a.length ? b : a));
+    // The explanation is not known before it is needed; its length is, and few letters are as wide as these.
+    if (question) return [wrongOf(words, "nnnn ".repeat(Math.ceil(question.explanation_length / 5))), longest(ASKED)];
+    return presses ? [longest(PRESSED)] : [];
+  }
+
+  /** Puts the card into the first of these areas in which its words need not be much smaller, and keeps room for what it can say until the step is done: nothing that can be touched moves then. */
   function fit(card, isLarge, page, { scene, areas, enough, put, fitWords }) {
-    const line = card.querySelector(".verdict.line"), said = line.textContent;
-    if (page.presses) line.textContent = PRESSED.map((name) => scene.words[name]).reduce((a, b) => (b.length > a.length ? b : a));
+    const lines = [...card.querySelectorAll(".verdict")], said = lines.map((line) => line.textContent), longest = longestOf(page, scene.words);
+    longest.forEach((words, at) => { lines[at].textContent = words; });
     if (isLarge) fitWords(card);
     else areas.some((area) => fitWords(put(card, area)) >= enough);
-    line.textContent = said;
+    longest.forEach((_, at) => {
+      lines[at].classList.add("kept");
+      lines[at].style.minHeight = `${lines[at].offsetHeight / parseFloat(getComputedStyle(lines[at]).fontSize)}em`;
+    });
+    lines.forEach((line, at) => { line.textContent = said[at]; });
   }
+
+  /** Whether the time of the recipe cards is over, so that the page has none. */
+  const isTimeOver = ({ kind, cards }) => kind === "recipes" && !cards.length;
 
   /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
   function draw(sheet, page, kit, isAsked = false) {
@@ -132,7 +149,8 @@ const Tutorial = (() => {
     if (shownStep !== page.step) at = 0;
     drawn = { sheet, kit };
     const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left", "<i></i><span></span>");
-    card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", page.text));
+    card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", isTimeOver(page) ? words["tutorial recipes over"] : page.text));
+    if (page.number === 1) card.append(text("p", "says how", words[navigator.maxTouchPoints ? "tutorial turn" : "tutorial turn keys"]));
     if (page.explains_buttons) card.append(text("p", "says how", howOf(words, badges)));
     if (page.cards.length) card.append(cardsOf(page, scene, element, text));
     if (page.seconds !== null) card.append(bar);
@@ -186,7 +204,11 @@ const Tutorial = (() => {
   /** Says what is missing, if a key that goes on is pressed before the step is done; whether it was such a key. */
   function refuse(pressed, page) {
     const goesOn = ["ArrowRight", "Enter"].includes(pressed) && !page.done;
-    if (goesOn) draw(drawn.sheet, page, drawn.kit, true);
+    if (goesOn) {
+      // One message at a time.
+      Reason.hide();
+      draw(drawn.sheet, page, drawn.kit, true);
+    }
     return goesOn;
   }
 
@@ -198,5 +220,5 @@ const Tutorial = (() => {
     told(choose ? { kind: "choose", step: page.step, choice: Number(choose) } : { kind: "turn", step: page.step, forward: turn === "next" });
   }
 
-  return { draw, end, key, refuse, pad, touch, begin: (tell) => { told = tell; } };
+  return { draw, end, buttonOf, key, refuse, pad, touch, begin: (tell) => { told = tell; } };
 })();

@@ -122,8 +122,8 @@ const Tutorial = (() => {
   /** The longest texts that the lines of the card can have until the step is done, line by line. */
   function longestOf({ presses, question }, words) {
     const longest = (names) => names.map((name) => words[name]).reduce((a, b) => (b.length > a.length ? b : a));
-    // The explanation is not known before it is needed; its length is, and few letters are as wide as these.
-    if (question) return [wrongOf(words, "nnnn ".repeat(Math.ceil(question.explanation_length / 5))), longest(ASKED)];
+    // The explanation is not known before it is needed; its length is. Few letters are as wide as these, and few words as long, which leave lines unfilled.
+    if (question) return [wrongOf(words, "nnnnnnnnnnn ".repeat(Math.ceil(question.explanation_length / 10))), longest(ASKED)];
     return presses ? [longest(PRESSED)] : [];
   }
 

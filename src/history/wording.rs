@@ -203,9 +203,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
             ("", "the signal is over".to_string())
         }
         TimelineEvent::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
-        TimelineEvent::OrderShown { order } => {
-            ("", format!("a new order appears: {}", kitchen.location(*order).label()))
-        }
+        TimelineEvent::OrderShown { order } => ("", format!("{} appears", kitchen.location(*order).label())),
         TimelineEvent::Marker(note) => ("note", note.clone()),
         TimelineEvent::RobotStopped => ("wizard", "stopped the robot".to_string()),
         TimelineEvent::ArmStopped { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),

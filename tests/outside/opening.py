@@ -86,7 +86,7 @@ def clock_s(text):
 def position(lines):
     """Where the replay is and how long it is, in seconds, with row and first and last column of the bar; None without a bar."""
     for row, line in enumerate(lines):
-        found = re.search(r" recording (.+?) +(\d+:[\d.]+) of (\d+:[\d.]+)", line)
+        found = re.search(r" recording (\S+) .*?(\d+:[\d.]+) of (\d+:[\d.]+)", line)
         if found:
             return clock_s(found[2]), clock_s(found[3]), row, found.start(1), found.end(1)
     return None

@@ -11,6 +11,9 @@ use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::session::{Session, TrialPhase};
 
+/// Words before the times while the trial has not started: the longest of all phases.
+const BEFORE: &str = " before the trial, ";
+
 /// Draws the bar of the position in the recording.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
@@ -19,16 +22,18 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let clock = session.trial_clock(model.now);
     let part = match session.phase {
-        TrialPhase::Ready => " before the trial, ",
+        TrialPhase::Ready => BEFORE,
         TrialPhase::Over(_) | TrialPhase::Closed => " after the trial, ",
         TrialPhase::Running | TrialPhase::Paused => " ",
     };
-    let end = format!("{part}{clock} of {} ", playback.trial_length.max(clock));
+    let times = format!("{clock} of {} ", playback.trial_length.max(clock));
+    let end = format!("{part}{times}");
     let quiet = brush.style(TextRole::Quiet);
     brush.text(area.x, area.y, area.width, " recording ", quiet);
     brush.text_right(area.right(), area.y, area.width, &end, quiet);
     let x = area.x + 11;
-    let columns = area.right().saturating_sub(x + width(&end) + 1);
+    // The bar has one length in all phases, so that a place on it always means the same time.
+    let columns = area.right().saturating_sub(x + width(BEFORE) + width(&times) + 1);
     let share = session.time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
     let line = brush.theme.signs().frame[4].repeat(usize::from(columns));
     let (thin, strong) = (brush.style(TextRole::Frame), brush.style(TextRole::Strong));

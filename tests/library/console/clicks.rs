@@ -173,7 +173,7 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
         };
         let row = rows - 3;
         assert_eq!(seek(11, row), 0.0);
-        let [early, late] = [30, 50].map(|column| seek(column, row));
+        let [early, late] = [20, 35].map(|column| seek(column, row));
         assert!(0.0 < early && early < late && late < 40.0, "{early} {late}");
         // The timeline ends at the present; ten columns are five seconds.
         let right = if size.0 == 80 { size.0 - 2 } else { size.0 - 3 };

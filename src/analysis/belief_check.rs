@@ -112,7 +112,7 @@ impl TrialBeliefCollector {
     }
 }
 
-/// What is known of a session before the next event by a gaze baseline, which uses no belief filter.
+/// State of a gaze baseline, which predicts beliefs from gaze without a belief filter, before the next event.
 #[derive(Default)]
 struct Before {
     seen: LastSeenContents,

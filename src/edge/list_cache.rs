@@ -48,7 +48,7 @@ struct KeptLine {
     figures: CachedRecordingNumbers,
 }
 
-/// What is known of a closed log without reading its events: its digest, and what a list needs of its header.
+/// Digest of a closed log, and the values of its header that a list of recordings shows; no events are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLogHeader {
     /// Digest of the log, by which the cache finds the recording.

@@ -260,7 +260,7 @@ pub fn likelihood(
 }
 
 /// Probability of an answer to a probe: that the belief, drawn from the estimate, has a probability of one half or more
-/// for the value, or for no value. At most one value has so much, so these probabilities sum to 1.
+/// for the value, or for no value. At most one value can have one half or more, so these probabilities sum to 1.
 pub fn p_answer(estimate: &Dirichlet, value: Option<usize>) -> f64 {
     let values = estimate.mean().len();
     let is_surest = |value: usize| {

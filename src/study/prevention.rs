@@ -25,7 +25,7 @@ const NANOS_PER_MS: u64 = 1_000_000;
 /// Errors and false beliefs of a trial, as known from recorded beliefs or from raters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialGroundTruth {
-    /// Presses of the human in the trial, in order, with what is known about each.
+    /// Presses of the human in the trial, in order, with the ground truth about each press.
     pub presses: Vec<PressGroundTruth>,
     /// Periods in which the participant held a false belief about a state aspect.
     pub spells: Vec<FalseBeliefGroundTruth>,
@@ -182,7 +182,7 @@ impl FalseBeliefGroundTruth {
 }
 
 impl TrialGroundTruth {
-    /// Errors and false beliefs of a trial, from what is known of the participant's beliefs.
+    /// Errors and false beliefs of a trial, from the known false beliefs of the participant.
     pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownFalseBeliefs) -> TrialGroundTruth {
         let press = |press: &JudgedPress| PressGroundTruth {
             time: press.time,

@@ -361,7 +361,7 @@ impl BeliefFilter {
         evidence
     }
 
-    /// Updates the estimate by the likelihood that the human has waited so long.
+    /// Updates the estimate by a silence of the human; `longer` is the share of the human's intervals that are longer.
     fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
         let mut random = stream(self.seed, "waiting", self.presses);
         let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);

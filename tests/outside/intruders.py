@@ -155,7 +155,7 @@ def cannot_inject_gaze(tomcom, folder):
         page = chromium.new_context().new_page()
         page.goto(f"http://localhost:{FOREIGN}/")
         page.evaluate(INJECT, [GAZE, lines])
-        console.wait_for(r"[4-9] rejected")
+        console.wait_for(r"[4-9] senders rejected")
         # The tracker goes on, also with datagrams.
         send(tracker, 30)
         datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -165,8 +165,8 @@ def cannot_inject_gaze(tomcom, folder):
             datagrams.sendto(json.dumps(SAMPLE).encode(), ("127.0.0.1", GAZE))
             time.sleep(0.01)
             other.sendto(json.dumps(FOREIGN_SAMPLE).encode(), ("127.0.0.1", GAZE))
-        console.wait_for(r"\d\d rejected")
-        rejected = int(re.search(r"(\d+) rejected", console.text())[1])
+        console.wait_for(r"\d\d senders rejected")
+        rejected = int(re.search(r"(\d+) senders rejected", console.text())[1])
         console.quit()
     text, events = recorded(folder)
     gaze = [event for event in events if event["kind"] == "gaze"]

@@ -6,6 +6,7 @@ use super::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use super::wizard_log::{WizardLog, WizardSummary};
 use crate::history::comparison::SenderComparison;
 use crate::kitchen::Kitchen;
+use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
 use crate::session::{Session, TimestampedEvent};
@@ -19,7 +20,8 @@ pub struct SenderComparer {
 impl SenderComparer {
     /// The comparer at the beginning of a session, before the session's first event.
     pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparer {
-        SenderComparer { follower: SenderComparisonFollower::new(session, request), wizard: WizardLog::default() }
+        let cost = CostToGo::new(session.kitchen.clone());
+        SenderComparer { follower: SenderComparisonFollower::new(session, cost, request), wizard: WizardLog::default() }
     }
 
     /// Applies the next event of the recording to the session and to the comparison.

@@ -109,8 +109,7 @@ pub struct SenderComparisonFollower {
 
 impl SenderComparisonFollower {
     /// The comparison at the beginning of a session, before the first event.
-    pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparisonFollower {
-        let cost = CostToGo::new(session.kitchen.clone());
+    pub fn new(session: Session, cost: CostToGo, request: &SenderComparisonSettings) -> SenderComparisonFollower {
         let voice = |name: ConceptName| Voice {
             name,
             advisor: Advisor::by(name, &session, cost.clone()),

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::kept_cost::KeptCost;
 use super::{consents, standing};
 use crate::analysis::bids::{
     BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
@@ -15,8 +15,7 @@ use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogEnding, LogReader, at_line};
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, KitchenChange};
+use crate::kitchen::{Agent, KitchenChange};
 use crate::measures::errors::PressJudge;
 use crate::session::event::Event;
 use crate::session::protocol::ProtocolEvent;
@@ -57,9 +56,6 @@ struct Planned {
     session: String,
 }
 
-/// Kitchen of the last recording with its cost to go, kept because the next recording often has the same kitchen.
-type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
-
 /// Exports these recordings into a new folder. `with_words`: whether text that wizards and participants typed is
 /// exported, too. `done` is called after each recording.
 ///
@@ -71,7 +67,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
-    let (mut cost, mut phenotypes) = (None, QuestionnairePhenotypes::default());
+    let (mut cost, mut phenotypes) = (KeptCost::default(), QuestionnairePhenotypes::default());
     let mut sessions: BTreeMap<String, Vec<BidsSessionRow>> = BTreeMap::new();
     let mut told = Vec::new();
     for one in &planned {
@@ -147,31 +143,29 @@ fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabelMap) -> Vec<Plan
 fn read(
     one: &Planned,
     with_words: bool,
-    cost: &mut KnownCost,
+    cost: &mut KeptCost,
     phenotypes: &mut QuestionnairePhenotypes,
 ) -> FileResult<(Vec<BidsFile>, (BidsSessionRow, String), BidsRowCounts)> {
     let mut log = LogReader::open(&one.recording)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
-    if cost.as_ref().is_none_or(|(known, _)| **known != *kitchen) {
-        *cost = Some((kitchen.clone(), CostToGo::new(kitchen.clone())));
-    }
+    let cost = cost.for_kitchen(&kitchen);
     let (mut judge, mut tables) = (PressJudge::new(kitchen.clone()), RecordingTables::new(&session, with_words));
     while let Some(line) = log.next_line()? {
         let wrong =
             |error: apply::ApplyError| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy);
         let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
-        let outcome = match (change, &mut *cost) {
-            (KitchenChange::Press { press, .. }, Some((_, cost))) if press.agent == Agent::Human => {
+        let outcome = match change {
+            KitchenChange::Press { press, .. } if press.agent == Agent::Human => {
                 let error = judge.human_pressed(cost, line.stamped.time, &press).error;
                 Some(PressOutcome { effective: press.effective, error: Some(error) })
             }
-            (KitchenChange::Press { press, .. }, _) => {
+            KitchenChange::Press { press, .. } => {
                 judge.others_changed(line.stamped.time, press.before, press.after);
                 Some(PressOutcome { effective: press.effective, error: None })
             }
-            (KitchenChange::UncountedPress { .. }, _) => Some(PressOutcome::default()),
-            (KitchenChange::Correction { before, after, .. }, _) => {
+            KitchenChange::UncountedPress { .. } => Some(PressOutcome::default()),
+            KitchenChange::Correction { before, after, .. } => {
                 judge.others_changed(line.stamped.time, before, after);
                 None
             }

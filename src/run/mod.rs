@@ -29,6 +29,8 @@ pub mod fit;
 pub mod fit_people;
 pub mod headless;
 #[cfg(feature = "cli")]
+pub mod kept_cost;
+#[cfg(feature = "cli")]
 pub mod leaving;
 #[cfg(feature = "cli")]
 pub mod live;

@@ -2,8 +2,8 @@
 //! ([`crate::edge::list_cache`]).
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
+use super::kept_cost::KeptCost;
 use super::{parallel, standing};
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
@@ -11,8 +11,7 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use crate::edge::log::{LogEnding, LogReader, at_line};
 use crate::edge::recordings;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, KitchenChange};
+use crate::kitchen::{Agent, KitchenChange};
 use crate::measures::errors::PressJudge;
 use crate::session::apply;
 
@@ -38,9 +37,9 @@ pub fn list(
 ) -> FileResult<(RecordingList, Vec<PathBuf>)> {
     let found = recordings::of_folder(folder)?;
     begun(found.len());
-    let own = || None::<(Arc<Kitchen>, CostToGo)>;
     let cache = ListCache::open();
-    let read = parallel::each_with(&found, own, |cost, path| read_or_tell(path, depth, cost, &cache), done);
+    let read =
+        parallel::each_with(&found, KeptCost::default, |cost, path| read_or_tell(path, depth, cost, &cache), done);
     let (rows, new): (Vec<ListedRecording>, Vec<_>) = read.into_iter().unzip();
     cache.keep(new.into_iter().flatten());
     let list = RecordingList::new(folder.display().to_string(), rows);
@@ -61,7 +60,7 @@ type NewFigures = Option<(String, CachedRecordingNumbers)>;
 fn read_or_tell(
     path: &Path,
     depth: RecordingListDetail,
-    cost: &mut Option<(Arc<Kitchen>, CostToGo)>,
+    cost: &mut KeptCost,
     cache: &ListCache,
 ) -> (ListedRecording, NewFigures) {
     let unreadable = |error: FileError| ListedRecording {
@@ -121,14 +120,12 @@ fn from_figures(
 fn read(
     path: &Path,
     depth: RecordingListDetail,
-    cost: &mut Option<(Arc<Kitchen>, CostToGo)>,
+    cost: &mut KeptCost,
 ) -> FileResult<(ListedRecording, ExclusionStatus)> {
     let mut log = LogReader::open(path)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
-    if cost.as_ref().is_none_or(|(known, _)| **known != *kitchen) {
-        *cost = Some((kitchen.clone(), CostToGo::new(kitchen.clone())));
-    }
+    let cost = cost.for_kitchen(&kitchen);
     let mut judge = PressJudge::new(kitchen);
     let mut errors = 0;
     while let Some(line) = log.next_line()? {
@@ -136,18 +133,16 @@ fn read(
             at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy)
         };
         let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
-        match (change, &mut *cost) {
-            (KitchenChange::Press { press, .. }, Some((_, cost)))
+        match change {
+            KitchenChange::Press { press, .. }
                 if press.agent == Agent::Human && depth == RecordingListDetail::WithErrors =>
             {
                 errors += u64::from(judge.human_pressed(cost, line.stamped.time, &press).error);
             }
-            (KitchenChange::Press { press, .. }, _) if press.agent == Agent::Robot => {
+            KitchenChange::Press { press, .. } if press.agent == Agent::Robot => {
                 judge.others_changed(line.stamped.time, press.before, press.after);
             }
-            (KitchenChange::Correction { before, after, .. }, _) => {
-                judge.others_changed(line.stamped.time, before, after)
-            }
+            KitchenChange::Correction { before, after, .. } => judge.others_changed(line.stamped.time, before, after),
             _ => {}
         }
     }

@@ -21,6 +21,7 @@ use crate::edge::log::{LogEnding, RecordingLock};
 use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
 use crate::history::wording;
+use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Event;
 
 /// Longest time per frame that is spent on applying events at full speed.
@@ -120,7 +121,8 @@ impl Review {
         model.coding = coding;
         let comparison = compare.map(|request| {
             let session = film.replay.log().session();
-            SenderComparisonFollower::new(session, request).without_causes().on_thread()
+            let cost = CostToGo::new(session.kitchen.clone());
+            SenderComparisonFollower::new(session, cost, request).without_causes().on_thread()
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();

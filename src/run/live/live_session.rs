@@ -20,6 +20,7 @@ use crate::edge::doctor::free_bytes;
 use crate::edge::key_file::key_map;
 use crate::edge::log::{LogWriter, RecordingLock, RecordingWriteError};
 use crate::edge::terminal::{TerminalScreen, theme};
+use crate::kitchen::cost_to_go::CostToGo;
 use crate::run::advisor_desk::{AdvisorThreadHandle, next_advice};
 use crate::run::desk::{GazeTracker, OperatorDesk};
 use crate::run::engine::SessionEngine;
@@ -162,7 +163,8 @@ impl Live {
         model.recording = RecordingStatus::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| SenderComparisonView::default());
         let comparison = compare.as_ref().map(|request| {
-            SenderComparisonFollower::new(Session::new(kitchen.clone(), spec.clone(), header.trial), request)
+            let session = Session::new(kitchen.clone(), spec.clone(), header.trial);
+            SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request)
         });
         let comparison = comparison.map(|follower| follower.without_causes().on_thread());
         let (display, health) = ParticipantDisplay::at(desk);

@@ -20,6 +20,7 @@ use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
+use super::kept_cost::KeptCost;
 use super::replay::SameKitchenCheck;
 use super::{consents, parallel};
 use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
@@ -137,14 +138,16 @@ pub fn study(
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
-    let work = |&(index, recording): &(usize, &(PathBuf, String))| -> Result<(usize, AnalysedRecording), StudyError> {
-        let (analysed, rows) = analyse(recording, analysis, (first, &kitchen))?;
+    let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
+        let (analysed, rows) = analyse(recording, analysis, (first, &kitchen), kept)?;
         if analysis.extent.events {
             keep(&export, index, &analysed, &rows)?;
         }
         Ok((index, analysed))
     };
-    let analysed = parallel::each(&numbered, work, done).into_iter().collect::<Result<Vec<_>, StudyError>>()?;
+    let analysed = parallel::each_with(&numbered, KeptCost::default, work, done)
+        .into_iter()
+        .collect::<Result<Vec<_>, StudyError>>()?;
     conclude(analysed, &export, analysis.extent, frozen)
 }
 
@@ -159,12 +162,13 @@ fn analyse(
     (path, name): &(PathBuf, String),
     analysis: &AnalysisRequest,
     first: (&Path, &Arc<Kitchen>),
+    kept: &mut KeptCost,
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
     let log = LogReader::open(path)?;
     let plan = recorded_plan(&log.header.session);
     let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
     let (mut trial, mut rows) = (None, Default::default());
-    if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref())? {
+    if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref(), kept)? {
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.facts)), read.rows);
     }

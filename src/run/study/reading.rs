@@ -31,6 +31,7 @@ use crate::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequences, s
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
+use crate::run::kept_cost::KeptCost;
 use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
@@ -76,14 +77,13 @@ enum Pass {
 impl Pass {
     /// The replay for this session. `is_known`: whether the participant's beliefs are recorded, or may follow from
     /// raters' codes.
-    fn new(session: Session, extent: AnalysisScope, is_known: bool) -> Pass {
+    fn new(session: Session, extent: AnalysisScope, is_known: bool, cost: CostToGo) -> Pass {
         let (spec, mut session) = (&session.spec.clone(), session);
-        let cost = CostToGo::new(session.kitchen.clone());
         match spec.trial.condition {
             Condition::Wizard if extent.concepts => {
                 let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
                 session.spec.assistant.concept = ConceptName::TomCom;
-                Pass::Beside(Box::new(SenderComparisonFollower::new(session, &request)))
+                Pass::Beside(Box::new(SenderComparisonFollower::new(session, cost, &request)))
             }
             // Prevented errors can be counted only where false beliefs are known.
             Condition::None if extent.concepts && is_known => Pass::Swept(Box::new(ConceptSweep::new(session, cost))),
@@ -96,6 +96,15 @@ impl Pass {
             Pass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
             Pass::Beside(watcher) => watcher.apply(stamped),
             Pass::Swept(sweeper) => sweeper.apply(stamped),
+        }
+    }
+
+    /// The cost to go with the caches that the replay filled, for the next recording.
+    fn into_cost(self) -> CostToGo {
+        match self {
+            Pass::Plain(follower) => follower.cost,
+            Pass::Beside(watcher) => watcher.follower.cost,
+            Pass::Swept(sweeper) => sweeper.cost,
         }
     }
 
@@ -142,7 +151,7 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
 }
 
 /// Analyses the recording, which tables call by `name`; `None` for a practice recording. `raters`: the two raters whose
-/// codes are used, if the user named them.
+/// codes are used, if the user named them. `kept`: the cost to go that the next recording takes over.
 ///
 /// # Errors
 /// The recording cannot be read or replayed, or it is not clear which two raters' codes to use.
@@ -151,6 +160,7 @@ pub fn read(
     name: &str,
     extent: AnalysisScope,
     raters: Option<&[String; 2]>,
+    kept: &mut KeptCost,
 ) -> FileResult<Option<(Arc<Kitchen>, RecordingAnalysis)>> {
     let mut log = LogReader::open(recording)?;
     let header = log.header.clone();
@@ -158,19 +168,20 @@ pub fn read(
         return Ok(None);
     }
     let kitchen = log.kitchen.clone();
+    let cost = kept.for_kitchen(&kitchen);
     let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotEventTally::new(header.session.robot.arm);
-    let mut regret = RegretSum::new(CostToGo::new(kitchen.clone()));
+    let mut regret = RegretSum::new(cost.clone());
     let mut answers = Vec::new();
     let mut probes = ProbeCollector::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
-    let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded);
+    let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded, cost.clone());
     let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
         attributor: ErrorAttributor::new(header.session.human.decision.clone(), log.session().seed()),
-        cost: CostToGo::new(kitchen.clone()),
+        cost: cost.clone(),
         causes: Vec::new(),
     });
     while let Some(line) = log.next_line()? {
@@ -205,11 +216,11 @@ pub fn read(
     let mut trial = trial(name, &header, follower, standing);
     trial.ended = robot.ended;
     trial.robot = robot.into_figures();
-    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace));
+    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, cost));
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
     trial.answers = answers;
     if extent.concepts && basis == Some(BeliefSource::Recorded) && trial.signals > 0 {
-        trial.useful_signals = useful_signals(recording)?;
+        trial.useful_signals = useful_signals(recording, cost.clone())?;
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
@@ -239,10 +250,9 @@ pub fn read(
     }
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
     trial.stale_consensus = coded.stale.filter(|_| !is_simulated);
-    Ok(Some((
-        kitchen,
-        RecordingAnalysis { trial, facts: RecordingFacts::from_session(&header, &follower.session), rows },
-    )))
+    let facts = RecordingFacts::from_session(&header, &follower.session);
+    *cost = pass.into_cost();
+    Ok(Some((kitchen, RecordingAnalysis { trial, facts, rows })))
 }
 
 /// Communications of each sender, with the sender's name: the communications that were sent and, in a wizard trial,
@@ -291,13 +301,14 @@ fn known_beliefs(
     basis: BeliefSource,
     coded: &CodedErrors,
     trace: &BeliefEvidence,
+    cost: &mut CostToGo,
 ) -> Option<KnownFalseBeliefs> {
     let kitchen = &follower.session.kitchen;
     match basis {
         BeliefSource::Recorded => Some(KnownFalseBeliefs::recorded(judged, follower.episodes.all().cloned().collect())),
         BeliefSource::Consensus | BeliefSource::Raters => {
-            let (codes, mut cost) = (coded.shared(judged)?, CostToGo::new(kitchen.clone()));
-            Some(KnownFalseBeliefs::coded(basis, kitchen, &mut cost, trace, judged, &codes))
+            let codes = coded.shared(judged)?;
+            Some(KnownFalseBeliefs::coded(basis, kitchen, cost, trace, judged, &codes))
         }
         BeliefSource::Estimate | BeliefSource::Probes => None,
     }

@@ -16,7 +16,8 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
 use crate::edge::log::LogReader;
 use crate::edge::study_part_file::{PartReader, PartWriter};
-use crate::run::parallel;
+use crate::run::kept_cost::KeptCost;
+use crate::run::parallel::{self, WorkerPool};
 use crate::run::replay::SameKitchenCheck;
 use crate::run::simulate::SimulationShard;
 use crate::study::figures::StudySummary;
@@ -79,9 +80,11 @@ pub fn analyse_shard(
     let log = LogReader::open(first)?;
     let texts = Some([log.header.layout.clone(), log.header.recipes.clone()]);
     let mut part = PartWriter::create(&analysis.out, &header, &texts)?;
-    let work = |recording: &(PathBuf, String)| analyse(recording, analysis, (first, &log.kitchen));
+    let workers = WorkerPool::new(KeptCost::default);
+    let work =
+        |kept: &mut KeptCost, recording: &(PathBuf, String)| analyse(recording, analysis, (first, &log.kitchen), kept);
     for block in own.chunks(BLOCK) {
-        for analysed in parallel::each(block, work, &done) {
+        for analysed in workers.each(block, work, &done) {
             let (recording, rows) = analysed?;
             part.add(&recording, &rows)?;
         }

@@ -37,7 +37,7 @@ pub struct ConceptSweep {
     pub follower: SessionFollower,
     planner: Planner,
     tom: TomConcept,
-    cost: CostToGo,
+    pub(super) cost: CostToGo,
     swept_concepts: Vec<SweptConcept>,
     /// Sequence number and time of the event after which the concepts are evaluated, once all events of the same time
     /// have been applied.

@@ -51,18 +51,17 @@ struct TwinResult {
     errors: u64,
 }
 
-/// Number of useful signals of a recorded trial of a simulated participant; `None` if the trial cannot be run again:
+/// Number of useful signals of a recorded trial of a simulated participant, with the cost to go of its kitchen; `None` if the trial cannot be run again:
 /// the program version that recorded it had other simulated participants, or this build lacks the robot's arm.
 ///
 /// # Errors
 /// The recording cannot be read.
-pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
+pub(super) fn useful_signals(recording: &Path, cost: CostToGo) -> FileResult<Option<u64>> {
     let mut log = LogReader::open(recording)?;
     let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
     if header.session.require_built().is_err() {
         return Ok(None);
     }
-    let cost = CostToGo::new(kitchen.clone());
     let mut again = SessionEngine::for_header(kitchen, &header, cost);
     let (mut produced, mut twins) = (VecDeque::new(), Vec::new());
     while let Some(line) = log.next_line()? {

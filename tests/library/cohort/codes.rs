@@ -11,6 +11,7 @@ use tomcom::measures::consensus::{RaterConsensus, unsettled};
 use tomcom::measures::rater_choice::RaterChoice;
 use tomcom::run::code_exchange::{export, import};
 use tomcom::run::codes::{CodedRecording, InterRaterSummary, describe};
+use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 
@@ -245,7 +246,9 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
         let told = CodedRecording::open(&recording).expect_err(&row).to_string();
         assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
         let extent = AnalysisScope { concepts: false, events: false };
-        let told = reading::read(&recording, "one", extent, None).err().map(|error| error.to_string());
+        let told = reading::read(&recording, "one", extent, None, &mut KeptCost::default())
+            .err()
+            .map(|error| error.to_string());
         assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
     }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use tomcom::communication::concept::ConceptName;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
+use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::settings::{ArmKind, Condition};
@@ -15,7 +16,8 @@ use super::{folder, run};
 
 fn analysed(recording: &Path) -> TrialStatistics {
     let scope = AnalysisScope { concepts: true, events: false };
-    let (_, analysis) = reading::read(recording, "one", scope, None).expect("readable").expect("no practice");
+    let (_, analysis) =
+        reading::read(recording, "one", scope, None, &mut KeptCost::default()).expect("readable").expect("no practice");
     analysis.trial
 }
 

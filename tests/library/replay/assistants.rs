@@ -233,10 +233,9 @@ fn asked(
     window: u32,
 ) -> (Vec<(u32, Arc<CommunicationContext>)>, SenderComparisonFollower) {
     let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window };
-    let mut watcher = SenderComparisonFollower::new(
-        Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0),
-        &request,
-    );
+    let kitchen = Arc::new(files.kitchen.kitchen.clone());
+    let session = Session::new(kitchen.clone(), files.spec.clone(), 0);
+    let mut watcher = SenderComparisonFollower::new(session, CostToGo::new(kitchen), &request);
     let mut known: Vec<(u32, Arc<CommunicationContext>)> = Vec::new();
     for stamped in events {
         let press = watcher.presses();
@@ -299,7 +298,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
         .expect("the folder can be written");
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
     let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window: 3 };
-    let watcher = || SenderComparisonFollower::new(log.session(), &request);
+    let watcher = || SenderComparisonFollower::new(log.session(), CostToGo::new(log.kitchen.clone()), &request);
     let (mut here, there) = (watcher(), watcher().on_thread());
     let mut compared = 0;
     // Locations that were known or had just changed, each with the number of presses until then.

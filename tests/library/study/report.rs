@@ -17,6 +17,7 @@ use tomcom::measures::consensus::RaterConsensus;
 use tomcom::robot::AbortReason;
 use tomcom::robot::safety::SafetyMode;
 use tomcom::run::codes::CodedRecording;
+use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::describe;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
@@ -196,7 +197,7 @@ fn two_raters_say_why_people_erred() {
     fs::create_dir_all(&folder).expect("a folder");
     fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
-    let read = || match reading::read(&folder, "hand", extent, None) {
+    let read = || match reading::read(&folder, "hand", extent, None, &mut KeptCost::default()) {
         Ok(Some((_, reading))) => reading,
         Ok(None) => panic!("it is no practice"),
         Err(error) => panic!("{error}"),
@@ -273,7 +274,12 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     fs::create_dir_all(&folder).expect("a folder");
     fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
-    let read = || reading::read(&folder, "hand", extent, None).expect("readable").expect("no practice").1;
+    let read = || {
+        reading::read(&folder, "hand", extent, None, &mut KeptCost::default())
+            .expect("readable")
+            .expect("no practice")
+            .1
+    };
     let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
     let all = |code: ErrorCauseCode| RaterCodes(errors.iter().map(|press| (*press, code.clone())).collect());
     let (slips, beliefs) = (all(ErrorCauseCode::Slip), all(ErrorCauseCode::Belief("assembly_board".to_string())));

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::export::AnalysisFolder;
+use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
@@ -68,9 +69,10 @@ fn folder(name: &str) -> PathBuf {
 fn analysis(name: &str) -> RecordingAnalysis {
     let folder = folder(name);
     fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
-    let (_, analysis) = reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true }, None)
-        .expect("a recording")
-        .expect("a trial");
+    let (_, analysis) =
+        reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true }, None, &mut KeptCost::default())
+            .expect("a recording")
+            .expect("a trial");
     analysis
 }
 

@@ -29,10 +29,15 @@ pub struct AssistantSpec {
     pub asks_by_gaze: bool,
     /// Whether the assistant of a live session works ahead between requests for advice, which makes the answers come
     /// sooner, and changes nothing else. Recordings contain this setting only where it is off.
-    #[serde(skip_serializing_if = "Clone::clone")]
+    #[serde(skip_serializing_if = "is_on")]
     pub works_ahead: bool,
     /// Settings of the planner's rollouts: how finely the planner computes.
     pub rollout: RolloutSettings,
+}
+
+// A setting that is on by default is not written to recordings.
+fn is_on(setting: &bool) -> bool {
+    *setting
 }
 
 /// Whether the assistant computes recommendations in conditions in which the assistant does not send signals.

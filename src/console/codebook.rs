@@ -1,10 +1,9 @@
 //! The rater's codebook on the console: the error causes that a rater can code, with their keys and definitions.
 
-use ratatui::text::Span;
-
 use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, RaterAction};
 use super::keys::KeyBindings;
+use super::text_columns::{width, wrap};
 use crate::kitchen::Kitchen;
 use crate::measures::cause_codes::ErrorCauseKind;
 
@@ -27,7 +26,7 @@ impl CodebookEntry {
 
     /// Columns that the codebook entry takes, with a space after its key.
     fn columns(&self) -> u16 {
-        key_columns(self.key) + columns_of(&self.words)
+        key_columns(self.key) + width(&self.words)
     }
 }
 
@@ -104,23 +103,7 @@ fn flow(entries: Vec<CodebookEntry>, columns: u16) -> Vec<CodebookLine> {
     lines
 }
 
-/// Breaks a text between words into lines of at most `columns` characters.
-fn wrap(text: &str, columns: u16) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if columns_of(line) + 1 + columns_of(word) <= columns => *line += &format!(" {word}"),
-            _ => lines.push(word.to_string()),
-        }
-    }
-    lines
-}
-
 /// Columns of a key and the space after it.
 fn key_columns(key: Option<KeyChord>) -> u16 {
-    key.map_or(0, |key| columns_of(&key.to_string()) + 1)
-}
-
-fn columns_of(text: &str) -> u16 {
-    Span::raw(text).width() as u16
+    key.map_or(0, |key| width(&key.to_string()) + 1)
 }

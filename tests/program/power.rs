@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use serial_test::serial;
 
-use crate::tmux::tomcom;
+use crate::tmux::{done, refused, tomcom};
 
 /// An empty folder for the test of this name, with the paper's plan and short trials in it.
 fn folder(name: &str) -> (PathBuf, String) {
@@ -22,19 +22,6 @@ fn folder(name: &str) -> (PathBuf, String) {
     let plan = folder.join("short.toml");
     fs::write(&plan, text).expect("written");
     (folder, plan.display().to_string())
-}
-
-fn done(arguments: &[&str]) -> String {
-    let output = tomcom(arguments);
-    assert!(output.status.success(), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
-
-fn refused(arguments: &[&str], says: &str) {
-    let output = tomcom(arguments);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-    assert!(told.contains(says), "{says:?} is not in\n{told}");
 }
 
 #[test]

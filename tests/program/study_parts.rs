@@ -2,11 +2,10 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
 
 use serial_test::serial;
 
-use crate::tmux::tomcom;
+use crate::tmux::{done, refused, tomcom};
 
 /// Number of parts, and of trials.
 const PARTS: u64 = 8;
@@ -24,19 +23,6 @@ fn folder(name: &str) -> (PathBuf, String) {
     let plan = folder.join("short.toml");
     fs::write(&plan, text).expect("written");
     (folder, plan.display().to_string())
-}
-
-fn done(arguments: &[&str]) -> String {
-    let output = tomcom(arguments);
-    assert!(output.status.success(), "{arguments:?}: {output:?}");
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
-
-fn refused(arguments: &[&str], says: &str) {
-    let output: Output = tomcom(arguments);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-    assert!(told.replace("\n  │ ", " ").contains(says), "{says:?} is not in\n{told}");
 }
 
 /// All files of a folder with their bytes, by name.

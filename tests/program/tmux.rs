@@ -167,6 +167,21 @@ pub fn tomcom(arguments: &[&str]) -> Output {
     Command::new(TOMCOM).args(arguments).output().expect("tomcom runs")
 }
 
+/// What the program prints with these arguments, which it takes.
+pub fn done(arguments: &[&str]) -> String {
+    let output = tomcom(arguments);
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// Asserts that the program refuses these arguments and says so in these words, wherever its lines break.
+pub fn refused(arguments: &[&str], says: &str) {
+    let output = tomcom(arguments);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+    assert!(told.replace("\n  │ ", " ").contains(says), "{says:?} is not in\n{told}");
+}
+
 /// A plan of two participants with trials of a few presses.
 pub fn tiny_plan(folder: &Path) -> PathBuf {
     let root = env!("CARGO_MANIFEST_DIR");

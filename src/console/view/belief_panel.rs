@@ -3,7 +3,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, fit, width, wrap};
+use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
@@ -15,6 +15,7 @@ use crate::console::beliefs::{
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
+use crate::console::text_columns::{fit, width, wrap};
 use crate::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
 use crate::kitchen::AspectId;
 use crate::measures::sequences::FALSE_BELOW;

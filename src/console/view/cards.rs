@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::footer::onward;
 use super::head;
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::popup::open;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
@@ -17,6 +17,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use crate::console::possible::can_redo;
+use crate::console::text_columns::width;
 use crate::history::signal_judge::SignalJudgementCounts;
 use crate::history::wording;
 use crate::kitchen::{Agent, Dish};

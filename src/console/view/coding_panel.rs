@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, fit, width, wrap};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::analysis::error_list::ListedError;
@@ -11,6 +11,7 @@ use crate::console::codebook::{self, CodebookEntry};
 use crate::console::coding_list::ErrorListLayout;
 use crate::console::console_model::ConsoleModel;
 use crate::console::rater_session::{CodingRaters, RaterSession};
+use crate::console::text_columns::{fit, width, wrap};
 use crate::history::wording;
 use crate::measures::cause_codes::ErrorCauseCode;
 use crate::session::Session;

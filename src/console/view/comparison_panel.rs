@@ -4,7 +4,7 @@
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use super::timeline::{axis, columns_ago};
@@ -12,6 +12,7 @@ use crate::base::time::SessionTime;
 use crate::console::compared::ComparisonAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
+use crate::console::text_columns::width;
 use crate::history::comparison::{Communication, CommunicationContent, SenderComparison, UnmatchedCommunication};
 use crate::session::Session;
 

@@ -4,7 +4,7 @@ use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
 use super::hands;
-use super::paint::{Painter, width, wrap};
+use super::paint::Painter;
 use super::picker;
 use super::popup::open;
 use super::regions::PanelAreas;
@@ -13,6 +13,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::keys::KeyBindings;
+use crate::console::text_columns::{width, wrap};
 use crate::session::{Session, TrialPhase};
 
 /// Draws the open dialog, if there is one.

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::click::ClickAction;
@@ -15,6 +15,7 @@ use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, 
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayAction;
 use crate::console::possible::{can_redo, is_possible};
+use crate::console::text_columns::width;
 use crate::history::wording;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Session, TrialPhase};

@@ -3,12 +3,13 @@
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::paint::{Painter, fit, width};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
+use crate::console::text_columns::{fit, width};
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;

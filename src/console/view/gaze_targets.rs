@@ -11,6 +11,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::gaze_advice::AccuracyCheckAction;
 use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, REPEAT, chosen};
+use crate::console::text_columns::width;
 use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
@@ -24,7 +25,7 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
     let Some(((index, _), point)) = check.shown.zip(check.target()) else { return };
     let Some((x, y)) = plan.cell(point) else { return };
     let text = format!(" + look here: target {} of {} ", index + 1, check.targets.len());
-    let columns = super::paint::width(&text).min(panel.width);
+    let columns = width(&text).min(panel.width);
     // The cross is on the target; the instruction stands to its right, or to its left if there is no room.
     let before = if x + columns < panel.right() { 1 } else { columns.saturating_sub(2) };
     let text =

@@ -3,7 +3,7 @@
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, wrap};
+use super::paint::Painter;
 use super::popup::open;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
@@ -11,6 +11,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
+use crate::console::text_columns::wrap;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::{Session, TrialPhase};
 

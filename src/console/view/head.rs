@@ -2,12 +2,13 @@
 
 use ratatui::style::Style;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
+use crate::console::text_columns::width;
 use crate::history::wording;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};

@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::gaze;
 use super::offer_line;
-use super::paint::{Painter, squeeze, width, wrap, wrap_to};
+use super::paint::Painter;
 use super::place_buttons;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
@@ -16,6 +16,7 @@ use crate::console::beliefs::beliefs;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
+use crate::console::text_columns::{squeeze, width, wrap, wrap_to};
 use crate::history::wording;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;

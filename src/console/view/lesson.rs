@@ -1,11 +1,12 @@
 //! The wizard training's panel: the task, then feedback on signals, newest first.
 
-use super::paint::{Painter, wrap};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
 use crate::console::notice::NoticeLevel;
+use crate::console::text_columns::wrap;
 
 /// Columns for the clock time of a line of feedback.
 const CLOCK: u16 = 6;

@@ -34,6 +34,7 @@ use ratatui::Frame;
 
 use super::click::ClickTarget;
 use super::console_model::{ConsoleModel, Dialog};
+use super::text_columns::wrap;
 use crate::session::Session;
 use paint::Painter;
 use regions::{LEAST, PanelAreas};
@@ -108,7 +109,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
         None => return,
     };
     let strong = brush.style(TextRole::Strong);
-    for (row, line) in paint::wrap(question, area.width).iter().enumerate() {
+    for (row, line) in wrap(question, area.width).iter().enumerate() {
         brush.text(0, 2 + row as u16, area.width, line, strong);
     }
 }

@@ -2,7 +2,7 @@
 //! presses that it saves. Nothing else on the screen is inverse in the colour of signals.
 
 use super::belief_panel::QUIET;
-use super::paint::{Painter, width, wrap};
+use super::paint::Painter;
 use super::recommendation_panel::NOTHING;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
@@ -15,6 +15,7 @@ use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, beliefs,
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
+use crate::console::text_columns::{width, wrap};
 use crate::history::wording;
 use crate::kitchen::{AspectId, LocationId};
 use crate::session::admit::may_send;

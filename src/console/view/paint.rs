@@ -4,13 +4,12 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
-use ratatui::text::Span;
 
 use super::regions::below_title;
 use super::theme::{TextRole, Theme};
-use crate::base::printable::printable;
 use crate::console::chord::KeyChord;
 use crate::console::click::{ClickAction, ClickTarget};
+use crate::console::text_columns::{fit, width};
 
 /// Draws on a screen buffer in a theme, and collects click targets.
 pub struct Painter<'a> {
@@ -34,66 +33,6 @@ pub(super) fn targets(theme: Theme, size: (u16, u16), draw: impl FnOnce(&mut Pai
     let mut brush = Painter::new(&mut buffer, theme);
     draw(&mut brush);
     brush.targets
-}
-
-/// Terminal columns that a text takes.
-pub fn width(text: &str) -> u16 {
-    Span::raw(printable(text)).width() as u16
-}
-
-/// The text cut to `columns`, with an ellipsis if something was cut off.
-pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
-    let text = printable(text);
-    if width(&text) <= columns {
-        return text.to_string();
-    }
-    let mut cut = String::new();
-    for letter in text.chars() {
-        if width(&cut) + width(letter.encode_utf8(&mut [0; 4])) + width(ellipsis) > columns {
-            break;
-        }
-        cut.push(letter);
-    }
-    cut.truncate(cut.trim_end().len());
-    if columns >= width(ellipsis) {
-        cut.push_str(ellipsis);
-    }
-    cut
-}
-
-/// Shortens a content to this number of columns: first removes spaces after plus signs, then cuts the end, with an
-/// ellipsis.
-pub fn squeeze(content: &str, columns: u16, ellipsis: &str) -> String {
-    match width(content) <= columns {
-        true => content.to_string(),
-        false => fit(&content.replace(" + ", " +"), columns, ellipsis),
-    }
-}
-
-/// Breaks a text between words into lines of at most `columns` characters.
-pub fn wrap(text: &str, columns: u16) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if width(line) + 1 + width(word) <= columns => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_string()),
-        }
-    }
-    lines
-}
-
-/// Breaks a text into at most `rows` lines, with an ellipsis if something was cut off.
-pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<String> {
-    let mut lines = wrap(text, columns);
-    let rows = usize::from(rows);
-    if lines.len() > rows && rows > 0 {
-        let last = lines.split_off(rows - 1).join(" ");
-        lines.push(fit(&last, columns, ellipsis));
-    }
-    lines
 }
 
 impl Painter<'_> {

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::popup::open;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
@@ -13,6 +13,7 @@ use crate::console::list_cursor::ListCursor;
 use crate::console::palette;
 use crate::console::picker::Picker;
 use crate::console::possible::is_possible_behind;
+use crate::console::text_columns::width;
 use crate::session::Session;
 use crossterm::event::KeyCode;
 

@@ -3,11 +3,12 @@
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::paint::{Painter, fit};
+use super::paint::Painter;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
+use crate::console::text_columns::fit;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, LocationId};
 use crate::session::Session;
 

@@ -4,7 +4,7 @@
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
-use super::paint::{KeyHint, Painter, width};
+use super::paint::{KeyHint, Painter};
 use super::popup::blank;
 use super::sheet_page::{Page, Pen, plain};
 use super::theme::TextRole;
@@ -14,6 +14,7 @@ use crate::console::display_status::{ParticipantDisplayHealth, is_wanted};
 use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::probe_entry::ProbeEntry;
 use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
+use crate::console::text_columns::width;
 use crate::display::{ProbeWording, probe_left, probe_wording};
 use crate::session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
 use crate::session::settings::WizardVisibility;

@@ -3,7 +3,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, wrap};
+use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::base::words::count;
@@ -12,6 +12,7 @@ use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
+use crate::console::text_columns::wrap;
 use crate::history::wording;
 use crate::session::Session;
 use crate::session::admit::may_send;

@@ -4,13 +4,14 @@ use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, targets, width};
+use super::paint::{Painter, targets};
 use super::picker::TYPE;
 use super::popup::open;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::click::{ClickAction, ClickTarget};
 use crate::console::recording_picker::RecordingPicker;
+use crate::console::text_columns::{fit_end, width};
 
 /// Rows around the list of recordings: frame, search line, headings, key hints.
 const AROUND: u16 = 7;
@@ -68,16 +69,6 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
     let hints = [("up/down", "select", None), ("enter", "open", enter), ("esc", "back", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
-}
-
-/// The end of a text in `columns`, after an ellipsis if its beginning was cut off.
-fn fit_end(text: &str, columns: u16, ellipsis: &str) -> String {
-    let mut end = text;
-    while width(end) + if end.len() < text.len() { width(ellipsis) } else { 0 } > columns {
-        let Some((first, _)) = end.char_indices().nth(1) else { break };
-        end = &end[first..];
-    }
-    if end.len() < text.len() { format!("{ellipsis}{end}") } else { text.to_string() }
 }
 
 /// The columns of the list that have room.

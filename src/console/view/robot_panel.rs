@@ -2,13 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::words::count;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::key_action::ManualAction;
+use crate::console::text_columns::width;
 use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::robot::IdleReason;

@@ -5,7 +5,7 @@ use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::probe_sheet;
 use super::sheet_page::{Page, Pen, plain};
 use super::theme::{TextRole, Theme};
@@ -14,6 +14,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::form::{FormContent, WAIVERS, sheet};
 use crate::console::question::StartQuestion;
+use crate::console::text_columns::width;
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};

@@ -4,10 +4,11 @@
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
-use super::paint::{KeyHint, Painter, width, wrap};
+use super::paint::{KeyHint, Painter};
 use super::popup::open;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
+use crate::console::text_columns::{width, wrap};
 
 /// Largest width of a line, in columns, for readability.
 const WIDEST: u16 = 84;

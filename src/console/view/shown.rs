@@ -1,11 +1,12 @@
 //! Panel of the participant's side: the signal on the display, its content and its remaining time.
 
-use super::paint::{Painter, width, wrap};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::communication::Signal;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
+use crate::console::text_columns::{width, wrap};
 use crate::history::wording;
 use crate::session::{Session, ShownSignal, TrialPhase, proposals};
 

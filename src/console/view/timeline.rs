@@ -3,7 +3,7 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width};
+use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
@@ -12,6 +12,7 @@ use crate::communication::offer::OfferKeyKind;
 use crate::console::beliefs::visibility;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
+use crate::console::text_columns::width;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEndReason;
 use crate::session::offers;

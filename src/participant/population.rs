@@ -97,7 +97,7 @@ pub struct Population {
     pub novice_slowdown: f64,
     /// Number of presses after which half of a beginner's slowdown is gone.
     pub practice_presses: f64,
-    /// Probability of a slip that presses the neighbouring button on the table.
+    /// Probability of a slip that hits another button, rather one nearby and of like colour (see [`super::slips`]).
     pub slip: TraitSpread,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
@@ -272,7 +272,7 @@ impl Default for Population {
 pub struct ParticipantTraits {
     /// Median time from one press of the participant to the next, in seconds, after some practice.
     pub press_s: f64,
-    /// Probability of a slip that hits the neighbouring button on the table.
+    /// Probability of a slip that hits another button.
     pub slip: f64,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: f64,

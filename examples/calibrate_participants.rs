@@ -299,7 +299,8 @@ fn each(setting: &Setting, seeds: &[u64], file: &str) -> Result<(), Box<dyn Erro
     let accepted: toml::Table = std::fs::read_to_string(file)?.parse()?;
     let vectors = accepted.get("vector").and_then(toml::Value::as_array).ok_or("no [[vector]]")?;
     let own = setting.population();
-    let applied = |vector: &toml::Value| with_parameters(&own, vector.as_table().ok_or("a [[vector]] that is no table")?);
+    let applied =
+        |vector: &toml::Value| with_parameters(&own, vector.as_table().ok_or("a [[vector]] that is no table")?);
     let populations = vectors.iter().map(applied).collect::<Result<Vec<_>, _>>()?;
     setting.studies(&populations, seeds, |_, studies| print(&together(studies).line()))
 }

@@ -2,15 +2,19 @@
 //! that agree with it. docs/simulated-participants.md has the steps, the seeds and what came of them.
 //!
 //! ```sh
-//! run="cargo run --release --no-default-features --example calibrate_participants --"
+//! run="cargo run --release --example calibrate_participants --"
 //! $run figures sessions/paper.toml 3001,3002          # the session's population
 //! $run planning sessions/paper.toml 3001,3002         # the same people, who know everything and do not slip
-//! $run search sessions/paper.toml 3001,3002 200 > accepted.toml   # vectors of belief parameters that agree with the paper
-//! $run each sessions/paper.toml 4001,4002 accepted.toml
+//! $run search sessions/paper.toml 3001,3002 200 > found.toml  # vectors of belief parameters that agree with the paper
+//! $run each sessions/paper.toml 4001,4002 sessions/people/accepted.toml
 //! ```
+//!
+//! Studies run on all processors (`RAYON_NUM_THREADS` limits them). What is printed, and in which order, does not depend on their
+//! number.
 
 use std::convert::Infallible;
 use std::error::Error;
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,6 +30,7 @@ use tomcom::measures::sequences::{sequences, sequences_any_aspect};
 use tomcom::participant::population::Population;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
+use tomcom::run::parallel::WorkerPool;
 use tomcom::session::SessionSpec;
 use tomcom::session::plan::Study;
 
@@ -148,7 +153,6 @@ struct Setting {
     kitchen: Arc<Kitchen>,
     /// Layout and recipes, as they stand in their files.
     texts: [String; 2],
-    cost: CostToGo,
 }
 
 impl Setting {
@@ -165,47 +169,66 @@ impl Setting {
         (inference.beliefs, inference.states, inference.max_beliefs, inference.predictions) = (1, 1, 1, 1);
         inference.min_effective = 1.0;
         spec.assistant.shadow = ShadowMode::Off;
-        let cost = CostToGo::new(kitchen.clone());
-        Ok(Setting { spec, kitchen, texts, cost })
+        Ok(Setting { spec, kitchen, texts })
     }
 
     fn population(&self) -> Population {
         self.spec.participant.population.clone().unwrap_or_default()
     }
 
-    /// A whole study of this population: every participant with every condition.
-    fn study(&self, population: &Population, seed: u64) -> Result<Rates, Box<dyn Error>> {
+    /// A whole study of this population: every participant with every condition. The caches of `cost` serve one trial
+    /// after the other.
+    fn study(&self, cost: &mut Option<CostToGo>, population: &Population, seed: u64) -> Result<Rates, &'static str> {
         let mut spec = self.spec.clone();
         (spec.seed, spec.participant.population) = (seed, Some(population.clone()));
         let study = Study::new(&spec, Vec::new(), None, self.texts.each_ref().map(String::as_str))
-            .ok_or("a session with a plan")?;
+            .ok_or("the session file has no plan")?;
         let mut rates = Rates::default();
         for participant in 0..study.plan.codes().len() {
             for period in 1..=study.plan.conditions.len() as u32 {
                 let (spec, trial) = study.simulated(participant, period);
-                let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, self.cost.clone());
+                let own = cost.take().unwrap_or_else(|| CostToGo::new(self.kitchen.clone()));
+                let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, own);
                 headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
                 rates.add(&engine);
+                *cost = Some(engine.into_follower().cost);
             }
         }
         Ok(rates)
     }
 
-    /// Studies of this population with several seeds; `tell` gets each.
+    /// Studies with several seeds of each population, on all processors. `tell` gets each population's number and its
+    /// studies, in the order of the seeds; the populations come in their order, each as soon as it and those before are done.
     fn studies(
         &self,
-        population: &Population,
+        populations: &[Population],
         seeds: &[u64],
-        mut tell: impl FnMut(u64, &Rates),
-    ) -> Result<Rates, Box<dyn Error>> {
-        let mut all = Rates::default();
-        for &seed in seeds {
-            let rates = self.study(population, seed)?;
-            tell(seed, &rates);
-            all.merge(&rates);
+        mut tell: impl FnMut(usize, &[Rates]) -> Result<(), Box<dyn Error>>,
+    ) -> Result<(), Box<dyn Error>> {
+        let workers = WorkerPool::new(|| None);
+        // So many populations at once that no processor is without a study.
+        let at_once = rayon::current_num_threads().div_ceil(seeds.len());
+        for first in (0..populations.len()).step_by(at_once) {
+            let block = first..populations.len().min(first + at_once);
+            let items: Vec<(usize, u64)> =
+                block.clone().flat_map(|number| seeds.iter().map(move |&seed| (number, seed))).collect();
+            let one = |cost: &mut Option<CostToGo>, &(number, seed): &(usize, u64)| {
+                self.study(cost, &populations[number], seed)
+            };
+            let found = workers.each(&items, one, || ()).into_iter().collect::<Result<Vec<Rates>, _>>()?;
+            for (number, studies) in block.zip(found.chunks(seeds.len())) {
+                tell(number, studies)?;
+            }
         }
-        Ok(all)
+        Ok(())
     }
+}
+
+/// The rates over several studies.
+fn together(studies: &[Rates]) -> Rates {
+    let mut all = Rates::default();
+    studies.iter().for_each(|rates| all.merge(rates));
+    all
 }
 
 /// A population with some parameters replaced: numbers, or medians of traits.
@@ -241,6 +264,47 @@ fn words(vector: &toml::Table) -> String {
     vector.iter().map(|(name, value)| format!("{name} = {value}\n")).collect()
 }
 
+/// Prints at once, also into a file, so that an interrupted search keeps what it found.
+fn print(text: &str) -> Result<(), Box<dyn Error>> {
+    let mut out = std::io::stdout();
+    writeln!(out, "{text}")?;
+    Ok(out.flush()?)
+}
+
+/// Prints the rates of one population: of each study, and of all.
+fn figures(setting: &Setting, population: Population, seeds: &[u64]) -> Result<(), Box<dyn Error>> {
+    setting.studies(&[population], seeds, |_, studies| {
+        for (seed, rates) in seeds.iter().zip(studies) {
+            print(&format!("seed {seed}: {}", rates.line()))?;
+        }
+        print(&format!("all: {}", together(studies).line()))
+    })
+}
+
+/// Prints all vectors with their rates; those that do not agree with the paper as comments.
+fn search(setting: &Setting, seeds: &[u64], count: u64) -> Result<(), Box<dyn Error>> {
+    let vectors: Vec<toml::Table> = (0..count).map(drawn).collect();
+    let own = setting.population();
+    let populations = vectors.iter().map(|vector| with_parameters(&own, vector)).collect::<Result<Vec<_>, _>>()?;
+    setting.studies(&populations, seeds, |number, studies| {
+        let (rates, words) = (together(studies), words(&vectors[number]));
+        let found = if rates.agrees() { "[[vector]]\n" } else { "" };
+        let told = if found.is_empty() { format!("# {}\n", words.replace('\n', ", ")) } else { words };
+        print(&format!("{found}# {number}: {}\n{told}", rates.line()))
+    })
+}
+
+/// Prints the rates of each vector of a file.
+fn each(setting: &Setting, seeds: &[u64], file: &str) -> Result<(), Box<dyn Error>> {
+    let accepted: toml::Table = std::fs::read_to_string(file)?.parse()?;
+    let vectors = accepted.get("vector").and_then(toml::Value::as_array).ok_or("no [[vector]]")?;
+    let own = setting.population();
+    let applied =
+        |vector: &toml::Value| with_parameters(&own, vector.as_table().ok_or("a [[vector]] that is no table")?);
+    let populations = vectors.iter().map(applied).collect::<Result<Vec<_>, _>>()?;
+    setting.studies(&populations, seeds, |_, studies| print(&together(studies).line()))
+}
+
 /// Runs the command of the arguments.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -249,34 +313,14 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     };
     let seeds = seeds.split(',').map(str::parse).collect::<Result<Vec<u64>, _>>()?;
     let setting = Setting::read(Path::new(session))?;
-    let tell = |seed: u64, rates: &Rates| println!("seed {seed}: {}", rates.line());
     match (command.as_str(), rest) {
         ("figures" | "planning", changes) => {
             let vector: toml::Table = changes.join("\n").parse()?;
             let population = with_parameters(&setting.population(), &vector)?;
-            let population = if command == "planning" { knowing(&population)? } else { population };
-            println!("all: {}", setting.studies(&population, &seeds, tell)?.line());
+            figures(&setting, if command == "planning" { knowing(&population)? } else { population }, &seeds)
         }
-        ("search", [count]) => {
-            for number in 0..count.parse()? {
-                let vector = drawn(number);
-                let rates = setting.studies(&with_parameters(&setting.population(), &vector)?, &seeds, |_, _| ())?;
-                let found = if rates.agrees() { "[[vector]]\n" } else { "" };
-                let comment = words(&vector).replace('\n', ", ");
-                let told = if found.is_empty() { format!("# {comment}") } else { words(&vector) };
-                println!("{found}# {number}: {}\n{told}", rates.line());
-            }
-        }
-        ("each", [file]) => {
-            let accepted: toml::Table = std::fs::read_to_string(file)?.parse()?;
-            let vectors = accepted.get("vector").and_then(toml::Value::as_array).ok_or("no [[vector]]")?;
-            for vector in vectors {
-                let vector = vector.as_table().ok_or("a [[vector]] that is no table")?;
-                let rates = setting.studies(&with_parameters(&setting.population(), vector)?, &seeds, |_, _| ())?;
-                println!("{}", rates.line());
-            }
-        }
-        _ => return Err(format!("{command}: figures, planning, search or each").into()),
+        ("search", [count]) => search(&setting, &seeds, count.parse()?),
+        ("each", [file]) => each(&setting, &seeds, file),
+        _ => Err(format!("{command}: figures, planning, search or each").into()),
     }
-    Ok(())
 }

@@ -40,7 +40,8 @@ pub struct SessionFollower {
     pub repeats: SignalRepeatRule,
     /// Computing times of updates of the belief estimate; `None` if the times are not measured.
     pub timing: Option<InferenceTiming>,
-    pub(crate) cost: CostToGo,
+    /// The cost to go that judges presses; its caches can serve the next session in the same kitchen.
+    pub cost: CostToGo,
     judge: PressJudge,
     attributor: ErrorAttributor,
     /// State of the judgement by gaze of which changes the human seems unaware.

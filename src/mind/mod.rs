@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 pub struct RecordedBelief {
     /// The participant's belief about each state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectBelief>,
-    /// Reason for the participant's next press: "as believed", "slip to the neighbouring button", …
+    /// Reason for the participant's next press: "as believed", "slip: hit a button nearby, meant cut", …
     pub cause: String,
     /// Origin of the participant's next press, found by repeating the participant's decision with the truth; `None` in
     /// recordings made before version 0.2.0.

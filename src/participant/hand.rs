@@ -5,6 +5,7 @@ use rand::RngExt;
 use super::decision::{Impatience, effective_presses};
 use super::population::{chance, normal};
 use super::simulated::{ParticipantAction, SimulatedParticipant};
+use super::slips::slipped_button;
 use super::true_beliefs::wanted_dish;
 use super::witness::{self, PressReason};
 use crate::base::time::SessionTime;
@@ -97,10 +98,10 @@ impl SimulatedParticipant {
             chance(&mut self.hand, self.person.thoughtless),
         );
         let alike = kitchen.look_alike_button(Agent::Human, button).filter(|_| is_alike);
-        let next = kitchen.nearest_button(Agent::Human, button).filter(|_| is_neighbour);
-        let (pressed, cause) = match (alike, next) {
+        let hit = if is_neighbour { slipped_button(&kitchen, button, &mut self.hand) } else { None };
+        let (pressed, cause) = match (alike, hit) {
             (Some(other), _) => (other, format!("slip: took the look-alike, meant {}", name(button))),
-            (None, Some(other)) => (other, format!("slip: hit the neighbouring button, meant {}", name(button))),
+            (None, Some(other)) => (other, format!("slip: hit a button nearby, meant {}", name(button))),
             (None, None) if is_thoughtless => {
                 let possible = effective_presses(&kitchen, &self.beliefs.point(&kitchen));
                 match possible.is_empty() {

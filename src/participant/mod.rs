@@ -11,6 +11,7 @@
 //! - Planning: `knowledge` (of buttons and processing steps), `goals` (missing parts), `habits` (and lapses),
 //!   `planning` (backward chaining), `decision` (next presses).
 //! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).
+//! - Errors of the hand: [`slips`] (which other button is hit).
 //! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`,
 //!   `acting`, `answering`.
 
@@ -32,6 +33,7 @@ pub mod population;
 mod signal_sense;
 mod signals;
 mod simulated;
+pub mod slips;
 mod targets;
 mod thinking;
 pub mod true_beliefs;

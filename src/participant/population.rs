@@ -84,8 +84,9 @@ pub(super) fn rare_chance(random: &mut Stream, p: f64) -> bool {
     p > 0.0 && chance(random, p)
 }
 
-/// Parameters of the simulated population. The defaults are calibrated to the error rates of the paper's participants
-/// (study: 11 to 13 % errors per human press, 82 % of them from false beliefs, 3.1 errors per sequence).
+/// Parameters of the simulated population. The defaults of planning and slips are calibrated to the paper's participants
+/// (study, "Simulated participants", steps A and B). Step C, their beliefs over two trials, is in `sessions/paper.toml`;
+/// the default beliefs are those to which the human model of `sessions/default.toml` was fitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Population {
@@ -97,7 +98,7 @@ pub struct Population {
     pub novice_slowdown: f64,
     /// Number of presses after which half of a beginner's slowdown is gone.
     pub practice_presses: f64,
-    /// Probability of a slip that presses the neighbouring button on the table.
+    /// Probability of a slip that hits another button, rather one nearby and of like colour (see [`super::slips`]).
     pub slip: TraitSpread,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
@@ -217,8 +218,8 @@ impl Default for Population {
             press_jitter: 0.3,
             novice_slowdown: 0.3,
             practice_presses: 25.0,
-            slip: TraitSpread::from_median(0.011, 0.4),
-            look_alike_slip: TraitSpread::from_median(0.012, 0.4),
+            slip: TraitSpread::from_median(0.007, 0.4),
+            look_alike_slip: TraitSpread::from_median(0.009, 0.4),
             thoughtless: TraitSpread::from_median(0.005, 0.4),
             notices_slip: 0.85,
             insists: 0.0,
@@ -241,8 +242,8 @@ impl Default for Population {
             patience_s: TraitSpread::from_median(4.0, 0.25),
             commitment_s: TraitSpread::from_median(12.0, 0.3),
             depth: TraitSpread::from_median(3.4, 0.25),
-            skips_check: TraitSpread::from_median(0.15, 0.4),
-            follows_habit: TraitSpread::from_median(0.1, 0.4),
+            skips_check: TraitSpread::from_median(0.2, 0.4),
+            follows_habit: TraitSpread::from_median(0.15, 0.4),
             forgets_parked: TraitSpread::from_median(0.2, 0.4),
             takes_along: TraitSpread::from_median(0.4, 0.4),
             notices_signal: TraitSpread::from_median(0.82, 0.15),
@@ -272,7 +273,7 @@ impl Default for Population {
 pub struct ParticipantTraits {
     /// Median time from one press of the participant to the next, in seconds, after some practice.
     pub press_s: f64,
-    /// Probability of a slip that hits the neighbouring button on the table.
+    /// Probability of a slip that hits another button.
     pub slip: f64,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: f64,

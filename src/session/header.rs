@@ -12,7 +12,7 @@ pub const VERSION: u32 = 2;
 /// The version of the log's format since which recommendations become offers to the wizard.
 const OFFERS_SINCE: u32 = 2;
 /// The first version of the program whose simulated participants decide as they do now.
-pub const PEOPLE_SINCE: &str = "0.2.0";
+pub const PEOPLE_SINCE: &str = "0.3.0";
 
 /// The header of a log: its first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

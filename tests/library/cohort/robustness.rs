@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable, describe_row, legend};
 use tomcom::edge::battery_file::{CohortBattery, read_battery};
+use tomcom::edge::files::read_session;
 use tomcom::measures::flags::ThresholdSource;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
 use tomcom::run::robustness::{RobustnessRequest, measure};
 use tomcom::run::simulate::SimulationShard;
+use tomcom::session::battery::CohortSpec;
 use tomcom::session::settings::{ArmKind, Condition};
 
 use super::{folder, run};
@@ -90,4 +92,11 @@ fn the_battery_that_comes_with_the_program_has_its_cohorts() {
     assert_eq!(battery.cohorts.len(), 17);
     let defaults = battery.cohorts.iter().filter(|cohort| cohort.population == Some(Population::default())).count();
     assert_eq!(defaults, 0, "a cohort names a population that is the default");
+    let named = |cohort: &&CohortSpec| cohort.name.get_ref() == "as in sessions/paper.toml";
+    let of_paper = battery.cohorts.iter().find(named).and_then(|cohort| cohort.population.clone());
+    let paper = read_session(Path::new("sessions/paper.toml")).expect("the paper's session").spec;
+    // A cohort's people have one trial each, so what trials teach is left out.
+    let Population { recipes_gained, practice_kept, .. } = Population::default();
+    let paper = paper.participant.population.map(|paper| Population { recipes_gained, practice_kept, ..paper });
+    assert_eq!(of_paper, paper, "the cohort is as in sessions/paper.toml");
 }

@@ -19,8 +19,8 @@ pub struct Bench {
     pub now: SessionTime,
     pub one: SimulatedParticipant,
     samples: Vec<GazeSample>,
-    presses: Vec<(f64, ButtonId)>,
-    reasons: Vec<RecordedBelief>,
+    pub presses: Vec<(f64, ButtonId)>,
+    pub reasons: Vec<RecordedBelief>,
 }
 
 impl Bench {

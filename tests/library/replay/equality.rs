@@ -71,10 +71,13 @@ fn a_changed_recording_does_not_verify_and_the_first_difference_is_named() {
 
 #[test]
 fn of_simulated_people_of_an_earlier_version_it_is_told_that_they_decide_otherwise_now() {
-    let found = verify(Path::new("tests/golden/format-1-simulated.jsonl")).expect("a recording");
-    assert!(!found.verified && found.people_changed == Some("0.2.0"), "{found:?}");
-    let told = describe(&found);
-    assert!(told.contains("decide otherwise since version 0.2.0"), "{told}");
+    // Made by versions 0.1.0 and 0.2.0.
+    for name in ["format-1-simulated", "format-2-probes"] {
+        let found = verify(Path::new(&format!("tests/golden/{name}.jsonl"))).expect("a recording");
+        assert!(!found.verified && found.people_changed == Some("0.3.0"), "{name}: {found:?}");
+        let told = describe(&found);
+        assert!(told.contains("decide otherwise since version 0.3.0"), "{told}");
+    }
     let (now, _) = by_hand("default.toml", ArmKind::Timed, "people-now", 6);
     assert_eq!(verify(&now).expect("a recording").people_changed, None, "this version's people are the same again");
 }

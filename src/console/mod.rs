@@ -46,7 +46,7 @@ pub mod screen;
 mod sending;
 mod sheet_key;
 mod table;
-mod text_columns;
+pub mod text_columns;
 pub mod update;
 pub mod view;
 

@@ -8,7 +8,7 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
-use tomcom::console::view::paint::squeeze;
+use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::gaze::GazeSample;

@@ -46,7 +46,7 @@ fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, wi
     };
     let orders = format!("{orders}{:.2}", of.assisted.orders_per_minute);
     format!(
-        "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6}{saved:>15}{:>8}{orders:>11}\n",
+        "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6} {saved:>14}{:>8}{orders:>11}\n",
         number(found.auc_locations, 3),
         number(found.auc_recipes, 3),
         number(found.ece, 3),
@@ -66,9 +66,12 @@ pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
 /// What adaptation changes, as a table with a row for each cohort.
 fn describe_differences(table: &RobustnessTable) -> String {
     let heading = "adapting less usual";
-    let width = name_width(table.cohorts.iter().map(|row| row.cohort.as_str())).max(heading.len() + 1);
-    let mut text =
-        format!("\n{heading:<width$}{:>25}{:>25}{:>25}{:>17}\n", "ROC places", "ROC recipes", "ECE", "saved, points");
+    // Every cell begins with a space of its own.
+    let width = (name_width(table.cohorts.iter().map(|row| row.cohort.as_str())) - 1).max(heading.len());
+    let mut text = format!(
+        "\n{heading:<width$} {:>25} {:>25} {:>25} {:>15}\n",
+        "ROC places", "ROC recipes", "ECE", "saved, points"
+    );
     let cell = |one: Option<AdaptationDifference>, scale: f64, digits: usize| {
         let number = |value: f64| format!("{:+.digits$}", scale * value);
         match one {
@@ -81,8 +84,9 @@ fn describe_differences(table: &RobustnessTable) -> String {
     };
     for row in &table.cohorts {
         let found = &row.adaptation;
-        let areas = [found.auc_locations, found.auc_recipes, found.ece].map(|one| format!("{:>25}", cell(one, 1.0, 3)));
-        text += &format!("{:<width$}{}{:>17}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
+        let areas =
+            [found.auc_locations, found.auc_recipes, found.ece].map(|one| format!(" {:>25}", cell(one, 1.0, 3)));
+        text += &format!("{:<width$}{} {:>15}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
     }
     text
 }

@@ -49,7 +49,7 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert_eq!(one, several);
     assert_ne!(one.cohorts[0].unassisted, one.cohorts[1].unassisted, "cohorts differ");
     assert_ne!(one.cohorts[0].unassisted, table(&battery, 42).cohorts[0].unassisted, "seeds differ");
-    let text = describe_rows(&one.cohorts[1], 30);
+    let text = describe_rows(&one.cohorts[1], 27);
     let rows: Vec<&str> = text.lines().collect();
     assert!(rows[0].starts_with("confident wrong recipes ") && rows[1].starts_with("  adapting "), "{text}");
     let end = describe_end(&one);

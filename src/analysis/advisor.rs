@@ -28,6 +28,8 @@ pub struct AdviceRequest {
     robot: RobotIntent,
     robot_press_s: f64,
     forecast: SignalReadingForecast,
+    /// How attentive the human is, as a multiple of the human model's rates.
+    attention: f64,
     /// The signals that can be sent at the time of the request.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
@@ -52,8 +54,21 @@ impl AdviceRequest {
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();
-        let forecast = follower.filter.forecast();
-        AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, forecast, signals, error }
+        let (forecast, attention) = (follower.filter.forecast(), follower.filter.attention().expected());
+        AdviceRequest {
+            seq,
+            time,
+            presses,
+            state,
+            belief,
+            changed,
+            robot,
+            robot_press_s,
+            forecast,
+            attention,
+            signals,
+            error,
+        }
     }
 
     /// The request for advice in the form in which a communication concept receives it.
@@ -68,10 +83,11 @@ impl AdviceRequest {
             robot,
             robot_press_s,
             forecast,
+            attention,
             ref signals,
             error,
         } = *self;
-        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast };
+        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast, attention };
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 

@@ -1,33 +1,41 @@
 //! The robustness table: how well estimate and assistant do with cohorts of simulated people to whom the assistant's
-//! human model was not fitted. The belief estimate is judged on unassisted trials; the thresholds for flagging false
-//! beliefs are chosen on trials with another seed. The assistant is judged by comparing the same trials without signals
-//! and with signals that the assistant sends by itself.
+//! human model was not fitted, without and with adaptation to the person. The belief estimate is judged on unassisted
+//! trials; the thresholds for flagging false beliefs are chosen on trials with another seed. The assistant is judged by
+//! comparing the same trials without signals and with signals that the assistant sends by itself.
 
 use std::sync::Arc;
 
 use serde::Serialize;
 
 use super::likelihood::PressLogLikelihood;
-use super::trial_bootstrap::interval;
+use super::trial_bootstrap::intervals;
 use super::trial_summary::TrialSummary;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
-use crate::measures::flags::{MOST_FALSE_FLAGS, chosen_thresholds};
+use crate::measures::flags::chosen_thresholds;
+use crate::measures::resampled_detection::DetectionScores;
 use crate::mind::choice_parameters::ChoiceParameters;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
 
-/// Simulated trials of one cohort.
+/// Of a pair: the estimate by the parameters of the human model alone.
+pub const USUAL: usize = 0;
+/// Of a pair: the estimate that adapts its parameters to the person in each trial.
+pub const ADAPTING: usize = 1;
+
+/// Simulated trials of one cohort. Pairs are of the usual and the adapting estimate.
 #[derive(Clone, Debug, Default)]
 pub struct CohortTrials {
     /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
-    pub chosen_on: Vec<TrialBeliefs>,
-    /// The judged trials without signals: the presses of each trial, and the trial's summary.
-    pub unassisted: Vec<(TrialBeliefs, TrialSummary)>,
+    pub chosen_on: [Vec<TrialBeliefs>; 2],
+    /// The presses of the judged trials without signals.
+    pub judged: [Vec<TrialBeliefs>; 2],
+    /// Summaries of the judged trials without signals, which do not depend on the estimate.
+    pub unassisted: Vec<TrialSummary>,
     /// Summaries of the judged trials, in the same order, repeated with signals that the assistant sends by itself.
-    pub assisted: Vec<TrialSummary>,
+    pub assisted: [Vec<TrialSummary>; 2],
 }
 
 /// Rates of errors, signals and served orders of one cohort, without signals or with the assistant.
@@ -43,28 +51,70 @@ pub struct CohortRates {
     pub orders_per_minute: f64,
 }
 
-/// Row of the robustness table: results of one cohort. Values that cannot be computed are null.
+/// How well estimate and assistant do with a cohort, without or with adaptation. Values that cannot be computed are
+/// null. An interval is one of 95 %, by a bootstrap over trials; it is null also where resamples leave its value
+/// unknown.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CohortPerformance {
+    /// How well the belief estimate finds false beliefs of the participants in the unassisted trials.
+    #[serde(flatten)]
+    pub detection: FalseBeliefDetection,
+    /// Interval of the area under the ROC curve over the aspects that are locations.
+    pub auc_locations_interval: Option<[f64; 2]>,
+    /// Interval of the area under the ROC curve over the aspects that are recipes.
+    pub auc_recipes_interval: Option<[f64; 2]>,
+    /// Interval of the expected calibration error.
+    pub ece_interval: Option<[f64; 2]>,
+    /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
+    pub log_likelihood: PressLogLikelihood,
+    /// Rates of errors, signals and served orders in the trials with signals that the assistant sends by itself.
+    pub assisted: CohortRates,
+    /// Share by which the assistant lowers the rate of errors from false beliefs per press of the human; below 0 if the
+    /// assistant raises the rate.
+    pub saved: Option<f64>,
+    /// Interval of `saved`.
+    pub saved_interval: Option<[f64; 2]>,
+}
+
+/// Difference of a measure between the adapting and the usual estimate on the same trials, with its 95 % interval by a
+/// bootstrap over trials.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AdaptationDifference {
+    /// The adapting estimate's value minus that of the usual one.
+    pub difference: f64,
+    /// Interval of the difference.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// What adaptation changes in one cohort; null where a measure is unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AdaptationEffect {
+    /// Difference of the areas under the ROC curves over locations.
+    pub auc_locations: Option<AdaptationDifference>,
+    /// Difference of the areas under the ROC curves over recipes.
+    pub auc_recipes: Option<AdaptationDifference>,
+    /// Difference of the expected calibration errors; below 0 where adaptation is better.
+    pub ece: Option<AdaptationDifference>,
+    /// Difference of the shares of errors from false beliefs that the assistant saves.
+    pub saved: Option<AdaptationDifference>,
+}
+
+/// Results of one cohort: two rows of the robustness table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CohortRow {
     /// Name of the cohort in the battery file.
     pub cohort: String,
     /// Number of trials on which the estimate and the assistant are judged.
     pub trials: u64,
-    /// How well the belief estimate finds false beliefs of the participants in the unassisted trials.
-    #[serde(flatten)]
-    pub detection: FalseBeliefDetection,
-    /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
-    pub log_likelihood: PressLogLikelihood,
     /// Rates of errors, signals and served orders in the trials without signals.
     pub unassisted: CohortRates,
-    /// Rates of errors, signals and served orders in the same trials with signals that the assistant sends by itself.
-    pub assisted: CohortRates,
-    /// Share by which the assistant lowers the rate of errors from false beliefs per press of the human; below 0 if the
-    /// assistant raises the rate.
-    pub saved: Option<f64>,
-    /// 95 % interval of `saved`, by a bootstrap over pairs of trials; null also where a bootstrap sample has no error
-    /// from a false belief.
-    pub saved_interval: Option<[f64; 2]>,
+    /// Estimate and assistant without adaptation.
+    #[serde(flatten)]
+    pub usual: CohortPerformance,
+    /// Estimate and assistant that learn lapse and attention of the person in each trial.
+    pub adapting: CohortPerformance,
+    /// What adaptation changes.
+    pub adaptation: AdaptationEffect,
 }
 
 /// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom robustness`.
@@ -74,43 +124,108 @@ pub struct RobustnessTable {
     pub seed: u64,
     /// Seed of the trials on which the thresholds for flagging false beliefs were chosen.
     pub choose_seed: u64,
-    /// One row per cohort, in the order of the battery file.
+    /// One entry per cohort, in the order of the battery file.
     pub cohorts: Vec<CohortRow>,
 }
 
+/// Number of measures with intervals: areas of locations and recipes, calibration error, share of saved errors.
+const MEASURES: usize = 4;
+
 impl CohortRow {
-    /// Computes the robustness table's row of one cohort from the cohort's trials.
+    /// Computes the results of one cohort from the cohort's trials.
     pub fn from_trials(kitchen: &Arc<Kitchen>, name: &str, trials: &CohortTrials) -> CohortRow {
-        let thresholds = chosen_thresholds(&trials.chosen_on, &aspect_groups(kitchen));
-        let (views, unassisted): (Vec<TrialBeliefs>, Vec<TrialSummary>) = trials.unassisted.iter().cloned().unzip();
-        let pairs: Vec<[RelatedErrors; 2]> = unassisted
-            .iter()
-            .zip(&trials.assisted)
-            .map(|(without, with)| [RelatedErrors::from_trial(without), RelatedErrors::from_trial(with)])
-            .collect();
-        let saved = Some(saved_share(&pairs)).filter(|share| share.is_finite());
-        let mut cost = CostToGo::new(kitchen.clone());
+        let count = trials.unassisted.len();
+        let errors = |assisted: &Vec<TrialSummary>| -> Vec<[RelatedErrors; 2]> {
+            let pairs = trials.unassisted.iter().zip(assisted);
+            pairs.map(|(without, with)| [without, with].map(RelatedErrors::from_trial)).collect()
+        };
+        let pairs = trials.assisted.each_ref().map(errors);
+        let scores = trials.judged.each_ref().map(|views| DetectionScores::from_trials(kitchen, views));
+        let measured = |times: &[f64]| -> [[f64; MEASURES]; 3] {
+            let of = |which: usize| measures(&scores[which], &pairs[which], times);
+            let (usual, adapting) = (of(USUAL), of(ADAPTING));
+            [usual, adapting, std::array::from_fn(|index| adapting[index] - usual[index])]
+        };
+        let indices: Vec<usize> = (0..count).collect();
+        let ends: [[f64; 2]; 3 * MEASURES] = intervals(&indices, SEED, |drawn| {
+            let measured = measured(&occurrences(drawn, count));
+            std::array::from_fn(|index| measured[index / MEASURES][index % MEASURES])
+        });
+        let values = measured(&vec![1.0; count]);
+        // A resample without false beliefs, or without errors, leaves a measure unknown: trials of which more than a few
+        // resamples are like that are too few for an interval.
+        let interval = |of: usize, measure: usize| {
+            let is_known = values[of][measure].is_finite();
+            Some(ends[of * MEASURES + measure]).filter(|ends| is_known && ends.iter().all(|end| end.is_finite()))
+        };
+        let performance = |of: usize| {
+            let bounds: [Option<[f64; 2]>; MEASURES] = std::array::from_fn(|measure| interval(of, measure));
+            CohortPerformance::new(kitchen, trials, of, values[of][MEASURES - 1], bounds)
+        };
+        let difference = |measure: usize| {
+            let difference = values[2][measure];
+            let interval = interval(2, measure);
+            difference.is_finite().then_some(AdaptationDifference { difference, interval })
+        };
         CohortRow {
             cohort: name.to_string(),
-            trials: pairs.len() as u64,
-            detection: FalseBeliefDetection::from_trials(kitchen, &views, thresholds),
+            trials: count as u64,
+            unassisted: CohortRates::from_trials(&trials.unassisted),
+            usual: performance(USUAL),
+            adapting: performance(ADAPTING),
+            adaptation: AdaptationEffect {
+                auc_locations: difference(0),
+                auc_recipes: difference(1),
+                ece: difference(2),
+                saved: difference(3),
+            },
+        }
+    }
+}
+
+impl CohortPerformance {
+    fn new(
+        kitchen: &Arc<Kitchen>,
+        trials: &CohortTrials,
+        of: usize,
+        saved: f64,
+        intervals: [Option<[f64; 2]>; MEASURES],
+    ) -> CohortPerformance {
+        let thresholds = chosen_thresholds(&trials.chosen_on[of], &aspect_groups(kitchen));
+        let [auc_locations_interval, auc_recipes_interval, ece_interval, saved_interval] = intervals;
+        let (views, mut cost) = (&trials.judged[of], CostToGo::new(kitchen.clone()));
+        CohortPerformance {
+            detection: FalseBeliefDetection::from_trials(kitchen, views, thresholds),
+            auc_locations_interval,
+            auc_recipes_interval,
+            ece_interval,
             log_likelihood: PressLogLikelihood::from_trials(
                 kitchen,
                 &mut cost,
                 &ChoiceParameters::default(),
-                &views,
+                views,
                 SEED,
             ),
-            unassisted: CohortRates::from_trials(&unassisted),
-            assisted: CohortRates::from_trials(&trials.assisted),
-            saved,
-            // A bootstrap sample without errors has no errors to save; a table in which such a sample occurs has too
-            // few trials for an interval.
-            saved_interval: saved
-                .map(|_| interval(&pairs, SEED, saved_share))
-                .filter(|interval| interval.iter().all(|end| end.is_finite())),
+            assisted: CohortRates::from_trials(&trials.assisted[of]),
+            saved: Some(saved).filter(|share| share.is_finite()),
+            saved_interval,
         }
     }
+}
+
+/// How often each of `count` trials occurs in a resample.
+fn occurrences(drawn: &[usize], count: usize) -> Vec<f64> {
+    let mut times = vec![0.0; count];
+    drawn.iter().for_each(|&trial| times[trial] += 1.0);
+    times
+}
+
+/// The measures with intervals where each trial occurs `times` times; NaN where a measure is unknown.
+fn measures(scores: &DetectionScores, pairs: &[[RelatedErrors; 2]], times: &[f64]) -> [f64; MEASURES] {
+    let found = scores.resampled(times);
+    let [locations, recipes, ece] =
+        [found.auc_locations, found.auc_recipes, found.ece].map(|value| value.unwrap_or(f64::NAN));
+    [locations, recipes, ece, saved_share(pairs, times)]
 }
 
 /// Counts of errors from false beliefs, and of presses of the human, in one trial.
@@ -127,10 +242,13 @@ impl RelatedErrors {
     }
 }
 
-/// Share by which the rate of errors from false beliefs is lower in the second trials of the pairs than in the first.
-fn saved_share(pairs: &[[RelatedErrors; 2]]) -> f64 {
+/// Share by which the rate of errors from false beliefs is lower in the second trials of the pairs than in the first,
+/// where each pair occurs `times` times.
+fn saved_share(pairs: &[[RelatedErrors; 2]], times: &[f64]) -> f64 {
     let rate = |which: usize| {
-        let sum = |count: fn(&RelatedErrors) -> u64| pairs.iter().map(|pair| count(&pair[which])).sum::<u64>() as f64;
+        let sum = |count: fn(&RelatedErrors) -> u64| {
+            pairs.iter().zip(times).map(|(pair, times)| times * count(&pair[which]) as f64).sum::<f64>()
+        };
         sum(|trial| trial.errors) / sum(|trial| trial.presses)
     };
     1.0 - rate(1) / rate(0)
@@ -148,75 +266,4 @@ impl CohortRates {
             orders_per_minute: sum(|trial| trial.served.len() as u64) / minutes.max(f64::MIN_POSITIVE),
         }
     }
-}
-
-/// Heading of the robustness table as text; the column of cohort names is `width` characters wide.
-pub fn heading(width: usize) -> String {
-    let columns = |first: &str, names: [&str; 11]| {
-        let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals, orders] = names;
-        let line = format!(
-            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>16}\
-             {signals:>8}{orders:>12}"
-        );
-        line.trim_end().to_string()
-    };
-    let above = ["ROC", "ROC", "", "", "false", "", "errors", "", "", "signals", ""];
-    let below =
-        ["places", "recipes", "ECE", "flagged", "flags", "gain", "without", "with", "saved, %", "/100", "orders/min"];
-    format!("{}\n{}\n", columns("", above), columns("cohort", below))
-}
-
-/// One row of the robustness table as text; the column of cohort names is `width` characters wide.
-pub fn describe_row(row: &CohortRow, width: usize) -> String {
-    let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
-    let (found, flags) = (&row.detection, &row.detection.flags);
-    let flagged = match (flags.flagged_before_third_error, flags.episodes) {
-        (Some(share), Some(episodes)) => format!("{share:.2} of {episodes}"),
-        _ => "-".to_string(),
-    };
-    let saved = match (row.saved, row.saved_interval) {
-        (Some(share), Some([from, to])) => {
-            format!("{:.0} ({:.0} to {:.0})", 100.0 * share, 100.0 * from, 100.0 * to)
-        }
-        (Some(share), None) => format!("{:.0}", 100.0 * share),
-        (None, _) => "-".to_string(),
-    };
-    let orders = [&row.unassisted, &row.assisted].map(|rates| format!("{:.2}", rates.orders_per_minute)).join(", ");
-    format!(
-        "{:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{:>8}{:>6}{saved:>16}{:>8}{orders:>12}\n",
-        row.cohort,
-        number(found.auc_locations, 3),
-        number(found.auc_recipes, 3),
-        number(found.ece, 3),
-        flagged,
-        number(flags.false_flags_per_20_actions, 2),
-        number(row.log_likelihood.gain, 2),
-        number(Some(row.unassisted.related_per_100), 1),
-        number(Some(row.assisted.related_per_100), 1),
-        number(Some(row.assisted.signals_per_100), 1),
-    )
-}
-
-/// Width, in characters, of a table column that fits the longest of these names.
-pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
-    names.map(|name| name.chars().count()).max().unwrap_or_default().max("cohort".len()) + 1
-}
-
-/// Explanation of the robustness table's columns, as text.
-pub fn legend(table: &RobustnessTable) -> String {
-    format!(
-        "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
-         flags from as many trials of seed {}.\n\
-         ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs.\n\
-         ECE: expected calibration error, how far its predicted probabilities of a false belief are off.\n\
-         flagged: false belief episodes of two or more errors that are flagged before the third; the thresholds allow \
-         {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
-         gain: log likelihood per press beyond that of a human who knows everything, in nats.\n\
-         errors, signals: belief related errors without and with the assistant, and signals, per 100 presses of the human.\n\
-         saved: by how much fewer errors there are with the assistant (95 % interval by drawing pairs of trials).\n\
-         orders/min: orders served a minute, without and with the assistant.\n",
-        table.cohorts.first().map_or(0, |row| row.trials),
-        table.seed,
-        table.choose_seed,
-    )
 }

@@ -147,11 +147,8 @@ impl SessionFollower {
     /// The belief estimate from which a request for advice at `now` starts: as expected once the participant has read
     /// the signal on the display. Most requests follow an event that has just updated the estimate.
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
-        let belief = match self.updated_at {
-            Some(updated) if updated >= now => self.filter.belief().clone(),
-            _ => self.belief_at(now),
-        };
-        self.filter.foreseen(now, belief)
+        let is_current = self.updated_at.is_some_and(|updated| updated >= now);
+        self.filter.foreseen(now, is_current, &mut self.cost)
     }
 
     /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant was not asked for

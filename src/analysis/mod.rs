@@ -7,6 +7,8 @@ pub mod belief_check;
 #[cfg(feature = "cli")]
 pub mod bids;
 #[cfg(feature = "cli")]
+pub mod cohort_lines;
+#[cfg(feature = "cli")]
 pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;

@@ -18,15 +18,32 @@ const FEWEST: usize = 5;
 /// # Panics
 /// There are no trials.
 pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {
+    let [interval] = intervals(trials, seed, |drawn| [statistic(drawn)]);
+    interval
+}
+
+/// The 95 % intervals of several statistics of the same resamples of these trials. `seed` seeds the random stream of
+/// the bootstrap.
+///
+/// # Panics
+/// There are no trials.
+pub fn intervals<T: Copy, const N: usize>(
+    trials: &[T],
+    seed: u64,
+    statistics: impl Fn(&[T]) -> [f64; N],
+) -> [[f64; 2]; N] {
     let mut random = stream(seed, "bootstrap over trials", 0);
-    let mut resampled: Vec<f64> = (0..RESAMPLES)
+    let resampled: Vec<[f64; N]> = (0..RESAMPLES)
         .map(|_| {
             let drawn: Vec<T> = trials.iter().map(|_| trials[random.random_range(0..trials.len())]).collect();
-            statistic(&drawn)
+            statistics(&drawn)
         })
         .collect();
-    resampled.sort_by(f64::total_cmp);
-    INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
+    std::array::from_fn(|index| {
+        let mut values: Vec<f64> = resampled.iter().map(|all| all[index]).collect();
+        values.sort_by(f64::total_cmp);
+        INTERVAL.map(|share| values[((RESAMPLES - 1) as f64 * share).round() as usize])
+    })
 }
 
 /// The 95 % interval of a statistic that is undefined for some resamples, which are left out. `None` with fewer than

@@ -7,17 +7,21 @@ use clap::Args;
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put, put_aside};
-use crate::analysis::cohort_table::{CohortRow, describe_row, heading, legend, name_width};
+use crate::analysis::cohort_lines::{describe_end, describe_rows, heading, name_width};
+use crate::analysis::cohort_table::CohortRow;
 use crate::edge::battery_file::read_battery;
 use crate::edge::file_error::FileError;
+use crate::edge::picture_file::{check_picture, write_picture};
 use crate::run::robustness::{self, RobustnessRequest};
 use crate::session::settings::ArmKind;
+use crate::study::cohort_chart;
 
 /// Measures estimate and assistant with cohorts of simulated people.
 ///
 /// Each cohort differs from the people to whom the assistant's human model was fitted. Its trials are simulated without
-/// signals and with the assistant acting by itself, and nothing is recorded. Each row is printed when it is finished;
-/// with --format json on standard error.
+/// signals and with the assistant acting by itself, once with the parameters of the human model and once with an
+/// estimate that learns lapse and attention of the person in each trial. Nothing is recorded. The rows of a cohort are
+/// printed when it is finished; with --format json on standard error.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tomcom robustness sessions/people/robustness.toml --seed 9101 --choose-seed 9001 --arm timed\nMore: docs/study.md"
@@ -41,6 +45,9 @@ pub(super) struct RobustnessArgs {
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     arm: Option<ArmArg>,
+    /// Write a picture to this file (SVG).
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
@@ -48,6 +55,7 @@ pub(super) struct RobustnessArgs {
 
 /// Runs the command `tomcom robustness BATTERY`.
 pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
+    args.picture.as_deref().map_or(Ok(()), |file| check_picture(file, "a picture of robustness"))?;
     let mut battery = read_battery(&args.battery)?;
     let names: Vec<String> = battery.cohorts.iter().map(|cohort| cohort.name.get_ref().clone()).collect();
     if let Some(unknown) = args.cohort.iter().find(|name| !names.contains(name)) {
@@ -77,11 +85,14 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let mut told = tell(&heading(width));
     let finished = |row: &CohortRow| {
         if told.is_ok() {
-            told = bar.suspend(|| tell(&describe_row(row, width)));
+            told = bar.suspend(|| tell(&describe_rows(row, width)));
         }
     };
     let table = robustness::measure(&request, || bar.inc(1), finished);
     bar.finish_and_clear();
     told?;
-    print(args.format, &table, || legend(&table))
+    if let Some(file) = &args.picture {
+        write_picture(file, &cohort_chart::robustness(&table))?;
+    }
+    print(args.format, &table, || describe_end(&table))
 }

@@ -10,6 +10,7 @@ use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::file_error::FileError;
 use crate::edge::files::{SessionSetup, read_session};
+use crate::edge::picture_file::{check_picture, write_picture};
 use crate::edge::{pool_file, power_files};
 use crate::run::pool::{self, PoolRequest};
 use crate::run::power_measurement::{self, PowerRequest};
@@ -18,7 +19,7 @@ use crate::run::study::describe_arms;
 use crate::session::settings::ArmKind;
 use crate::study::drawn_study::DrawnEffect;
 use crate::study::simulation_pool::SimulationPool;
-use crate::study::{arm_table, power_answer};
+use crate::study::{arm_table, power_answer, power_chart};
 
 /// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
@@ -177,7 +178,8 @@ impl PoolArgs {
 
 /// Runs the command `tomcom power PLAN`.
 pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
-    power_files::check_power(args.csv.as_deref(), args.picture.as_deref())?;
+    args.csv.as_deref().map_or(Ok(()), power_files::check_table)?;
+    args.picture.as_deref().map_or(Ok(()), |file| check_picture(file, "a picture of power"))?;
     let Some(pool) = args.pool.pool(!args.null, true)? else { return Ok(()) };
     let ratio = if args.null { Some(1.0) } else { args.effect };
     let effect = ratio.map_or(DrawnEffect::AsSimulated, DrawnEffect::Ratio);
@@ -192,7 +194,7 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
         power_files::write_table(file, &found)?;
     }
     if let Some(file) = &args.picture {
-        power_files::write_picture(file, &found)?;
+        write_picture(file, &power_chart::power(&found))?;
     }
     print(args.pool.format, &found, || power_answer::describe(&found))
 }

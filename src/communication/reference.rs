@@ -139,7 +139,7 @@ impl ReferencePlanner {
             future.read_by(&self.kitchen, until_s);
             future.now_s = until_s;
             let mut random = self.chance("plain decision", presses, rollout, step as u64);
-            self.decide(cost, &mut future, &mut random);
+            self.decide(cost, &mut future, situation.attention, &mut random);
         }
         f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
     }
@@ -175,9 +175,9 @@ impl ReferencePlanner {
     }
 
     /// Lets the human look at locations, decide, and press.
-    fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
+    fn decide(&self, cost: &mut CostToGo, future: &mut Future, attention: f64, random: &mut Stream) {
         let kitchen = &self.kitchen;
-        let chance = |rate_hz: f64| 1.0 - (-rate_hz * self.spec.rollout.human_press_s).exp();
+        let chance = |rate_hz: f64| 1.0 - (-rate_hz * attention * self.spec.rollout.human_press_s).exp();
         let looks = chance(self.human.looking.looks_hz);
         let other_looks = chance(self.human.looking.other_looks_hz);
         let draw = random.random::<f64>();

@@ -38,6 +38,7 @@ pub mod overwrite;
 mod pairing;
 mod pairing_code;
 pub mod parse;
+pub mod picture_file;
 mod place;
 pub mod pool_file;
 pub mod power_files;

@@ -1,4 +1,4 @@
-//! Output files of the command `tomcom power`: a table and a plot of statistical power.
+//! Output file of the command `tomcom power`: the table of statistical power.
 
 use std::io;
 use std::path::Path;
@@ -7,7 +7,6 @@ use super::file_error::{FileError, FileResult};
 use super::{overwrite, replace_file};
 use crate::study::drawn_study::SignificanceTestMethod;
 use crate::study::power_answer::{PowerSummary, SampleSizePower, TestPower};
-use crate::study::power_chart;
 
 /// A column of the table of statistical power: its name, and the function that computes its value for a row.
 type PowerColumn = (&'static str, fn(&SampleSizePower, &TestPower) -> String);
@@ -34,18 +33,14 @@ fn method(method: SignificanceTestMethod) -> &'static str {
     }
 }
 
-/// Checks that table and plot of statistical power can be written to these paths.
+/// Checks that the table of statistical power can be written to this path.
 ///
 /// # Errors
-/// There is a file at a path that this program did not write.
-pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<()> {
+/// There is a file at the path that this program did not write.
+pub fn check_table(path: &Path) -> FileResult<()> {
     let names = COLUMNS.map(|(name, _)| name).join(",");
-    let check = |path: Option<&Path>, what: &str, is_own: &dyn Fn(&[u8]) -> bool| match path {
-        Some(path) => overwrite::check(path, what, is_own).map_err(|reason| FileError::unwritable(path, reason)),
-        None => Ok(()),
-    };
-    check(table, "a table of power", &|head| overwrite::first_line(head) == names.as_bytes())?;
-    check(picture, "a picture of power", &|head| head.starts_with(b"<svg "))
+    overwrite::check(path, "a table of power", |head| overwrite::first_line(head) == names.as_bytes())
+        .map_err(|reason| FileError::unwritable(path, reason))
 }
 
 /// Writes the table of statistical power (CSV): a row for each number of participants and each test.
@@ -65,13 +60,4 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
         replace_file::replace(path, &bytes)
     };
     write().map_err(|reason| FileError::unwritable(path, reason))
-}
-
-/// Writes the plot of statistical power (SVG).
-///
-/// # Errors
-/// The file cannot be written.
-pub fn write_picture(path: &Path, found: &PowerSummary) -> FileResult<()> {
-    replace_file::replace(path, power_chart::power(found).as_bytes())
-        .map_err(|reason| FileError::unwritable(path, reason))
 }

@@ -106,11 +106,11 @@ impl FalseBeliefDetection {
 }
 
 /// Function that scores one aspect before a press.
-type Score<'a> = &'a dyn Fn(&BeliefsBeforePress, usize) -> Option<f64>;
+pub(super) type Score<'a> = &'a dyn Fn(&BeliefsBeforePress, usize) -> Option<f64>;
 
 /// Scores of aspects before every press, each with whether the belief about the aspect was false; pairs are included
 /// only where score and belief are known.
-fn scored(trials: &[TrialBeliefs], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
+pub(super) fn scored(trials: &[TrialBeliefs], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
     let one = |press: &BeliefsBeforePress, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
     presses.flat_map(|press| aspects.iter().filter_map(move |&aspect| one(press, aspect))).collect()

@@ -5,7 +5,8 @@
 //! - A press: [`errors`], [`attribution`] (cause of an error), `judged_press` (both); [`sequences`] of errors and
 //!   episodes of false belief, `cause_kinds` (orders, recipes, places).
 //! - An estimate of beliefs: [`detection`] (ROC, calibration), `press_view` (belief and estimate before a press),
-//!   [`flags`], [`belief_detection`] (all of these). [`belief_basis`]: the source of knowledge about beliefs.
+//!   [`flags`], [`belief_detection`] (all of these),
+//!   [`resampled_detection`] (the same of resampled trials). [`belief_basis`]: the source of knowledge about beliefs.
 //! - Communication: `median`, [`matching`] of two lists of communications, [`wizard_performance`]. [`cause_codes`]:
 //!   raters' codes of causes, whose agreement uses `matching`; [`consensus`] of two raters; [`rater_choice`]: which two
 //!   raters an analysis uses.
@@ -24,6 +25,7 @@ pub mod matching;
 mod median;
 mod press_view;
 pub mod rater_choice;
+pub mod resampled_detection;
 pub mod sequences;
 pub mod wizard_performance;
 

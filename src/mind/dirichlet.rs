@@ -168,6 +168,11 @@ impl DirichletBelief {
         DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
     }
 
+    /// Mixes each aspect with that of another estimate, which has this share, matching mean and second moment.
+    pub fn mix(&mut self, share: f64, other: &DirichletBelief) {
+        self.aspects.iter_mut().zip(&other.aspects).for_each(|(own, other)| own.mix(share, other));
+    }
+
     /// The Dirichlet distribution of this aspect.
     pub fn aspect(&self, aspect: AspectId) -> &Dirichlet {
         &self.aspects[aspect.index()]

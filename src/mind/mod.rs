@@ -1,6 +1,7 @@
 //! The human's mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how
 //! the human decides.
 
+pub mod attention_posterior;
 pub mod belief;
 pub mod choice;
 pub mod choice_parameters;

@@ -38,9 +38,16 @@ pub struct HumanModel {
 pub struct AdaptationSettings {
     /// Whether the estimate learns how often the person slips.
     pub lapse: bool,
+    /// Whether the estimate learns how attentive the person is: how fast the person reads, and how often it looks. A
+    /// header without the key means that it does not.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub attention: bool,
 }
 
 impl AdaptationSettings {
+    /// Everything that can be adapted to the person is.
+    pub const ALL: AdaptationSettings = AdaptationSettings { lapse: true, attention: true };
+
     /// Whether nothing is adapted to the person, in which case files and headers leave this table out.
     pub(super) fn is_off(&self) -> bool {
         *self == AdaptationSettings::default()

@@ -9,15 +9,17 @@ use super::headless;
 use super::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
 use crate::analysis::belief_check::TrialBeliefCollector;
-use crate::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
+use crate::analysis::cohort_table::{ADAPTING, CohortRow, CohortTrials, RobustnessTable, USUAL};
+use crate::analysis::follower::SessionFollower;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::CohortBattery;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
+use crate::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
+use crate::mind::model::AdaptationSettings;
 use crate::session::battery::CohortSpec;
 use crate::session::settings::{Condition, SessionSpec};
-use crate::session::{Event, Session, TimestampedEvent, apply};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]
@@ -48,10 +50,22 @@ enum CohortPart {
     /// The trial has no signals, and serves to judge the belief estimate.
     Unassisted,
     /// The trial has signals that the assistant sends by itself, and serves to judge the assistant.
-    Assisted,
+    Assisted(Adaptation),
 }
 
-const PARTS: [CohortPart; 3] = [CohortPart::Assisted, CohortPart::Unassisted, CohortPart::ChosenOn];
+/// Whether the estimate adapts its parameters to the person.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Adaptation {
+    Off,
+    On,
+}
+
+const PARTS: [CohortPart; 4] = [
+    CohortPart::Assisted(Adaptation::On),
+    CohortPart::Assisted(Adaptation::Off),
+    CohortPart::Unassisted,
+    CohortPart::ChosenOn,
+];
 
 /// Simulates all cohorts on all processors, and judges estimate and assistant. `done` is called after each trial,
 /// `finished` after each cohort.
@@ -67,8 +81,13 @@ pub fn measure(
     let of_cohort = |cohort: &CohortSpec| {
         let one = |cost: &mut Option<CostToGo>, (part, trial): &(CohortPart, u64)| {
             let own = cost.take().unwrap_or_else(|| CostToGo::new(kitchen.clone()));
-            let spec = settings(request, cohort, *part);
-            let (views, summary, own) = simulate(&kitchen, settings_of_trial(&spec, *trial), *trial, own);
+            let spec = settings_of_trial(&settings(request, cohort, *part), *trial);
+            let (events, follower) = simulate(&kitchen, spec.clone(), *trial, own);
+            let summary = TrialSummary::from_follower(&follower);
+            let (views, own) = match part {
+                CohortPart::Assisted(_) => (<[TrialBeliefs; 2]>::default(), follower.cost),
+                CohortPart::ChosenOn | CohortPart::Unassisted => views(spec, *trial, &events, follower),
+            };
             *cost = Some(own);
             (views, summary)
         };
@@ -76,9 +95,13 @@ pub fn measure(
         let mut trials = CohortTrials::default();
         for ((part, _), (views, summary)) in items.iter().zip(simulated) {
             match part {
-                CohortPart::ChosenOn => trials.chosen_on.push(views),
-                CohortPart::Unassisted => trials.unassisted.push((views, summary)),
-                CohortPart::Assisted => trials.assisted.push(summary),
+                CohortPart::ChosenOn => push(&mut trials.chosen_on, views),
+                CohortPart::Unassisted => {
+                    push(&mut trials.judged, views);
+                    trials.unassisted.push(summary);
+                }
+                CohortPart::Assisted(Adaptation::Off) => trials.assisted[USUAL].push(summary),
+                CohortPart::Assisted(Adaptation::On) => trials.assisted[ADAPTING].push(summary),
             }
         }
         let row = CohortRow::from_trials(&kitchen, cohort.name.get_ref(), &trials);
@@ -89,47 +112,74 @@ pub fn measure(
     RobustnessTable { seed: request.seed, choose_seed: request.choose_seed, cohorts }
 }
 
+/// Adds the presses of one trial, by the usual and by the adapting estimate.
+fn push(trials: &mut [Vec<TrialBeliefs>; 2], views: [TrialBeliefs; 2]) {
+    trials.iter_mut().zip(views).for_each(|(trials, views)| trials.push(views));
+}
+
 /// Settings of a cohort's trials that are simulated for this purpose.
 fn settings(request: &RobustnessRequest, cohort: &CohortSpec, part: CohortPart) -> SessionSpec {
     let (condition, seed) = match part {
         CohortPart::ChosenOn => (Condition::None, request.choose_seed),
         CohortPart::Unassisted => (Condition::None, request.seed),
-        CohortPart::Assisted => (Condition::Assistant, request.seed),
+        CohortPart::Assisted(_) => (Condition::Assistant, request.seed),
     };
-    SessionSpec { seed, ..cohort.settings(&request.battery.session.spec, condition) }
+    let mut spec = SessionSpec { seed, ..cohort.settings(&request.battery.session.spec, condition) };
+    spec.human.adapt = match part {
+        CohortPart::Assisted(Adaptation::On) => AdaptationSettings::ALL,
+        _ => AdaptationSettings::default(),
+    };
+    spec
 }
 
-/// Simulates a trial. Returns its human presses, its summary, and the cost to go, whose cache the next trial reuses.
+/// Simulates a trial. Returns its events, and its follower, which has the cost to go whose cache the next trial reuses.
 fn simulate(
     kitchen: &Arc<Kitchen>,
     spec: SessionSpec,
     trial: u64,
     cost: CostToGo,
-) -> (TrialBeliefs, TrialSummary, CostToGo) {
-    let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, cost);
+) -> (Vec<TimestampedEvent>, SessionFollower) {
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, cost);
     let mut events = Vec::new();
     let keep = |stamped: &TimestampedEvent| {
         events.push(stamped.clone());
         Ok::<(), Infallible>(())
     };
     headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
-    let follower = engine.into_follower();
-    let summary = TrialSummary::from_follower(&follower);
-    let estimates: BTreeMap<u64, EstimateBeforePress> = events
+    (events, engine.into_follower())
+}
+
+/// The human's presses of an unassisted trial, by the usual estimate, which is in its events, and by an adapting filter
+/// that observes the same events: without signals the estimate has no influence on a trial.
+fn views(
+    mut spec: SessionSpec,
+    trial: u64,
+    events: &[TimestampedEvent],
+    followed: SessionFollower,
+) -> ([TrialBeliefs; 2], CostToGo) {
+    let usual: BTreeMap<u64, EstimateBeforePress> = events
         .iter()
         .filter_map(|stamped| match &stamped.event {
             Event::BeliefEstimated(witness) => Some((witness.press, EstimateBeforePress::from_witness(witness))),
             _ => None,
         })
         .collect();
-    // The session is run through once more to collect presses and the gaze baseline; the estimate comes from the
-    // recorded events.
-    let (mut session, mut views) = (Session::new(kitchen.clone(), spec, trial), TrialBeliefCollector::default());
-    let mut judged = follower.judged.iter().peekable();
-    for stamped in &events {
-        let applied = apply(&mut session, stamped).expect("an engine's own events fit its session");
+    spec.human.adapt = AdaptationSettings::ALL;
+    let SessionFollower { session, judged, cost, .. } = followed;
+    let kitchen = session.kitchen;
+    let mut adapting = SessionFollower::new(Session::new(kitchen.clone(), spec, trial), cost).without_causes();
+    let (mut views, mut adapted) = (TrialBeliefCollector::default(), Vec::new());
+    let mut judged = judged.iter().peekable();
+    for stamped in events {
+        let applied = adapting.apply(stamped).expect("an engine's own events fit its session");
         let press = judged.next_if(|press| press.seq == stamped.seq);
-        views.add(&session, press, estimates.get(&stamped.seq).cloned(), stamped, &applied.change);
+        views.add(&adapting.session, press, usual.get(&stamped.seq).cloned(), stamped, &applied.change);
+        if press.is_some() {
+            let estimated = adapting.estimated.as_ref();
+            adapted.push(estimated.map(|one| EstimateBeforePress::from_witness(&one.witness(&kitchen))));
+        }
     }
-    (views.trial, summary, follower.cost)
+    let adapted = views.trial.iter().cloned().zip(adapted);
+    let adapted = adapted.map(|(view, estimate)| BeliefsBeforePress { estimate, ..view }).collect();
+    ([views.trial, adapted], adapting.cost)
 }

@@ -18,7 +18,8 @@
 //!   value. Header lines, rows and [`dictionary`] are generated. A measure that is compared between assisted and
 //!   unassisted trials is declared as such in the table of trials ([`tables::trials`]); the measure's columns in the
 //!   table of participants and its line in the report are generated.
-//! - [`report`] builds the page of the report, with [`charts`] and [`arm_chart`].
+//! - [`report`] builds the page of the report, with [`charts`] and [`arm_chart`]; [`power_chart`] and [`cohort_chart`]
+//!   are pictures of their own.
 
 pub mod acceptance;
 pub mod acting_arm;
@@ -29,6 +30,7 @@ pub mod arm_group;
 pub mod arm_table;
 pub mod belief_trace;
 pub mod charts;
+pub mod cohort_chart;
 pub mod column;
 pub mod definitions;
 pub mod dictionary;

@@ -130,6 +130,7 @@ impl Planner {
         for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
             draws.begin_with(first);
         }
+        let attended_s = model.human_press_s * situation.attention;
         let context = RolloutContext {
             kitchen: &self.kitchen,
             recipes: self.kitchen.true_recipes(),
@@ -139,8 +140,8 @@ impl Planner {
             model,
             robot_press_s: situation.robot_press_s,
             foresight: self.foresight,
-            looks: -(-self.looking.looks_hz * model.human_press_s).exp_m1(),
-            other_looks: -(-self.looking.other_looks_hz * model.human_press_s).exp_m1(),
+            looks: -(-self.looking.looks_hz * attended_s).exp_m1(),
+            other_looks: -(-self.looking.other_looks_hz * attended_s).exp_m1(),
             capture: self.looking.capture,
         };
         let read_s = situation.forecast.delay_s;

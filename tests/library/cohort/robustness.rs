@@ -2,16 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable, describe_row, legend};
+use tomcom::analysis::cohort_lines::{describe_end, describe_rows};
+use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable};
 use tomcom::edge::battery_file::{CohortBattery, read_battery};
 use tomcom::edge::files::read_session;
 use tomcom::measures::flags::ThresholdSource;
+use tomcom::mind::model::AdaptationSettings;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
 use tomcom::run::robustness::{RobustnessRequest, measure};
 use tomcom::run::simulate::SimulationShard;
 use tomcom::session::battery::CohortSpec;
 use tomcom::session::settings::{ArmKind, Condition};
+use tomcom::study::cohort_chart::robustness;
 
 use super::{folder, run};
 
@@ -48,10 +51,20 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert_eq!(one, several);
     assert_ne!(one.cohorts[0].unassisted, one.cohorts[1].unassisted, "cohorts differ");
     assert_ne!(one.cohorts[0].unassisted, table(&battery, 42).cohorts[0].unassisted, "seeds differ");
-    let text = describe_row(&one.cohorts[1], 30);
-    assert!(text.starts_with("confident wrong recipes ") && text.lines().count() == 1, "{text}");
-    assert!(legend(&one).contains("3 trials of seed 41"), "{}", legend(&one));
-    assert!(one.cohorts.iter().all(|row| row.assisted.signals_per_100 > 0.0), "{text}");
+    let text = describe_rows(&one.cohorts[1], 27);
+    let rows: Vec<&str> = text.lines().collect();
+    assert!(rows[0].starts_with("confident wrong recipes ") && rows[1].starts_with("  adapting "), "{text}");
+    let end = describe_end(&one);
+    assert!(end.contains("3 trials of seed 41") && end.contains("adapting less usual"), "{end}");
+    assert!(text.lines().chain(end.lines().take(4)).all(|line| line.chars().count() <= 120), "{text}{end}");
+    assert!(one.cohorts.iter().all(|row| row.usual.assisted.signals_per_100 > 0.0), "{text}");
+    for row in &one.cohorts {
+        assert_ne!(row.usual.detection.auc_locations, row.adapting.detection.auc_locations, "{}: adapts", row.cohort);
+        assert_eq!(row.usual.detection.flags.episodes, row.adapting.detection.flags.episodes, "{}", row.cohort);
+    }
+    let picture = robustness(&one);
+    assert!(picture.starts_with("<svg ") && picture.contains("ROC, recipes"), "{picture}");
+    assert_eq!(picture.matches("<circle").count(), 2 * 2 * 3 + 2, "a point for each value, and two for the colours");
 }
 
 #[test]
@@ -60,8 +73,12 @@ fn an_assistant_that_says_nothing_saves_nothing() {
     battery.session.spec.assistant.cost_of_communication = 1000.0;
     for row in table(&battery, 43).cohorts {
         assert!(row.unassisted.related_per_100 > 0.0, "{}: nothing to save", row.cohort);
-        assert_eq!(row.unassisted, row.assisted, "{}: pairs are of the same trials", row.cohort);
-        assert_eq!((row.saved, row.saved_interval), (Some(0.0), Some([0.0, 0.0])), "{}", row.cohort);
+        for of in [&row.usual, &row.adapting] {
+            assert_eq!(row.unassisted, of.assisted, "{}: pairs are of the same trials", row.cohort);
+            assert_eq!((of.saved, of.saved_interval), (Some(0.0), Some([0.0, 0.0])), "{}", row.cohort);
+        }
+        let saved = row.adaptation.saved.expect("known");
+        assert_eq!((saved.difference, saved.interval), (0.0, Some([0.0, 0.0])), "{}", row.cohort);
     }
 }
 
@@ -71,19 +88,39 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
     let row = &table(&battery, 44).cohorts[0];
     let mut files = battery.session.clone();
     files.spec.trial.condition = Condition::None;
-    let mut recorded = |seed: u64| -> (u64, Vec<PathBuf>) {
-        files.spec.seed = seed;
-        let figures = run(&files, TRIALS, SimulationShard::WHOLE, &folder(&format!("robustness-{seed}")));
+    let mut recorded = |seed: u64, adapt: AdaptationSettings| -> (u64, Vec<PathBuf>) {
+        (files.spec.seed, files.spec.human.adapt) = (seed, adapt);
+        let out = folder(&format!("robustness-{seed}-{}", adapt.attention));
+        let figures = run(&files, TRIALS, SimulationShard::WHOLE, &out);
         let related = figures.beliefs.belief_related_errors.expect("known of simulated people");
         (related, figures.recordings.iter().map(PathBuf::from).collect())
     };
-    let ((related, judged), (_, chosen_on)) = (recorded(44), recorded(51));
+    let [(related, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::default()));
     let check = check_beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
-    assert_eq!(row.detection, check.detection);
-    assert_eq!(row.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
-    assert_eq!(row.log_likelihood, check.log_likelihood);
+    assert_eq!(row.usual.detection, check.detection);
+    assert_eq!(row.usual.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
+    assert_eq!(row.usual.log_likelihood, check.log_likelihood);
     let counted = row.unassisted.related_per_100 * check.human_actions as f64 / 100.0;
     assert!((counted - related as f64).abs() < 1e-6, "{counted} and {related}");
+    // The second filter on the same events gives what the recordings of an adapting session have.
+    let [(_, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::ALL));
+    let check = check_beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
+    assert_eq!(row.adapting.detection, check.detection);
+    assert_eq!(row.adapting.log_likelihood, check.log_likelihood);
+    // Where each trial counts once, the resampled areas are those of the table.
+    let (usual, adapting) = (&row.usual.detection, &row.adapting.detection);
+    let places = row.adaptation.auc_locations.expect("known").difference;
+    let ece = row.adaptation.ece.expect("known").difference;
+    assert!((places - (adapting.auc_locations.expect("known") - usual.auc_locations.expect("known"))).abs() < 1e-12);
+    assert!((ece - (adapting.ece.expect("known") - usual.ece.expect("known"))).abs() < 1e-12);
+    for (value, interval) in [
+        (usual.auc_locations, row.usual.auc_locations_interval),
+        (adapting.auc_locations, row.adapting.auc_locations_interval),
+        (usual.ece, row.usual.ece_interval),
+    ] {
+        let (value, [from, to]) = (value.expect("known"), interval.expect("known"));
+        assert!(from < to && (0.0..=1.0).contains(&from) && value <= to, "{value} ({from} to {to})");
+    }
 }
 
 #[test]

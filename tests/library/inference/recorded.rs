@@ -5,7 +5,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, LocationId, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
+use tomcom::mind::model::{AdaptationSettings, HumanModel};
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 use tomcom::mind::signal_model::SignalModel;
@@ -45,6 +45,19 @@ fn they_agree_where_the_lapse_is_learned() {
     let mut model = HumanModel::default();
     model.adapt.lapse = true;
     agree(model, |_| true, |same| same);
+}
+
+#[test]
+fn they_agree_where_lapse_and_attention_are_learned() {
+    let model = HumanModel { adapt: AdaptationSettings::ALL, ..HumanModel::default() };
+    agree(model, |_| true, |same| same);
+}
+
+#[test]
+fn they_agree_without_gaze_where_the_attention_is_learned() {
+    let mut model = reads_in_time();
+    model.adapt.attention = true;
+    agree(model, |what| !matches!(what, ObservedEvidence::Gaze { .. }), with_signals);
 }
 
 /// A human who reads signals in time.

@@ -167,16 +167,16 @@ fn advice_counts_on_the_signal_that_stands_on_the_display() {
     let mut bench = SignalBench::new(reads_in_time());
     bench.gaze(0.0, 1.0, "cooking_pot");
     bench.tell(1.0);
-    let p = |bench: &SignalBench, seconds: f64| {
+    let p = |bench: &mut SignalBench, seconds: f64| {
         let now = SessionTime::from_secs_f64(seconds);
-        let foreseen = bench.filter.foreseen(now, bench.filter.belief().clone());
+        let foreseen = bench.filter.foreseen(now, true, &mut bench.cost);
         foreseen.p_truth(&bench.kitchen, bench.state, bench.recipe)
     };
     let before = HumanModel::default().prior.recipe_truth;
-    let at_once = p(&bench, 1.0);
+    let at_once = p(&mut bench, 1.0);
     assert!((at_once - (1.0 - (1.0 - before) * 0.2)).abs() < 0.01, "{at_once}");
     bench.gaze(1.0, 4.0, "cooking_pot");
-    let later = p(&bench, 4.0);
+    let later = p(&mut bench, 4.0);
     assert!(later < at_once - 0.05 && later > before, "who has not looked so far looks hardly any more: {later}");
 }
 

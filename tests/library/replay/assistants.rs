@@ -19,6 +19,7 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::ComparedContent;
+use tomcom::mind::model::AdaptationSettings;
 use tomcom::mind::signal_model::SignalModel;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
@@ -146,6 +147,33 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
         }
         println!("{name}: silences, aspects unaware of, and advice after these: {counts:?}");
         assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
+    }
+}
+
+#[test]
+fn an_assistant_that_learns_lapse_and_attention_comes_out_the_same_again() {
+    for name in SESSIONS {
+        let mut files = session(name);
+        files.spec.robot.arm = ArmKind::Timed;
+        files.spec.trial.condition = Condition::Assistant;
+        files.spec.trial.seconds = 60.0;
+        (files.spec.assistant.asks_by_gaze, files.spec.human.inference.waiting) = (true, true);
+        (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
+        files.spec.human.adapt = AdaptationSettings::ALL;
+        let out = ["adapting", "adapting-again"].map(|out| {
+            let (files, out) = (files.clone(), folder(out));
+            simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
+                .expect("the folder can be written");
+            out.join("seed1-S001").join(LOG_NAME)
+        });
+        same(&out[0], &out[1]);
+        let found = verify(&out[0]).expect("a recording");
+        assert!(found.verified, "{name}: {:?}", found.difference);
+        let header = fs::read_to_string(&out[0]).expect("a recording");
+        assert!(
+            header.contains(r#""adapt":{"lapse":true,"attention":true}"#),
+            "{name}: the header says what is learned"
+        );
     }
 }
 

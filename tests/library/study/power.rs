@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
 use tomcom::base::rng::stream;
+use tomcom::edge::picture_file::{check_picture, write_picture};
 use tomcom::edge::pool_file::{read_pool, write_pool};
-use tomcom::edge::power_files::{check_power, write_picture, write_table};
+use tomcom::edge::power_files::{check_table, write_table};
 use tomcom::run::power_measurement::{PowerRequest, measure};
 use tomcom::session::plan::{PrimaryOutcome, StudyAims, orders};
 use tomcom::session::settings::Condition;
@@ -18,6 +19,7 @@ use tomcom::study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampl
 use tomcom::study::effect::{effect, pairs};
 use tomcom::study::power::{RejectionCount, RejectionShare, least_ratio, ratios};
 use tomcom::study::power_answer::{PowerSummary, describe};
+use tomcom::study::power_chart;
 use tomcom::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom::study::tables::trials::HEADLINE;
 use tomcom::study::trial_statistics::TrialStatistics;
@@ -284,9 +286,10 @@ fn table_and_picture_take_the_place_of_their_own_kind_alone() {
     let found = asked(&made_up(&THREE, 24, 0.5, 10), &[8, 12], 40, DrawnEffect::AsSimulated);
     let (table, picture) = (folder.join("power.csv"), folder.join("power.svg"));
     for _ in 0..2 {
-        check_power(Some(&table), Some(&picture)).expect("free, or its own");
+        check_table(&table).expect("free, or its own");
+        check_picture(&picture, "a picture of power").expect("free, or its own");
         write_table(&table, &found).expect("written");
-        write_picture(&picture, &found).expect("written");
+        write_picture(&picture, &power_chart::power(&found)).expect("written");
     }
     let rows = fs::read_to_string(&table).expect("text");
     assert_eq!(rows.lines().count(), 1 + 2 * 3, "{rows}");
@@ -295,7 +298,7 @@ fn table_and_picture_take_the_place_of_their_own_kind_alone() {
     assert!(drawn.starts_with("<svg ") && drawn.contains("xmlns=\"http://www.w3.org/2000/svg\""), "{drawn}");
     assert!(drawn.contains("tom-com") && drawn.contains("Power by number of participants"), "{drawn}");
     fs::write(&picture, "<html>").expect("written");
-    assert!(check_power(None, Some(&picture)).is_err() && check_power(Some(&picture), None).is_err());
+    assert!(check_picture(&picture, "a picture of power").is_err() && check_table(&picture).is_err());
 }
 
 #[test]

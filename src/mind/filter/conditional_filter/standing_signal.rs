@@ -18,12 +18,12 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::HumanModel;
 use crate::mind::signal_model::SignalReadingForecast;
 
-use super::BeliefFilter;
-use super::look_news::PossiblyReadSignal;
-use super::perception::NEGLIGIBLE;
-use super::signals_so_far::{EndedSignal, SignalOnDisplay};
+use super::ConditionalFilter;
+use crate::mind::filter::look_news::PossiblyReadSignal;
+use crate::mind::filter::perception::NEGLIGIBLE;
+use crate::mind::filter::signals_so_far::{EndedSignal, SignalOnDisplay};
 
-impl BeliefFilter {
+impl ConditionalFilter {
     /// The signal that has left the display since the last call of this function; `None` if none has.
     pub fn take_signal_over(&mut self) -> Option<EndedSignal> {
         self.signals.over.take()

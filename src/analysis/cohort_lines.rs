@@ -1,0 +1,116 @@
+//! The robustness table as text for the terminal, at most 120 characters wide.
+
+use super::cohort_table::{AdaptationDifference, CohortPerformance, CohortRow, RobustnessTable};
+use crate::measures::flags::MOST_FALSE_FLAGS;
+
+/// Name of a cohort's second row.
+const ADAPTING: &str = "  adapting";
+
+/// Heading of the robustness table as text; the column of cohort names is `width` characters wide.
+pub fn heading(width: usize) -> String {
+    let columns = |first: &str, names: [&str; 11]| {
+        let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals, orders] = names;
+        let line = format!(
+            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>15}\
+             {signals:>8}{orders:>11}"
+        );
+        line.trim_end().to_string()
+    };
+    let above = ["ROC", "ROC", "", "", "false", "", "errors", "", "", "signals", ""];
+    let below =
+        ["places", "recipes", "ECE", "flagged", "flags", "gain", "without", "with", "saved, %", "/100", "orders/min"];
+    format!("{}\n{}\n", columns("", above), columns("cohort", below))
+}
+
+/// The two rows of one cohort as text: without adaptation, and adapting to the person. The column of cohort names is
+/// `width` characters wide.
+pub fn describe_rows(row: &CohortRow, width: usize) -> String {
+    let without = format!("{:.1}", row.unassisted.related_per_100);
+    let orders = format!("{:.2}, ", row.unassisted.orders_per_minute);
+    describe(&row.cohort, [&without, &orders], &row.usual, width) + &describe(ADAPTING, ["", ""], &row.adapting, width)
+}
+
+fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, width: usize) -> String {
+    let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
+    let (found, flags) = (&of.detection, &of.detection.flags);
+    let flagged = match (flags.flagged_before_third_error, flags.episodes) {
+        (Some(share), Some(episodes)) => format!("{share:.2} of {episodes}"),
+        _ => "-".to_string(),
+    };
+    let saved = match (of.saved, of.saved_interval) {
+        (Some(share), Some([from, to])) => {
+            format!("{:.0} ({:.0} to {:.0})", 100.0 * share, 100.0 * from, 100.0 * to)
+        }
+        (Some(share), None) => format!("{:.0}", 100.0 * share),
+        (None, _) => "-".to_string(),
+    };
+    let orders = format!("{orders}{:.2}", of.assisted.orders_per_minute);
+    format!(
+        "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6} {saved:>14}{:>8}{orders:>11}\n",
+        number(found.auc_locations, 3),
+        number(found.auc_recipes, 3),
+        number(found.ece, 3),
+        flagged,
+        number(flags.false_flags_per_20_actions, 2),
+        number(of.log_likelihood.gain, 2),
+        number(Some(of.assisted.related_per_100), 1),
+        number(Some(of.assisted.signals_per_100), 1),
+    )
+}
+
+/// Width, in characters, of a table column that fits the longest of these names, and that of the second rows.
+pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    names.map(|name| name.chars().count()).max().unwrap_or_default().max(ADAPTING.len()) + 1
+}
+
+/// What adaptation changes, as a table with a row for each cohort.
+fn describe_differences(table: &RobustnessTable) -> String {
+    let heading = "adapting less usual";
+    // Every cell begins with a space of its own.
+    let width = (name_width(table.cohorts.iter().map(|row| row.cohort.as_str())) - 1).max(heading.len());
+    let mut text = format!(
+        "\n{heading:<width$} {:>25} {:>25} {:>25} {:>15}\n",
+        "ROC places", "ROC recipes", "ECE", "saved, points"
+    );
+    let cell = |one: Option<AdaptationDifference>, scale: f64, digits: usize| {
+        let number = |value: f64| format!("{:+.digits$}", scale * value);
+        match one {
+            Some(AdaptationDifference { difference, interval: Some([from, to]) }) => {
+                format!("{} ({} to {})", number(difference), number(from), number(to))
+            }
+            Some(AdaptationDifference { difference, interval: None }) => number(difference),
+            None => "-".to_string(),
+        }
+    };
+    for row in &table.cohorts {
+        let found = &row.adaptation;
+        let areas =
+            [found.auc_locations, found.auc_recipes, found.ece].map(|one| format!(" {:>25}", cell(one, 1.0, 3)));
+        text += &format!("{:<width$}{} {:>15}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
+    }
+    text
+}
+
+/// What adaptation changes, and an explanation of the robustness table's rows and columns, as text.
+pub fn describe_end(table: &RobustnessTable) -> String {
+    describe_differences(table) + &legend(table)
+}
+
+fn legend(table: &RobustnessTable) -> String {
+    format!(
+        "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
+         flags from as many trials of seed {}.\n\
+         first row: with the parameters of the human model; adapting: lapse and attention are learned in each trial.\n\
+         ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs.\n\
+         ECE: expected calibration error, how far its predicted probabilities of a false belief are off.\n\
+         flagged: false belief episodes of two or more errors that are flagged before the third; the thresholds allow \
+         {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
+         gain: log likelihood per press beyond that of a human who knows everything, in nats.\n\
+         errors, signals: belief related errors without and with the assistant, and signals, per 100 presses of the human.\n\
+         saved: by how much fewer errors there are with the assistant (95 % interval by drawing trials, as all intervals).\n\
+         orders/min: orders served a minute, without and with the assistant.\n",
+        table.cohorts.first().map_or(0, |row| row.trials),
+        table.seed,
+        table.choose_seed,
+    )
+}

@@ -13,6 +13,7 @@
 //! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).
 //! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`,
 //!   `acting`, `answering`.
+//! - Following a recording: [`recorded_eyes`] (fixations in recorded gaze), `shadowing`.
 
 mod acting;
 mod answering;
@@ -29,6 +30,8 @@ mod looking;
 mod memory;
 mod planning;
 pub mod population;
+pub mod recorded_eyes;
+mod shadowing;
 mod signal_sense;
 mod signals;
 mod simulated;

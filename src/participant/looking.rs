@@ -51,7 +51,7 @@ impl SimulatedParticipant {
     }
 
     /// Lets changes on the display capture attention; a change at the fixated location is read again.
-    fn notice_changes(&mut self, now: SessionTime, state: State) {
+    pub(super) fn notice_changes(&mut self, now: SessionTime, state: State) {
         if state == self.display {
             return;
         }
@@ -95,24 +95,7 @@ impl SimulatedParticipant {
         if chance(&mut self.mind, self.person.wanders) {
             return None;
         }
-        let kitchen = self.kitchen.clone();
-        let needed = self.needed();
-        let weight = |index: usize| {
-            let id = LocationId(index as u8);
-            let worth = match kitchen.locations[index].kind {
-                _ if needed.contains(&id) => 1.0,
-                LocationKind::Hand(Agent::Robot) => self.person.watches_robot,
-                LocationKind::Hand(Agent::Human) => 0.15,
-                LocationKind::Order if wanted_dish(&kitchen, &self.beliefs, id).is_none() => 0.8,
-                LocationKind::Order => 0.2,
-                LocationKind::Place if id == kitchen.board => 0.5,
-                LocationKind::Place => 0.25,
-            };
-            let stale = 1.0 - (-now.secs_since(self.attention.read_at[index]) / STALE_S).exp();
-            let open = 1.0 - self.beliefs.certainty(AspectId::of_location(id));
-            worth * (stale + open)
-        };
-        let weights: Vec<f64> = (0..kitchen.locations.len()).map(weight).collect();
+        let weights = self.target_weights(now);
         let mut draw = self.mind.random::<f64>() * weights.iter().sum::<f64>();
         weights
             .iter()
@@ -121,6 +104,29 @@ impl SimulatedParticipant {
                 draw < 0.0
             })
             .map(|index| LocationId(index as u8))
+    }
+
+    /// Weight of each location in the choice of the next fixation target: more for locations that the next presses
+    /// need, that were not read for long, or of whose content the participant is unsure.
+    pub(super) fn target_weights(&self, now: SessionTime) -> Vec<f64> {
+        let kitchen = &self.kitchen;
+        let needed = self.needed();
+        let weight = |index: usize| {
+            let id = LocationId(index as u8);
+            let worth = match kitchen.locations[index].kind {
+                _ if needed.contains(&id) => 1.0,
+                LocationKind::Hand(Agent::Robot) => self.person.watches_robot,
+                LocationKind::Hand(Agent::Human) => 0.15,
+                LocationKind::Order if wanted_dish(kitchen, &self.beliefs, id).is_none() => 0.8,
+                LocationKind::Order => 0.2,
+                LocationKind::Place if id == kitchen.board => 0.5,
+                LocationKind::Place => 0.25,
+            };
+            let stale = 1.0 - (-now.secs_since(self.attention.read_at[index]) / STALE_S).exp();
+            let open = 1.0 - self.beliefs.certainty(AspectId::of_location(id));
+            worth * (stale + open)
+        };
+        (0..kitchen.locations.len()).map(weight).collect()
     }
 
     /// Locations of the next two planned presses, except the own hand, whose content the participant feels.

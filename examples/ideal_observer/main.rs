@@ -7,8 +7,7 @@
 //! ```
 //!
 //! prints for these numbers of particles, with this seed, how well baseline, estimate and ideal observer tell false
-//! beliefs before each press of the human. With `no-gaze-choice` as last argument the observer does not ask whether a
-//! particle would have looked where the recorded person looked; what is read follows the recorded gaze all the same.
+//! beliefs before each press of the human.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -112,11 +111,7 @@ pub fn read(recordings: &[PathBuf]) -> Result<Vec<Evidence>, Box<dyn Error>> {
 pub fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [particles, seed, recordings @ ..] = &args[..] else {
-        return Err("numbers of particles such as 256,512; a seed; recordings; no-gaze-choice or nothing".into());
-    };
-    let (weighs_gaze, recordings) = match recordings {
-        [recordings @ .., last] if last == "no-gaze-choice" => (false, recordings),
-        _ => (true, recordings),
+        return Err("numbers of particles such as 256,512; a seed; recordings".into());
     };
     if recordings.is_empty() {
         return Err("no recordings".into());
@@ -124,7 +119,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let counts = particles.split(',').map(str::parse).collect::<Result<Vec<usize>, _>>()?;
     let trials = read(&recordings.iter().map(PathBuf::from).collect::<Vec<PathBuf>>())?;
     for particles in counts {
-        let settings = ObserverSettings { particles, seed: seed.parse()?, weighs_gaze, varies: VARIES };
+        let settings = ObserverSettings { particles, seed: seed.parse()?, varies: VARIES };
         let Observation { presses: [presses, agreed, other_time, forced], groups } = follow(&trials, &settings);
         println!(
             "{particles} particles, {presses} presses: {agreed} with particles that agree, {other_time} with the \

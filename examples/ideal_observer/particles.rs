@@ -17,9 +17,6 @@ const SAME_TIME_S: f64 = 0.3;
 const MOST_ROUNDS: u64 = 8;
 /// Share of the particles that must agree with a press before the rounds end.
 const ENOUGH: f64 = 0.5;
-/// Share of the fixation targets that are drawn evenly from all, whatever the particle would look at: fixations are
-/// found with errors.
-const STRAY: f64 = 0.1;
 
 /// How the observer works.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +25,6 @@ pub struct ObserverSettings {
     pub particles: usize,
     /// Seed of all random numbers of the observer.
     pub seed: u64,
-    /// Whether the choice of fixation targets counts as evidence.
-    pub weighs_gaze: bool,
     /// Probability, per proposal, with which a lasting property of a particle is drawn again.
     pub varies: f64,
 }
@@ -71,8 +66,6 @@ enum Did {
 struct Proposal {
     participant: SimulatedParticipant,
     did: Did,
-    /// Log of the likelihood of the recorded fixation targets.
-    log_weight: f64,
 }
 
 /// Follows a trial with particles; one conclusion per press.
@@ -93,8 +86,7 @@ pub fn observe(evidence: &Evidence, trial: u64, settings: &ObserverSettings) -> 
     };
     let particles: Vec<SimulatedParticipant> = (0..settings.particles as u64).map(draw).collect();
     let random = stream(seed, "ideal observer's choice", 0);
-    let targets = (kitchen.locations.len() + 1) as f64;
-    let mut filter = ParticleFilter { settings: *settings, seed, particles, proposed: 0, random, targets };
+    let mut filter = ParticleFilter { settings: *settings, seed, particles, proposed: 0, random };
     evidence.intervals.iter().map(|interval| filter.pass(kitchen, interval)).collect()
 }
 
@@ -105,8 +97,6 @@ struct ParticleFilter {
     /// Number of proposals so far, which names their random streams.
     proposed: u64,
     random: Stream,
-    /// Number of fixation targets that are told apart.
-    targets: f64,
 }
 
 impl ParticleFilter {
@@ -119,7 +109,7 @@ impl ParticleFilter {
             for index in 0..count {
                 let proposal = self.propose(index, interval, true);
                 if !matches!(proposal.did, Did::Early(..)) {
-                    beliefs.push((proposal.log_weight, p_truths(kitchen, interval, &proposal)));
+                    beliefs.push(p_truths(kitchen, interval, &proposal));
                 }
                 match proposal.did {
                     Did::Pressed(button, _) if button == interval.press.button => agreed.push(proposal),
@@ -147,9 +137,9 @@ impl ParticleFilter {
             Passed::Forced => (0..count).map(|index| self.propose(index, interval, false)).collect(),
         };
         if beliefs.is_empty() {
-            beliefs.extend(kept.iter().map(|one| (one.log_weight, p_truths(kitchen, interval, one))));
+            beliefs.extend(kept.iter().map(|one| p_truths(kitchen, interval, one)));
         }
-        let chosen = self.chosen(&kept);
+        let chosen = self.chosen(kept.len());
         let next = chosen.into_iter().zip(&self.particles).map(|(index, before)| {
             let mut participant = after(&kept[index], interval);
             // The press tells nothing of recipes that nobody needs: choosing particles must not choose these.
@@ -166,19 +156,14 @@ impl ParticleFilter {
         self.proposed += 1;
         participant.reseed(self.seed, self.proposed);
         participant.vary(self.settings.varies, &mut self.random);
-        let mut proposal = Proposal { participant, did: Did::Waited, log_weight: 0.0 };
+        let mut proposal = Proposal { participant, did: Did::Waited };
         for clue in &interval.clues {
             if has_hand && !proposal.move_hand_until(clue.time, interval) {
                 return proposal;
             }
             let participant = &mut proposal.participant;
             match clue.shown {
-                Shown::Fixation(point, location) => {
-                    let p = participant.fixate(clue.time, point, location);
-                    if self.settings.weighs_gaze {
-                        proposal.log_weight += ((1.0 - STRAY) * p + STRAY / self.targets).ln();
-                    }
-                }
+                Shown::Fixation(point, location) => participant.fixate(clue.time, point, location),
                 Shown::Reading => participant.read_fixated(clue.time, clue.state),
                 Shown::Order => participant.see_change(clue.time, clue.state),
                 Shown::RobotPress(press) => {
@@ -193,22 +178,12 @@ impl ParticleFilter {
         proposal
     }
 
-    /// Draws as many proposals as there are particles, by their weights (systematic resampling).
-    fn chosen(&mut self, proposals: &[Proposal]) -> Vec<usize> {
-        let weights = weights(&proposals.iter().map(|proposal| proposal.log_weight).collect::<Vec<f64>>());
+    /// Draws as many of `proposals` proposals as there are particles, each equally often (systematic resampling).
+    fn chosen(&mut self, proposals: usize) -> Vec<usize> {
         let count = self.particles.len();
         let start = self.random.random::<f64>();
-        let (mut index, mut below) = (0, weights[0]);
         let at = |number: usize| (number as f64 + start) / count as f64;
-        (0..count)
-            .map(|number| {
-                while below < at(number) && index + 1 < weights.len() {
-                    index += 1;
-                    below += weights[index];
-                }
-                index
-            })
-            .collect()
+        (0..count).map(|number| ((at(number) * proposals as f64) as usize).min(proposals - 1)).collect()
     }
 }
 
@@ -256,23 +231,15 @@ fn p_truths(kitchen: &Kitchen, interval: &Interval, proposal: &Proposal) -> Vec<
     aspects.map(|aspect| beliefs.p_truth(kitchen, interval.press.before, aspect)).collect()
 }
 
-/// Weights that sum to 1, from their logarithms.
-fn weights(logs: &[f64]) -> Vec<f64> {
-    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let raw: Vec<f64> = logs.iter().map(|log| (log - most).exp()).collect();
-    let total: f64 = raw.iter().sum();
-    raw.into_iter().map(|weight| weight / total).collect()
-}
-
-/// The weighted means over particles, each given by its log weight and its P(truth) of each aspect.
-fn conclude(beliefs: &[(f64, Vec<f64>)], passed: Passed) -> Conclusion {
-    let weights = weights(&beliefs.iter().map(|(log, _)| *log).collect::<Vec<f64>>());
-    let mut conclusion = Conclusion { p_false: vec![0.0; beliefs[0].1.len()], p_wrong: Vec::new(), passed };
+/// The means over particles, each given by its P(truth) of each aspect.
+fn conclude(beliefs: &[Vec<f64>], passed: Passed) -> Conclusion {
+    let mut conclusion = Conclusion { p_false: vec![0.0; beliefs[0].len()], p_wrong: Vec::new(), passed };
     conclusion.p_wrong.clone_from(&conclusion.p_false);
-    for (weight, (_, p_truths)) in weights.iter().zip(beliefs) {
+    let share = 1.0 / beliefs.len() as f64;
+    for p_truths in beliefs {
         for (index, p_truth) in p_truths.iter().enumerate() {
-            conclusion.p_wrong[index] += weight * (1.0 - p_truth);
-            conclusion.p_false[index] += if *p_truth < FALSE_BELOW { *weight } else { 0.0 };
+            conclusion.p_wrong[index] += share * (1.0 - p_truth);
+            conclusion.p_false[index] += if *p_truth < FALSE_BELOW { share } else { 0.0 };
         }
     }
     conclusion

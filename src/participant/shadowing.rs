@@ -50,31 +50,14 @@ impl SimulatedParticipant {
     }
 
     /// Begins a recorded fixation of this point of the display, in fractions of its width and height, and of the
-    /// location there (`None`: a storage, or any point outside of the locations). Returns the probability with which
-    /// this participant would have chosen the target.
-    pub fn fixate(&mut self, now: SessionTime, point: [f64; 2], location: Option<LocationId>) -> f64 {
+    /// location there (`None`: a storage, or any point outside of the locations).
+    pub fn fixate(&mut self, now: SessionTime, point: [f64; 2], location: Option<LocationId>) {
         self.think_if_due(now);
-        let p = self.p_target(now, location);
         self.eyes.rest_at(now, point);
         self.attention.looking_at = location;
         // Looks that the participant intended before this one did not take place.
         let intended = self.attention.glances.iter().position(|&other| Some(other) == location);
         self.attention.glances.drain(..intended.map_or(self.attention.glances.len(), |place| place + 1));
-        p
-    }
-
-    /// Probability of this fixation target in `choose_target`.
-    fn p_target(&self, now: SessionTime, target: Option<LocationId>) -> f64 {
-        let wanders = self.person.wanders;
-        match (self.attention.glances.front(), target) {
-            (Some(&first), _) => f64::from(u8::from(Some(first) == target)),
-            (None, None) => wanders,
-            (None, Some(location)) => {
-                let weights = self.target_weights(now);
-                let total: f64 = weights.iter().sum();
-                (1.0 - wanders) * weights[location.index()] / total.max(f64::MIN_POSITIVE)
-            }
-        }
     }
 
     /// Reads the fixated location, at the time at which the recorded person read it, and thinks about what is new.

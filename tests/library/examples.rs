@@ -32,7 +32,7 @@ fn an_ideal_observer_follows_recordings() {
     let recordings = simulate(&request, || ()).expect("trials").recordings;
     let recordings: Vec<_> = recordings.iter().map(|path| Path::new(path).to_path_buf()).collect();
     let trials = ideal_observer::read(&recordings).expect("unassisted trials with gaze");
-    let settings = ObserverSettings { particles: 64, seed: 1, weighs_gaze: true, varies: 0.01 };
+    let settings = ObserverSettings { particles: 64, seed: 1, varies: 0.01 };
     let found = ideal_observer::follow(&trials, &settings);
     let [presses, agreed, ..] = found.presses;
     assert!(agreed as f64 > 0.8 * presses as f64, "{agreed} of {presses} presses");

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::analysis::cohort_lines::{describe_end, describe_rows};
+use tomcom::analysis::cohort_lines::{describe_end, describe_rows, name_width};
 use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable};
 use tomcom::edge::battery_file::{CohortBattery, read_battery};
 use tomcom::edge::files::read_session;
@@ -51,7 +51,8 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert_eq!(one, several);
     assert_ne!(one.cohorts[0].unassisted, one.cohorts[1].unassisted, "cohorts differ");
     assert_ne!(one.cohorts[0].unassisted, table(&battery, 42).cohorts[0].unassisted, "seeds differ");
-    let text = describe_rows(&one.cohorts[1], 27);
+    let width = name_width(one.cohorts.iter().map(|row| row.cohort.as_str()));
+    let text = describe_rows(&one.cohorts[1], width);
     let rows: Vec<&str> = text.lines().collect();
     assert!(rows[0].starts_with("confident wrong recipes ") && rows[1].starts_with("  adapting "), "{text}");
     let end = describe_end(&one);

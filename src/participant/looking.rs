@@ -108,7 +108,7 @@ impl SimulatedParticipant {
 
     /// Weight of each location in the choice of the next fixation target: more for locations that the next presses
     /// need, that were not read for long, or of whose content the participant is unsure.
-    pub(super) fn target_weights(&self, now: SessionTime) -> Vec<f64> {
+    fn target_weights(&self, now: SessionTime) -> Vec<f64> {
         let kitchen = &self.kitchen;
         let needed = self.needed();
         let weight = |index: usize| {

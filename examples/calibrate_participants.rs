@@ -206,7 +206,7 @@ impl Setting {
         mut tell: impl FnMut(usize, &[Rates]) -> Result<(), Box<dyn Error>>,
     ) -> Result<(), Box<dyn Error>> {
         let workers = WorkerPool::new(|| None);
-        // So many populations at once that no processor is without a study.
+        // As many populations are simulated together as are needed to give every processor a study.
         let at_once = rayon::current_num_threads().div_ceil(seeds.len());
         for first in (0..populations.len()).step_by(at_once) {
             let block = first..populations.len().min(first + at_once);

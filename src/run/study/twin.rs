@@ -51,8 +51,9 @@ struct TwinResult {
     errors: u64,
 }
 
-/// Number of useful signals of a recorded trial of a simulated participant, with the cost to go of its kitchen; `None` if the trial cannot be run again:
-/// the program version that recorded it had other simulated participants, or this build lacks the robot's arm.
+/// Number of useful signals of a recorded trial of a simulated participant. `cost`: the cost to go of the trial's
+/// kitchen, whose caches may be filled. `None` if the trial cannot be run again: the program version that recorded it
+/// had other simulated participants, or this build lacks the robot's arm.
 ///
 /// # Errors
 /// The recording cannot be read.

@@ -6,6 +6,7 @@ use super::eyes::FixationProgress;
 use super::population::chance;
 use super::simulated::SimulatedParticipant;
 use super::true_beliefs::wanted_dish;
+use super::weighted_draw::drawn_by_weight;
 use crate::base::time::SessionTime;
 use crate::kitchen::{
     Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State, World,
@@ -96,14 +97,7 @@ impl SimulatedParticipant {
             return None;
         }
         let weights = self.target_weights(now);
-        let mut draw = self.mind.random::<f64>() * weights.iter().sum::<f64>();
-        weights
-            .iter()
-            .position(|weight| {
-                draw -= weight;
-                draw < 0.0
-            })
-            .map(|index| LocationId(index as u8))
+        drawn_by_weight(&mut self.mind, &weights).map(|index| LocationId(index as u8))
     }
 
     /// Weight of each location in the choice of the next fixation target: more for locations that the next presses

@@ -5,6 +5,7 @@ use rand::RngExt;
 
 use super::population::{ParticipantTraits, Population, normal, rare_chance};
 use super::true_beliefs::ParticipantBeliefs;
+use super::weighted_draw::drawn_by_weight;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ContentId, DishId, Kitchen};
@@ -69,7 +70,8 @@ impl RecipeMemory {
             let is_misremembered = !weights.is_empty() && rare_chance(&mut random, person.misremembers);
             let [known, half_forgotten] = match is_misremembered {
                 true => {
-                    let wrong = sure_of(1 + drawn(&mut random, &weights), 1 + weights.len());
+                    let version = drawn_by_weight(&mut random, &weights).unwrap_or(0);
+                    let wrong = sure_of(1 + version, 1 + weights.len());
                     [wrong.clone(), wrong]
                 }
                 false => [known, corrected[index].clone()],
@@ -188,16 +190,6 @@ impl RecipeMemory {
         self.faded[dish.index()].clone_from(&self.corrected[dish.index()]);
         beliefs.settle(kitchen.aspect_of_dish(dish), variant, CONFIRMED_CERTAINTY);
     }
-}
-
-/// Draws an index in proportion to these weights.
-fn drawn(random: &mut Stream, weights: &[f64]) -> usize {
-    let mut draw = random.random::<f64>() * weights.iter().sum::<f64>();
-    let found = weights.iter().position(|weight| {
-        draw -= weight;
-        draw < 0.0
-    });
-    found.unwrap_or(0)
 }
 
 /// The distribution over `versions` of a recipe for a person who is sure of one version.

@@ -3,8 +3,7 @@
 //! The neighbour that a slip of the assistant's human model hits ([`Kitchen::nearest_button`]) is another mechanism:
 //! inference must not be tested on the human that the assistant models exactly.
 
-use rand::RngExt;
-
+use super::weighted_draw::drawn_by_weight;
 use crate::base::rng::Stream;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 
@@ -38,11 +37,6 @@ pub fn slipped_button(kitchen: &Kitchen, meant: ButtonId, random: &mut Stream) -
         factor * ((nearest_m.powi(2) - apart_m(other).powi(2)) / SLIP_REACH_M.powi(2)).exp()
     };
     let weights: Vec<f64> = others.iter().map(|&other| weight(other)).collect();
-    let mut left = random.random::<f64>() * weights.iter().sum::<f64>();
-    let drawn = weights.iter().position(|weight| {
-        left -= weight;
-        left < 0.0
-    });
-    // Rounding can leave a remainder after the last weight.
-    drawn.or(others.len().checked_sub(1)).map(|index| ButtonId(others[index] as u8))
+    // What rounding leaves after the last weight belongs to it.
+    drawn_by_weight(random, &weights).or(others.len().checked_sub(1)).map(|index| ButtonId(others[index] as u8))
 }

@@ -10,7 +10,7 @@ use super::probe_figures::ProbeSummary;
 use super::probe_lines;
 use super::seen_contents::LastSeenContents;
 use crate::base::time::SessionTime;
-use crate::base::words::count;
+use crate::base::words::{count, decimal};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Kitchen, KitchenChange, LocationId, Press};
@@ -165,7 +165,7 @@ impl Before {
 
 /// The result of the belief check as text for the terminal.
 pub fn describe(check: &BeliefCheck) -> String {
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
+    let number = |value: Option<f64>| decimal(value, 3);
     let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
     let thresholds = flags.thresholds.zip(flags.thresholds_from).map_or(String::new(), |(at, from)| {
         let [locations, recipes] = [at.locations, at.recipes].map(|threshold| format!("{threshold:.3}"));

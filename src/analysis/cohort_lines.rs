@@ -1,6 +1,7 @@
 //! The robustness table as text for the terminal, at most 120 characters wide.
 
 use super::cohort_table::{AdaptationDifference, CohortPerformance, CohortRow, RobustnessTable};
+use crate::base::words::decimal;
 use crate::measures::flags::MOST_FALSE_FLAGS;
 
 /// Name of a cohort's second row.
@@ -31,7 +32,6 @@ pub fn describe_rows(row: &CohortRow, width: usize) -> String {
 }
 
 fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, width: usize) -> String {
-    let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
     let (found, flags) = (&of.detection, &of.detection.flags);
     let flagged = match (flags.flagged_before_third_error, flags.episodes) {
         (Some(share), Some(episodes)) => format!("{share:.2} of {episodes}"),
@@ -47,14 +47,14 @@ fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, wi
     let orders = format!("{orders}{:.2}", of.assisted.orders_per_minute);
     format!(
         "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6} {saved:>14}{:>8}{orders:>11}\n",
-        number(found.auc_locations, 3),
-        number(found.auc_recipes, 3),
-        number(found.ece, 3),
+        decimal(found.auc_locations, 3),
+        decimal(found.auc_recipes, 3),
+        decimal(found.ece, 3),
         flagged,
-        number(flags.false_flags_per_20_actions, 2),
-        number(of.log_likelihood.gain, 2),
-        number(Some(of.assisted.related_per_100), 1),
-        number(Some(of.assisted.signals_per_100), 1),
+        decimal(flags.false_flags_per_20_actions, 2),
+        decimal(of.log_likelihood.gain, 2),
+        decimal(Some(of.assisted.related_per_100), 1),
+        decimal(Some(of.assisted.signals_per_100), 1),
     )
 }
 

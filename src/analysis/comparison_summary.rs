@@ -9,7 +9,7 @@ use super::offer_summary::OfferSummary;
 use super::watcher::SenderComparisonSettings;
 use super::wizard_log::{self, WizardSummary};
 use crate::base::time::SessionTime;
-use crate::base::words::count;
+use crate::base::words::{count, decimal};
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
 use crate::history::belief_track::AspectBeliefSnapshot;
@@ -24,7 +24,8 @@ const LISTED: usize = 20;
 /// Agreement of wizard and assistants in recordings: the output of `tomcom compare`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonSummary {
-    /// Agreement between the sent signals and each assistant's, over all recordings that count in the analysis.
+    /// Agreement between the communications of each two senders (the sent signals, and each assistant's hypothetical
+    /// ones), over all recordings that count in the analysis.
     pub pairs: Vec<SenderPairSummary>,
     /// Comparison of wizard and assistants in each recording.
     pub recordings: Vec<RecordingComparison>,
@@ -35,7 +36,8 @@ pub struct ComparisonSummary {
 /// Agreement between two senders' communications over recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SenderPairSummary {
-    /// Name of the first compared sender, "wizard".
+    /// Name of the first compared sender: who sent the signals ("wizard", "assistant" or "nobody"), or an assistant's
+    /// concept.
     pub of: String,
     /// Name of the second compared sender: an assistant's concept.
     pub with: String,
@@ -330,9 +332,9 @@ fn describe_differences(differences: &[UnmatchedCommunicationSummary]) -> String
 }
 
 fn describe_pair(pair: &SenderPairSummary) -> String {
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let number = |value: Option<f64>| decimal(value, 2);
     let found = &pair.similarity;
-    let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
+    let lead = found.lead();
     let line = |what: &str, window: &str, level: MatchShares| {
         let [recall, chance, precision, f1] =
             [level.recall, level.chance_recall, level.precision, level.f1].map(number);

@@ -2,7 +2,7 @@
 
 use super::probe_accuracy::ProbeAccuracyGrouping;
 use super::probe_figures::ProbeSummary;
-use crate::base::words::count;
+use crate::base::words::{count, decimal, percent};
 
 /// The results of freeze probes as text for the terminal.
 pub fn describe(found: &ProbeSummary) -> String {
@@ -25,19 +25,19 @@ pub fn describe(found: &ProbeSummary) -> String {
         counts.level_2,
         percent(found.accuracy.accuracy),
         within(found.accuracy.interval, 100.0, 1),
-        number(detection.auc),
+        decimal(detection.auc, 3),
         within(found.auc_interval, 1.0, 3),
-        number(detection.auc_locations),
-        number(detection.auc_baseline),
-        number(detection.auc_recipes),
-        number(found.auc_unweighted),
-        number(detection.ece),
+        decimal(detection.auc_locations, 3),
+        decimal(detection.auc_baseline, 3),
+        decimal(detection.auc_recipes, 3),
+        decimal(found.auc_unweighted, 3),
+        decimal(detection.ece, 3),
         within(found.ece_interval, 1.0, 3),
-        number(scores.estimate),
-        number(scores.estimate_with_slips),
-        number(scores.usual),
-        number(scores.last_seen),
-        number(scores.truth),
+        decimal(scores.estimate, 3),
+        decimal(scores.estimate_with_slips, 3),
+        decimal(scores.usual, 3),
+        decimal(scores.last_seen, 3),
+        decimal(scores.truth, 3),
     );
     text + &accuracies(found)
 }
@@ -73,22 +73,14 @@ fn accuracies(found: &ProbeSummary) -> String {
             "by the recorded beliefs at {} of these questions: area {}, calibration error {}; by their answers {} and {}; {} of the \
              answers agree\n",
             known.n,
-            number(known.detection.auc),
-            number(known.detection.ece),
-            number(known.by_answers.auc),
-            number(known.by_answers.ece),
+            decimal(known.detection.auc, 3),
+            decimal(known.detection.ece, 3),
+            decimal(known.by_answers.auc, 3),
+            decimal(known.by_answers.ece, 3),
             percent(Some(known.agreement)),
         );
     }
     text
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or("-".to_string(), |value| format!("{value:.3}"))
-}
-
-fn percent(value: Option<f64>) -> String {
-    value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value))
 }
 
 /// A confidence interval in brackets; empty if the interval is not known.

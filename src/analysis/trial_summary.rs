@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::follower::SessionFollower;
 use super::offer_summary::{OfferDurations, TimedOffer};
-use crate::base::words::count;
+use crate::base::words::{count, decimal};
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::ErrorCause;
 use crate::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
@@ -136,15 +136,14 @@ impl FalseBeliefErrorSummary {
         let (Some(related), Some(sequences)) = (self.belief_related_errors, self.sequences) else {
             return "belief related errors: not known, since nobody knows what the participant believed".to_string();
         };
-        let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.1}"));
         format!(
             "belief related errors: {related} of {errors} ({:.0} %), in {} of {} errors each ({} if a sequence may mix \
              aspects), over after {} s",
             100.0 * related as f64 / errors.max(1) as f64,
             count(sequences, "sequence", "sequences"),
-            number(self.mean_sequence_length),
-            number(self.mean_sequence_length_any_aspect),
-            number(self.mean_recovery_s),
+            decimal(self.mean_sequence_length, 1),
+            decimal(self.mean_sequence_length_any_aspect, 1),
+            decimal(self.mean_recovery_s, 1),
         )
     }
 }

@@ -233,6 +233,13 @@ pub struct Similarity {
     pub any: MatchShares,
 }
 
+impl Similarity {
+    /// The median lead of the second list as text: "+1.5 s"; "-" if it is not known.
+    pub fn lead(&self) -> String {
+        self.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"))
+    }
+}
+
 /// Mean number of matched pairs at each level over circular shifts of the second list by more than the window; `None`
 /// if the trial is too short for such a shift.
 fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<[f64; 3]> {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::replay::RecordingReplay;
 use crate::analysis::error_list::ListedError;
-use crate::base::words::count;
+use crate::base::words::{count, decimal};
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{consensus_file, rater_codes};
 use crate::history::wording;
@@ -271,7 +271,7 @@ pub fn describe(figures: &InterRaterSummary) -> String {
         text += &format!("{}: {}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
         text += &one.consensus.as_ref().map_or(String::new(), describe_consensus);
     }
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
+    let number = |value: Option<f64>| decimal(value, 2);
     for pair in figures.agreements.iter().chain(&figures.known) {
         let RaterAgreement { errors, same_cause, kappa_cause, beliefs, same_aspect, kappa_aspect } = pair.agreement;
         text += &format!(

@@ -13,6 +13,7 @@ use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_t
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
+use crate::base::words::decimal;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::{AssistantSpec, ShadowMode};
 use crate::edge::file_error::FileError;
@@ -342,24 +343,23 @@ pub fn describe(figures: &ParameterSweepSummary, axes: &[ParameterSweepAxis]) ->
         "{settings}{:>12}{:>12}{:>18}{:>10}{:>15}{:>13}{:>18}\n",
         "errors/100", "signals/100", "errors spared", "sequence", "presses/order", "related/100", "related fewer"
     );
-    let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
     for (index, row) in figures.rows.iter().enumerate() {
         let settings: String = match index {
             0 => format!("{:>width$}", "no signals", width = 13 * axes.len()),
             _ => axes.iter().map(|axis| format!("{:>13}", setting(row, axis))).collect(),
         };
         let with_error = |mean: Option<f64>, error: Option<f64>| {
-            mean.map_or("-".to_string(), |mean| format!("{mean:.2} ± {}", number(error, 2)))
+            mean.map_or("-".to_string(), |mean| format!("{mean:.2} ± {}", decimal(error, 2)))
         };
         let spared = with_error(row.spared_per_100, row.spared_error);
         let fewer = with_error(row.related_fewer_than_first, row.related_fewer_error);
         text += &format!(
             "{settings}{:>12}{:>12}{spared:>18}{:>10}{:>15}{:>13}{fewer:>18}\n",
-            number(Some(row.errors_per_100), 1),
-            number(Some(row.signals_per_100), 1),
-            number(row.mean_sequence_length, 2),
-            number(row.presses_per_order, 1),
-            number(row.related_per_100, 2),
+            decimal(Some(row.errors_per_100), 1),
+            decimal(Some(row.signals_per_100), 1),
+            decimal(row.mean_sequence_length, 2),
+            decimal(row.presses_per_order, 1),
+            decimal(row.related_per_100, 2),
         );
     }
     text + &format!(

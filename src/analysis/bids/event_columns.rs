@@ -1,7 +1,7 @@
 //! The columns of the BIDS table of events.
 
 use super::event_levels::LEVELS;
-use super::tsv::BidsColumn;
+use super::tsv::{BidsColumn, YES_NO};
 
 /// Values of the column that says who did something (wizard, participant, robot), with their meanings.
 const AGENTS: &[(&str, &str)] = &[
@@ -11,7 +11,6 @@ const AGENTS: &[(&str, &str)] = &[
     ("wizard", "The person at the console, or the script in its place"),
     ("assistant", "The communication concept that acts by itself"),
 ];
-const YES: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 const SIGNALS: &[(&str, &str)] = &[
     ("show_recipe", "The recipe of the dish that the order at the place wants"),
     ("highlight", "Directs attention to the place and what lies there"),
@@ -36,10 +35,10 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::new("what", "What exactly happened, for kinds that have several"),
     BidsColumn::of_levels("agent", AGENTS, "Who did it"),
     BidsColumn::new("button", "Name of the button; several proposed ones are separated by commas"),
-    BidsColumn::of_levels("effective", YES, "Presses: whether the button did anything"),
+    BidsColumn::of_levels("effective", YES_NO, "Presses: whether the button did anything"),
     BidsColumn::of_levels(
         "error",
-        YES,
+        YES_NO,
         "Presses of the participant in the trial: whether the press was an error, by the number of presses that it loses",
     ),
     BidsColumn::new("location", "The place that it is about, by its name in the layout"),

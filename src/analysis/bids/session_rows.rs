@@ -1,13 +1,12 @@
 //! The BIDS table of a participant's sessions, with a row for each recording.
 
 use super::event_cells;
-use super::tsv::{self, BidsColumn, BidsFile, or_nothing, seconds, yes};
+use super::tsv::{self, BidsColumn, BidsFile, YES_NO, or_nothing, seconds, yes};
 use crate::base::time::SessionTime;
 use crate::session::event::TrialEndReason;
 use crate::session::study_arm::StudyArm;
 use crate::session::{LogHeader, Session};
 
-const YES: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 const CONDITIONS: &[(&str, &str)] = &[
     ("none", "Nobody sent signals"),
     ("wizard", "The wizard could send signals"),
@@ -33,17 +32,17 @@ const COLUMNS: [BidsColumn; 21] = [
         "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
     ),
     BidsColumn::new("planned_arm", "Arm that the plan gave to the trial"),
-    BidsColumn::of_levels("practice", YES, "Whether it is practice, which no analysis takes"),
+    BidsColumn::of_levels("practice", YES_NO, "Whether it is practice, which no analysis takes"),
     BidsColumn::new("period", "Number of the trial in the plan, from 1"),
     BidsColumn::new("attempt", "Number of the attempt, from 1"),
     BidsColumn::new("gaze", "Where gaze came from"),
     BidsColumn::new("arm", "Kind of the robot's arm"),
     BidsColumn::of_unit("trial_time", "s", "Length of the trial by its own clock"),
     BidsColumn::of_levels("ended", ENDS, "Why the trial ended; n/a: it did not"),
-    BidsColumn::of_levels("complete", YES, "Whether the recording has its end"),
+    BidsColumn::of_levels("complete", YES_NO, "Whether the recording has its end"),
     BidsColumn::of_levels(
         "excluded",
-        YES,
+        YES_NO,
         "Whether the trial was aborted or is left out of the analysis; the reason is in the recording",
     ),
     BidsColumn::new("seed", "Seed of all random numbers"),

@@ -125,6 +125,9 @@ pub(super) fn or_nothing<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| NOTHING.to_string(), |value| value.to_string())
 }
 
+/// Values of a BIDS column of truth values, with their meanings.
+pub(super) const YES_NO: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
+
 /// BIDS cell of a truth value: 1 for yes, 0 for no.
 pub(super) fn yes(is: bool) -> String {
     u8::from(is).to_string()

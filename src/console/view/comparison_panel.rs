@@ -9,6 +9,7 @@ use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use super::timeline::{axis, columns_ago};
 use crate::base::time::SessionTime;
+use crate::base::words::decimal;
 use crate::console::compared::ComparisonAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
@@ -143,8 +144,8 @@ fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &SenderComparis
         return;
     }
     let found = &seen.pairs[lane - 1].similarity;
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
-    let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));
+    let number = |value: Option<f64>| decimal(value, 2);
+    let lead = found.lead();
     let [recall, precision, f1] = [found.signal.recall, found.signal.precision, found.signal.f1].map(number);
     let (kappa, chance) = (number(found.kappa), number(found.signal.chance_recall));
     let text = match inside.width >= ROOMY_COLUMNS - 8 {

@@ -46,4 +46,6 @@ pub struct SendConfirmation {
     pub offer: Option<u64>,
     /// Time of the click, on the console's own clock ([`super::console_model::ConsoleModel::clock`]).
     pub asked: SessionTime,
+    /// Session time of the click; in a training the session does not run on the console's clock.
+    pub asked_at: SessionTime,
 }

@@ -11,8 +11,10 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::KeyAction;
 use super::notice::NoticeLevel;
 use super::sending::refusal;
+use crate::communication::offer::Offer;
 use crate::communication::{Sender, Signal};
 use crate::session::offers;
+use crate::session::settings::WizardVisibility;
 use crate::session::{Event, Session};
 
 /// Asks the wizard whether to send a clicked signal or the clicked offer's signal; or says why the signal cannot be
@@ -29,7 +31,8 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
     match asked {
         Ok((signal, offer)) => {
             model.notice = None;
-            model.dialog = Some(Dialog::Send(SendConfirmation { chord, signal, offer, asked: model.clock }));
+            model.dialog =
+                Some(Dialog::Send(SendConfirmation { chord, signal, offer, asked: model.clock, asked_at: model.now }));
         }
         Err(reason) => model.say(NoticeLevel::Refused, format!("signal not sent: {reason}")),
     }
@@ -38,13 +41,17 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
 /// Time after which the question whether to send closes, in seconds: a later enter key is probably not an answer to it.
 const WAITS_S: f64 = 5.0;
 
-/// Closes the question whether to send a clicked signal once it is too old, or once a newer offer has opened: from then
-/// on, enter accepts that offer.
+/// Closes the question whether to send a clicked signal once it is too old, or once a newer offer has opened that the
+/// wizard sees: from then on, enter accepts that offer. A hidden offer leaves the question open, since a notice would
+/// tell a blinded wizard that the assistant recommends something.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
     let Some(Dialog::Send(question)) = &model.dialog else { return };
     let is_late = model.clock.secs_since(question.asked) > WAITS_S;
-    let open = session.offers.open().filter(|offer| offer.opened > question.asked && Some(offer.seq) != question.offer);
-    if is_late || open.is_some() {
+    // In a training the settings hide offers that the recorded wizard saw.
+    let is_shown = session.spec.console.visibility == WizardVisibility::Recommendation;
+    let is_newer = |offer: &Offer| offer.opened > question.asked_at && Some(offer.seq) != question.offer;
+    let is_other = session.offers.open().is_some_and(|offer| is_shown && offer.advice.visible && is_newer(offer));
+    if is_late || is_other {
         let why = if is_late { "the click was not confirmed in time" } else { "another signal is on offer now" };
         model.dialog = None;
         model.say(NoticeLevel::Refused, format!("signal not sent: {why}; click again"));

@@ -3,6 +3,7 @@
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Signal;
+use tomcom::communication::offer::{OfferedAdvice, OfferedCommunication};
 use tomcom::console::click_question;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
@@ -10,7 +11,7 @@ use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::view::click_targets;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::session::Event;
-use tomcom::session::settings::ParticipantKind;
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, input};
 
@@ -62,7 +63,35 @@ fn a_click_on_a_signal_asks_once_and_enter_or_a_second_click_sends_it() {
 }
 
 #[test]
-fn the_question_of_a_click_waits_five_seconds_and_gives_way_to_an_offer() {
+fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
+    // The console's clock runs ahead of the session in a training, and beside it in a running session.
+    for ahead_s in [0.0, 100.0] {
+        for (visible, shows, closes) in [
+            (true, WizardVisibility::Recommendation, true),
+            (false, WizardVisibility::Recommendation, false),
+            (true, WizardVisibility::State, false),
+            (false, WizardVisibility::State, false),
+        ] {
+            let mut stage = Stage::sushi(ParticipantKind::Simulated);
+            stage.session.spec.console.visibility = shows;
+            stage.wait(0.0);
+            let ahead = |stage: &mut Stage| stage.model.clock = stage.model.now + SessionTime::from_secs_f64(ahead_s);
+            ahead(&mut stage);
+            stage.click("[a]");
+            assert!(stage.asks_to_send());
+            let what = OfferedCommunication::Signal(highlight("counter"));
+            let advice = OfferedAdvice { what, for_seq: 17, worth: None, reason: None, visible };
+            stage.at(23.5, Event::OfferOpened(advice));
+            ahead(&mut stage);
+            click_question::expire(&mut stage.model, &stage.session);
+            assert_eq!(!stage.asks_to_send(), closes, "visible {visible}, {shows:?}, clock ahead by {ahead_s} s");
+            assert_eq!(stage.notice().contains("another signal is on offer"), closes, "{}", stage.notice());
+        }
+    }
+}
+
+#[test]
+fn the_question_of_a_click_waits_five_seconds() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.wait(0.0);
     stage.click("[a]");

@@ -376,3 +376,42 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     assert!(again > 0, "what nobody shows stays to be said");
     assert_eq!(there.last(), Some(found));
 }
+
+#[test]
+fn a_compared_concept_advises_what_the_same_concept_has_advised_in_the_session() {
+    let mut files = session("default.toml");
+    files.spec.robot.arm = ArmKind::Timed;
+    files.spec.trial.condition = Condition::Assistant;
+    files.spec.trial.seconds = 90.0;
+    (files.spec.assistant.concept, files.spec.assistant.asks_in_silence) = (ConceptName::Tom, true);
+    assert!(files.spec.human.signal.takes_time(), "the estimate foresees that the signal on the display is read");
+    let out = folder("advised-again");
+    simulate(&SimulationRequest { files, trials: 2, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
+    let (mut compared, mut standing, mut silences) = (0, 0, 0);
+    for trial in ["seed1-S001", "seed1-S002"] {
+        let mut log = LogReader::open(&out.join(trial)).expect("a recording");
+        // With this window the estimate leaves out a signal until the next press only.
+        let request = SenderComparisonSettings { with: Vec::new(), window: 0 };
+        let mut watcher = SenderComparisonFollower::new(log.session(), CostToGo::new(log.kitchen.clone()), &request);
+        let mut sent_at = None;
+        while let Some(line) = log.next_line().expect("an event") {
+            let is_left_out = sent_at == Some(watcher.presses());
+            let is_standing = watcher.follower.session.shown.is_some();
+            watcher.apply(&line.stamped).expect("an event of the session");
+            match line.stamped.event {
+                Event::SignalShown { .. } => sent_at = Some(watcher.presses()),
+                Event::HumanWaits { .. } => silences += 1,
+                Event::Advised(recorded) if !is_left_out => {
+                    let known = watcher.known().expect("it was asked");
+                    let found = &known.advice[0];
+                    assert_eq!((known.seq, found), (recorded.for_seq, &recorded), "at event {}", line.stamped.seq);
+                    (compared, standing) = (compared + 1, standing + u32::from(is_standing));
+                }
+                _ => {}
+            }
+        }
+    }
+    println!("{compared} recommendations, {standing} with a signal on the display, {silences} silences");
+    assert!(compared > 100 && standing > 5 && silences > 3, "{compared} {standing} {silences}");
+}

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::advisor::{AdviceRequest, Advisor};
-use crate::base::words::count;
+use crate::base::words::{count, decimal};
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::reference::{ReferenceBenefit, ReferencePlanner};
@@ -52,7 +52,10 @@ pub struct PlannerAccuracySummary {
     pub reference_error: Option<f64>,
     /// Number of pairs of a step and a signal from which `reference_rmse` is computed.
     pub reference_pairs: u64,
-    /// Share of the reference planner's steps at which it made the same decision as the converged planner.
+    /// Number of the reference planner's steps at which the best option of the converged planner leads by more than 0.2
+    /// presses.
+    pub reference_clear_steps: u64,
+    /// Share of the reference planner's clear steps at which it made the same decision as the converged planner.
     pub reference_same_decision: Option<f64>,
     /// Mean computing time of the planner for a step that the reference planner answered, too, in milliseconds.
     pub plan_ms: Option<f64>,
@@ -138,10 +141,12 @@ impl PlannerComparison {
         ComparedAdviceRequest { converged: benefits(advisor, self.question(step)), ..step.clone() }
     }
 
-    /// The planner's accuracy over steps that were answered and converged.
+    /// The planner's accuracy over steps that were answered and converged. A step's decision is judged by the cost of
+    /// communication of its own recording.
     pub fn summary(&self, steps: &[ComparedAdviceRequest]) -> PlannerAccuracySummary {
-        let price = self.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
-        figures(steps, price)
+        let prices: Vec<f64> =
+            self.asked.iter().map(|asked| asked.session.spec.assistant.cost_of_communication).collect();
+        figures(steps, &prices)
     }
 
     fn question(&self, step: &ComparedAdviceRequest) -> &AdviceRequest {
@@ -238,10 +243,12 @@ impl DecisionAgreement {
     }
 }
 
-fn figures(steps: &[ComparedAdviceRequest], price: f64) -> PlannerAccuracySummary {
+/// The planner's accuracy over steps of recordings with these costs of communication, in presses.
+fn figures(steps: &[ComparedAdviceRequest], prices: &[f64]) -> PlannerAccuracySummary {
     let (mut ours, mut plain) = (DecisionAgreement::default(), DecisionAgreement::default());
     let (mut of_errors, mut plain_s, mut ours_s, mut reference_steps) = (0.0, 0.0, 0.0, 0u64);
     for step in steps {
+        let price = prices[step.recording];
         ours.add(&step.ours, &step.converged, price);
         let Some((took_s, worth)) = &step.plain else { continue };
         let found: Vec<(Signal, f64)> = worth.iter().map(|one| (one.signal.clone(), one.benefit)).collect();
@@ -264,6 +271,7 @@ fn figures(steps: &[ComparedAdviceRequest], price: f64) -> PlannerAccuracySummar
         reference_rmse: plain.rmse(),
         reference_error: (plain.pairs > 0).then(|| (of_errors / plain.pairs as f64).sqrt()),
         reference_pairs: plain.pairs,
+        reference_clear_steps: plain.clear,
         reference_same_decision: plain.same_decision(),
         plan_ms: each(ours_s),
         reference_ms: each(plain_s),
@@ -279,34 +287,70 @@ pub fn describe(figures: &PlannerAccuracySummary) -> String {
             count(figures.steps, "step", "steps")
         );
     }
-    let told = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
     let of_reference = match figures.reference_pairs {
         0 => "no signal was worth enough at them to compare benefits; take more (--reference-steps)".to_string(),
         pairs => format!(
             "benefits off by {} presses over {}, of which its own standard errors explain {}",
-            told(figures.reference_rmse, 3),
+            decimal(figures.reference_rmse, 3),
             count(pairs, "pair", "pairs"),
-            told(figures.reference_error, 3),
+            decimal(figures.reference_error, 3),
         ),
     };
     let mut text = format!(
         "{}: the same decision as with {CONVERGED} times the rollouts at {} of the {} clear ones, benefits off by {} presses \
          (root mean square over {} of step and signal, worth more than {MATTERS})\n",
         count(figures.steps, "step", "steps"),
-        told(figures.same_decision, 3),
+        decimal(figures.same_decision, 3),
         figures.clear_steps,
-        told(figures.benefit_rmse, 3),
+        decimal(figures.benefit_rmse, 3),
         count(figures.benefit_pairs, "pair", "pairs"),
     );
     if figures.reference_steps > 0 {
         text += &format!(
-            "plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {}, {of_reference}\n",
+            "plain reference on {}: {} times the time ({} ms a step, planner {} ms); the same decision at {} of the {} \
+             clear ones, {of_reference}\n",
             count(figures.reference_steps, "step", "steps"),
-            told(figures.reference_ratio, 0),
-            told(figures.reference_ms, 1),
-            told(figures.plan_ms, 2),
-            told(figures.reference_same_decision, 3),
+            decimal(figures.reference_ratio, 0),
+            decimal(figures.reference_ms, 1),
+            decimal(figures.plan_ms, 2),
+            decimal(figures.reference_same_decision, 3),
+            figures.reference_clear_steps,
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A step of a recording at which the planner and the reference computed the same benefit of one signal.
+    fn step(recording: usize, benefit: f64, is_compared: bool) -> ComparedAdviceRequest {
+        let signal = Signal::Highlight("counter".to_string());
+        let benefits = vec![(signal.clone(), benefit)];
+        let plain = is_compared.then(|| (1.0, vec![ReferenceBenefit { signal, benefit, standard_error: 0.0 }]));
+        ComparedAdviceRequest { recording, ours: benefits.clone(), converged: benefits, plain, ..Default::default() }
+    }
+
+    #[test]
+    fn a_step_is_judged_by_the_cost_of_its_own_recording() {
+        // A benefit of 1.1 presses leads clearly at a cost of 0.5, not at a cost of 1.
+        let steps = [step(0, 1.1, false), step(1, 1.1, false), step(1, 1.1, false)];
+        for (prices, clear) in [([0.5, 1.0], 1), ([1.0, 0.5], 2), ([0.5, 0.5], 3)] {
+            assert_eq!(figures(&steps, &prices).clear_steps, clear, "at costs of {prices:?}");
+        }
+    }
+
+    #[test]
+    fn the_reference_is_judged_at_clear_steps_only_and_their_number_is_told() {
+        let mut other = step(0, 2.0, true);
+        other.plain.iter_mut().for_each(|(_, worth)| worth[0].benefit = 0.0);
+        let steps = [step(0, 2.0, true), other, step(0, 0.6, true), step(0, 2.0, false)];
+        let found = figures(&steps, &[0.5]);
+        assert_eq!((found.steps, found.clear_steps, found.same_decision), (4, 3, Some(1.0)));
+        assert_eq!((found.reference_steps, found.reference_clear_steps), (3, 2));
+        assert_eq!(found.reference_same_decision, Some(0.5));
+        let text = describe(&found);
+        assert!(text.contains("the same decision at 0.500 of the 2 clear ones"), "{text}");
+    }
 }

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::offer_summary::{OfferSummary, TimedOffer};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
-use crate::base::words::count;
+use crate::base::words::{count, percent};
 use crate::communication::offer::{Offer, OfferCloseReason};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Signal, unavailable};
@@ -197,16 +197,8 @@ impl OfferSteadinessSums {
         self.at_or_below_0_s += tally.at_or_below_0_s;
         self.raw_s.extend(tally.raw_s);
         let offers = TimedOffer::all(session);
-        for (index, one) in offers.iter().enumerate() {
-            let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
-            if !matches!(reason, OfferCloseReason::Impossible | OfferCloseReason::Fell | OfferCloseReason::Replaced) {
-                continue;
-            }
-            sums.could_reopen += 1;
-            let until_s = one.opened_s + stood_s + REOPENS_S;
-            let mut soon = offers[index + 1..].iter().take_while(|later| later.opened_s <= until_s);
-            sums.reopened += u64::from(soon.any(|later| later.offer.advice.what == one.offer.advice.what));
-        }
+        let [could_reopen, reopened] = reopenings(&offers);
+        (sums.could_reopen, sums.reopened) = (sums.could_reopen + could_reopen, sums.reopened + reopened);
         self.offers.extend(offers);
     }
 
@@ -224,10 +216,29 @@ impl OfferSteadinessSums {
     }
 }
 
+/// Number of a trial's offers that could reopen, and number of those that did.
+fn reopenings(offers: &[TimedOffer]) -> [u64; 2] {
+    let (mut could_reopen, mut reopened) = (0, 0);
+    for (index, one) in offers.iter().enumerate() {
+        let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
+        // A wizard can also send the signal of an offer that has just closed, and uses the offer by that.
+        let is_used = one.offer.used.is_some();
+        if is_used
+            || !matches!(reason, OfferCloseReason::Impossible | OfferCloseReason::Fell | OfferCloseReason::Replaced)
+        {
+            continue;
+        }
+        could_reopen += 1;
+        let until_s = one.opened_s + stood_s + REOPENS_S;
+        let mut soon = offers[index + 1..].iter().take_while(|later| later.opened_s <= until_s);
+        reopened += u64::from(soon.any(|later| later.offer.advice.what == one.offer.advice.what));
+    }
+    [could_reopen, reopened]
+}
+
 /// The steadiness of offers as text for the terminal.
 pub fn describe(found: &OfferSteadinessSummary) -> String {
     let seconds = |value: Option<f64>| value.map_or("-".to_string(), |s| format!("{s:.1} s"));
-    let percent = |value: Option<f64>| value.map_or("-".to_string(), |share| format!("{:.1} %", 100.0 * share));
     let mut text = format!(
         "{} in {}\nstood {} in the median, {} at least (raw recommendations: {} in the median)\n",
         count(found.offers.all.n, "offer", "offers"),
@@ -256,4 +267,26 @@ pub fn describe(found: &OfferSteadinessSummary) -> String {
         percent(found.share_at_or_below_0),
         found.open_s,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::communication::offer::{OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication};
+
+    /// An offer of one signal that stands for 2 s from `opened_s` on and is outdone by another one.
+    fn offer(opened_s: f64, used: Option<OfferUse>) -> TimedOffer {
+        let what = OfferedCommunication::Signal(Signal::Highlight("counter".to_string()));
+        let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
+        let offer = Offer { seq: 2, opened: SessionTime::from_secs_f64(opened_s), advice, used };
+        let reason = Some(OfferCloseReason::Replaced);
+        TimedOffer { offer, opened_s, stood_s: Some(2.0), reason, sent: used.map(|used| used.at), reaction_s: None }
+    }
+
+    #[test]
+    fn an_offer_that_was_used_just_after_its_close_is_none_that_could_reopen() {
+        let used = OfferUse { how: OfferKeyKind::Taken, at: SessionTime::from_secs_f64(3.0) };
+        assert_eq!(reopenings(&[offer(0.0, None), offer(4.0, None)]), [2, 1]);
+        assert_eq!(reopenings(&[offer(0.0, Some(used)), offer(4.0, None)]), [1, 0]);
+    }
 }

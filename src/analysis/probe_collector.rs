@@ -45,7 +45,6 @@ impl ProbeCollector {
         self.seen.note(session, &stamped.event, change);
         match &stamped.event {
             Event::ParticipantBelieves(witness) => self.belief = Some((stamped.time, witness.clone())),
-            Event::TrialPaused => self.seen.interrupted(),
             Event::Probe(event) => self.probe(stamped.time, event, follower),
             _ => {}
         }
@@ -58,7 +57,6 @@ impl ProbeCollector {
         match event {
             ProbeEvent::Begun { probe, origin, uses_estimate, questions } => {
                 self.begun += 1;
-                self.seen.interrupted();
                 let drawn: Vec<ProbedQuestion> = (1..)
                     .zip(questions)
                     .map(|(number, question)| ProbedQuestion {

@@ -6,6 +6,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{KitchenChange, LocationId, State};
+use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Session};
 
 /// What was seen and what was present at one location so far.
@@ -40,6 +41,10 @@ impl LastSeenContents {
             }
             return;
         }
+        // A pause and a freeze probe interrupt looks.
+        if matches!(event, Event::TrialPaused | Event::Probe(ProbeEvent::Begun { .. })) {
+            self.looks.interrupted();
+        }
         let is_own = change.human_press().is_some();
         let is_seen = |sample: &GazeSample| sample.confidence >= MIN_CONFIDENCE && !session.is_frozen();
         let is_look = matches!(event, Event::Gaze(sample) if is_seen(sample));
@@ -65,11 +70,6 @@ impl LastSeenContents {
         if is_own {
             location.seen = after.code(place);
         }
-    }
-
-    /// Ends all looks at locations, which a pause of the trial interrupts.
-    pub fn interrupted(&mut self) {
-        self.looks.interrupted();
     }
 
     /// Whether somebody else changed a location since the participant last looked at it or changed it.

@@ -3,6 +3,7 @@
 mod calibration;
 mod capture;
 mod formats;
+mod last_seen;
 mod quality;
 mod rate;
 mod tags;

@@ -42,6 +42,8 @@ pub struct ParticleSet {
     shown: State,
     /// Time up to which forgetting of recipes has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
+    /// Time at which the task was frozen for a probe, as long as it stands still.
+    frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
     /// Signals of the trial, as far as they take time to be read.
@@ -71,6 +73,7 @@ impl ParticleSet {
             unseen,
             shown,
             forgot,
+            frozen: None,
             proposed,
             signals,
             lapses,
@@ -98,6 +101,7 @@ impl ParticleSet {
 
     /// Lets the human of every belief look, as the human's next press needs, in the time of unknown gaze up to `now`.
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
+        let now = self.frozen.unwrap_or(now);
         if self.forgot.is_some() {
             let seconds = self.presence.pass(now);
             self.look_unseen(seconds, now, cost, random);
@@ -148,7 +152,18 @@ impl ParticleSet {
     /// Updates every belief with an event. Returns for each belief the likelihood of the human's press, or of the
     /// human's waiting; 1 for other events.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
-        let now = observation.time;
+        let now = self.frozen.unwrap_or(observation.time);
+        match observation.what {
+            ObservedEvidence::Frozen => {
+                self.frozen = Some(now);
+                return vec![1.0; self.of.len()];
+            }
+            ObservedEvidence::Thawed { by, asked, teaches } => {
+                self.thaw(by, (asked, teaches), random);
+                return vec![1.0; self.of.len()];
+            }
+            _ => {}
+        }
         if let ObservedEvidence::Gaze { sample, taken } = observation.what {
             if self.forgot.is_some() {
                 self.gaze(&sample, taken, cost, random);
@@ -171,6 +186,7 @@ impl ParticleSet {
         match observation.what {
             ObservedEvidence::Started { state } => self.start(now, state, self.of.len(), random),
             ObservedEvidence::Gaze { .. } | ObservedEvidence::DisplayInView(_) | ObservedEvidence::Proposed(_) => {}
+            ObservedEvidence::Frozen | ObservedEvidence::Thawed { .. } => {}
             ObservedEvidence::Pressed(press) => {
                 let weights = match press.agent {
                     Agent::Human => Some(self.human_pressed(press.button, press.effective, cost, random)),
@@ -193,11 +209,10 @@ impl ParticleSet {
             ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
             ObservedEvidence::Told { location } => self.told(now, location, random),
             ObservedEvidence::EndedSignal => self.end_signal(),
-            ObservedEvidence::Paused | ObservedEvidence::Frozen => self.forgot = None,
-            ObservedEvidence::Resumed => self.go_on(now),
-            ObservedEvidence::Thawed { asked, teaches, .. } => {
-                self.go_on(now);
-                plausible_looks::asked(&self.kitchen, &self.model, &mut self.of, (asked, self.shown), teaches, random);
+            ObservedEvidence::Paused => self.forgot = None,
+            ObservedEvidence::Resumed => {
+                self.forgot = Some(now);
+                self.presence.rest(now);
             }
         }
         vec![1.0; self.of.len()]
@@ -220,9 +235,18 @@ impl ParticleSet {
         DirichletBelief { aspects: (0..self.kitchen.aspects.len()).map(of_aspect).collect() }
     }
 
-    fn go_on(&mut self, now: SessionTime) {
-        self.forgot = Some(now);
-        self.presence.rest(now);
+    /// Continues after a freeze probe of this duration: every stored time moves on by it, and the humans look at the
+    /// locations that the probe asked about, a bit set, with the probability `teaches`.
+    fn thaw(&mut self, by: SessionTime, (asked, teaches): (u32, f64), random: &mut Stream) {
+        self.frozen = None;
+        self.forgot = self.forgot.map(|at| at + by);
+        self.presence.postpone(by);
+        self.sight.postpone(by);
+        self.signals.postpone(by);
+        if teaches > 0.0 {
+            self.unseen = None;
+            plausible_looks::asked(&self.kitchen, &self.model, &mut self.of, (asked, self.shown), teaches, random);
+        }
     }
 
     fn show(&mut self, now: SessionTime, state: State) {
@@ -314,17 +338,11 @@ impl ParticleSet {
         {
             aspects.push(kitchen.aspect_of_dish(dish));
         }
-        if self.model.signal.takes_time() {
-            let read = self.share_with_signal(&vec![1.0; self.of.len()]);
-            self.of.iter_mut().for_each(|person| person.read_signal = false);
-            return self.signals.show(&kitchen, &self.model, now, (location, aspects), read);
-        }
-        for person in &mut self.of {
-            for &aspect in &aspects {
-                if random.random::<f64>() < self.model.signal.noticed {
-                    person.settle(aspect, kitchen.true_value(self.shown, aspect));
-                }
-            }
+        let read = self.share_with_signal(&vec![1.0; self.of.len()]);
+        self.of.iter_mut().for_each(|person| person.read_signal = false);
+        self.signals.show(&kitchen, &self.model, now, (location, aspects), read);
+        if !self.model.signal.takes_time() {
+            self.signals.read_at_once(&kitchen, &self.model, &mut self.of, self.shown, random);
         }
     }
 

@@ -38,6 +38,12 @@ impl LookTracker {
         self.shown.push((now, state));
     }
 
+    /// Moves all times on by a duration for which the task stood still.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.shown.iter_mut().for_each(|(since, _)| *since = *since + by);
+        self.looks.iter_mut().for_each(|(_, last)| *last = *last + by);
+    }
+
     /// The effect at each location of a gaze sample taken at session time `taken`, during which the gaze is known for
     /// `known_s` seconds.
     pub fn glances(

@@ -55,6 +55,27 @@ impl ReferenceSignalHistory {
         }
     }
 
+    /// Moves the signal's beginning on by a duration for which the task stood still.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.shown.iter_mut().for_each(|shown| shown.since = shown.since + by);
+    }
+
+    /// Lets the human of every belief notice the signal, or not, where signals take no time to be read. Such signals
+    /// teach nothing about how often this person notices signals.
+    pub fn read_at_once(
+        &mut self,
+        kitchen: &Kitchen,
+        model: &HumanModel,
+        people: &mut [Particle],
+        state: State,
+        random: &mut Stream,
+    ) {
+        if let Some(shown) = self.shown.take() {
+            shown.read(kitchen, model, people, shown.noticed, state, random);
+            people.iter_mut().for_each(|person| person.read_signal = false);
+        }
+    }
+
     /// Lets every belief read the signal in a gaze sample whose gaze is known for `known_s` seconds.
     pub fn look(
         &self,

@@ -8,6 +8,7 @@ mod exact;
 mod fitting;
 mod fitting_answers;
 mod fitting_people;
+mod freezes;
 mod grid;
 mod laws;
 mod observed;

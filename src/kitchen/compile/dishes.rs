@@ -67,6 +67,7 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Co
             set.sort_unstable();
             contents.iter().position(|content| content.items == set).map(|index| ContentId(index as u8))
         };
+        // Each set has one item of every slot, so it is a stack.
         let variants: Vec<ContentId> = sets.into_iter().filter_map(find).collect();
         if dishes.iter().any(|other| other.name == *dish.name.get_ref() || other.variants[0] == variants[0]) {
             let found = format!("the dish \"{}\" a second time", dish.name.get_ref());
@@ -96,7 +97,14 @@ fn variants(
             DeviationCombinationRule::All => sets.clone(),
         };
         for start in starts {
-            for item in items.find_all(&vary.items)? {
+            for (item, name) in items.find_all(&vary.items)?.into_iter().zip(&vary.items) {
+                let stackable = &spec.slot[slot].items;
+                if !stackable.iter().any(|other| other.get_ref() == name.get_ref()) {
+                    let found = format!("\"{}\" in the slot \"{}\"", name.get_ref(), vary.slot.get_ref());
+                    let of_slot: Vec<&str> = stackable.iter().map(|item| item.get_ref().as_str()).collect();
+                    let remedy = format!("an item of that [[slot]]: {}", of_slot.join(", "));
+                    return Err(wrong(KitchenFileKind::Recipes, name.span(), found, remedy));
+                }
                 let mut set = start.clone();
                 set[slot] = item;
                 if !sets.contains(&set) {

@@ -33,6 +33,8 @@ pub struct Content {
     pub wording: String,
     /// The items in the content, in the order of the recipe file; one for a single item, none for "empty".
     pub items: Vec<ContentId>,
+    /// Whether the content is a stack that is a dish of the menu, and has the dish's name.
+    pub is_dish: bool,
     /// The ingredient of a single item, as an index into the recipe file's list; `None` for a stack.
     pub ingredient: Option<usize>,
     /// The contents that look similar: the same content with one ingredient replaced by a look-alike.

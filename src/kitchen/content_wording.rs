@@ -29,8 +29,7 @@ impl KitchenWords {
     pub fn content(&self, language: &str, content: &Content, contents: &[Content]) -> String {
         let words = self.in_language(language);
         let word = |name: &str| words.get(name).map_or(name, String::as_str).to_string();
-        // A stack that is a dish of the menu has the dish's name.
-        match content.items.len() > 1 && content.name.contains(" + ") {
+        match content.is_stack() && !content.is_dish {
             true => {
                 let items = content.items.iter().map(|item| word(&contents[item.index()].name));
                 items.collect::<Vec<_>>().join(" + ")

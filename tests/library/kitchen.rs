@@ -314,6 +314,17 @@ fn contents_are_worded_by_default_and_as_the_recipe_file_says_while_names_stay()
 }
 
 #[test]
+fn a_dish_is_called_by_its_name_also_where_that_looks_like_a_stack() {
+    let read = |path: &str| std::fs::read_to_string(path).expect("a file of the project");
+    let recipes = read("recipes/sushi.toml").replace("crab maki", "crab + maki");
+    let kitchen = Kitchen::from_toml(&read("layouts/sushi.toml"), &recipes).expect("a kitchen");
+    assert_eq!(kitchen.worded("crab + maki"), "crab + maki");
+    let stack = kitchen.content(kitchen.content_named("crab + maki").expect("a stack"));
+    assert!(stack.is_dish && stack.wording == "crab + maki", "{stack:?}");
+    assert_eq!(kitchen.worded("rice cooked + nori"), "cooked rice + nori");
+}
+
+#[test]
 fn words_are_shown_and_names_are_recorded() {
     let kitchen = load("layouts/sushi.toml");
     for aspect in &kitchen.aspects {

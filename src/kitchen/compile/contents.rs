@@ -126,14 +126,23 @@ fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<Content
 
 fn content(set: &[ContentId], items: &IngredientItems, dish_names: &[(Vec<ContentId>, String)]) -> Content {
     let names: Vec<&str> = set.iter().map(|item| items.names[item.index() - 1].as_str()).collect();
-    let name = match dish_names.iter().find(|(stack, _)| stack == set) {
+    let dish = dish_names.iter().find(|(stack, _)| stack == set);
+    let name = match dish {
         Some((_, dish)) => dish.clone(),
         None if set.is_empty() => "empty".to_string(),
         None => names.join(" + "),
     };
     let ingredient = (set.len() == 1).then(|| items.ingredient[set[0].index() - 1]);
     let wording = name.clone();
-    Content { name, wording, items: set.to_vec(), ingredient, look_alikes: Vec::new(), look: None }
+    Content {
+        name,
+        wording,
+        items: set.to_vec(),
+        is_dish: dish.is_some(),
+        ingredient,
+        look_alikes: Vec::new(),
+        look: None,
+    }
 }
 
 pub(super) fn dish_names(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<(Vec<ContentId>, String)>> {

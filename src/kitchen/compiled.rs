@@ -167,6 +167,18 @@ impl Kitchen {
         buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
     }
 
+    /// Codes of the contents that look like the content with this code at a location or, at an order, of the dishes that
+    /// look like the ordered one.
+    pub fn look_alike_codes(&self, location: LocationId, code: u8) -> Vec<u8> {
+        if self.location(location).kind != LocationKind::Order {
+            return self.content(ContentId(code)).look_alikes.iter().map(|alike| alike.0).collect();
+        }
+        let OrderContent::Dish(dish) = OrderContent::from_code(code) else { return Vec::new() };
+        let alike = &self.content(self.dish(dish).stack()).look_alikes;
+        let dishes = self.dishes.iter().enumerate().filter(|(_, other)| alike.contains(&other.stack()));
+        dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
+    }
+
     /// Index of the true value of a state aspect; 0 if the location holds a content that is not allowed there.
     pub fn true_value(&self, state: State, aspect: AspectId) -> usize {
         let aspect = &self.aspects[aspect.index()];

@@ -148,7 +148,7 @@ impl SimulatedParticipant {
         let believed = self.beliefs.most_likely(aspect);
         let values = &kitchen.aspects[aspect.index()];
         let Some(shown) = values.index_of(state.code(location)) else { return };
-        let alike = look_alike_codes(&kitchen, location, state);
+        let alike = kitchen.look_alike_codes(location, state.code(location));
         let alike: Vec<usize> = alike.into_iter().filter_map(|code| values.index_of(code)).collect();
         let mut seen = shown;
         for other in alike {
@@ -231,17 +231,6 @@ impl SimulatedParticipant {
         let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
     }
-}
-
-/// Codes of the contents that look similar to the true content of a location.
-fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Vec<u8> {
-    if kitchen.location(location).kind != LocationKind::Order {
-        return kitchen.content(state.content(location)).look_alikes.iter().map(|alike| alike.0).collect();
-    }
-    let OrderContent::Dish(dish) = state.order(location) else { return Vec::new() };
-    let alike = &kitchen.content(kitchen.dish(dish).stack()).look_alikes;
-    let dishes = kitchen.dishes.iter().enumerate().filter(|(_, other)| alike.contains(&other.stack()));
-    dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
 }
 
 /// Whether `content` can become part of the dish `stack`: of a stacked content all items must occur in the dish, of a

@@ -7,13 +7,12 @@
 //! and `survived` the probability that it has not been read since. The weight of m0 in the present belief is 1 - unread
 //! (1 - survived); the remaining weight is on the content that was read. Each sample moves a further share of m0 to
 //! that content. Mean and second moment are exact.
-//! that content. Mean and second moment are exact.
 
 use std::collections::VecDeque;
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::{LocationReadingRate, PerceptionModel};
 
@@ -143,7 +142,8 @@ impl GazeBeliefUpdate {
 /// Probabilities of reading each value of a location's aspect, given that `value` is displayed there.
 fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
     let aspect = &kitchen.aspects[location.index()];
-    let alike: Vec<usize> = look_alike_codes(kitchen, location, aspect.values[value])
+    let alike: Vec<usize> = kitchen
+        .look_alike_codes(location, aspect.values[value])
         .into_iter()
         .filter_map(|code| aspect.index_of(code))
         .collect();
@@ -158,15 +158,4 @@ fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, v
         _ => each_other,
     };
     (0..aspect.values.len()).map(chance).collect()
-}
-
-/// Codes of the contents that look like a content or, at an order, of the dishes that look like the ordered one.
-fn look_alike_codes(kitchen: &Kitchen, location: LocationId, code: u8) -> Vec<u8> {
-    if kitchen.location(location).kind != LocationKind::Order {
-        return kitchen.content(ContentId(code)).look_alikes.iter().map(|alike| alike.0).collect();
-    }
-    let OrderContent::Dish(dish) = OrderContent::from_code(code) else { return Vec::new() };
-    let alike = &kitchen.content(kitchen.dish(dish).stack()).look_alikes;
-    let dishes = kitchen.dishes.iter().enumerate().filter(|(_, other)| alike.contains(&other.stack()));
-    dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
 }

@@ -17,9 +17,12 @@ use tomcom::edge::lsl::{LslError, load};
 use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::session::answer_value::AnswerValue;
+use tomcom::session::probes::ProbeEvent;
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 use tomcom::session::tracker::TrackerEvent;
+use tomcom::session::tutorial::TutorialEvent;
+use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 
 /// Name of the recording.
@@ -92,7 +95,9 @@ fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
             let left_out = found.as_object_mut().and_then(|fields| fields.remove("left_out")).unwrap_or(json!([]));
             let mut event = (*event).clone();
             for field in left_out.as_array().into_iter().flatten().filter_map(Value::as_str) {
-                event.as_object_mut().and_then(|fields| fields.remove(field)).expect("a field of the log");
+                let removed = event.as_object_mut().and_then(|fields| fields.remove(field));
+                // Whether somebody was unsure of a probe's question is left out, too: then the log has no such field.
+                assert!(removed.is_some() || event["what"] == "answered", "{field} is no field of {event}");
             }
             assert_eq!(found, event, "{name}");
             assert_eq!((sample.time.0, code.time.0), (event["t_ns"].as_u64().unwrap_or(0), sample.time.0));
@@ -135,6 +140,7 @@ fn what_people_typed_and_names_of_devices_are_not_sent() {
             "protocol/item_answered/age",
             "answer",
         ),
+        (Event::Probe(ProbeEvent::Skipped { probe: 1, reason: secret.clone() }), "probe/skipped", "reason"),
         (
             Event::Protocol(ProtocolEvent::CriterionWaived { reason: secret.clone() }),
             "protocol/criterion_waived",
@@ -148,6 +154,27 @@ fn what_people_typed_and_names_of_devices_are_not_sent() {
         let told: Value = serde_json::from_str(&text).expect("JSON");
         assert!(!text.contains(&secret), "{text}");
         assert_eq!((&told["left_out"], &told["seq"]), (&json!([field]), &json!(7)));
+    }
+}
+
+#[test]
+fn answers_to_probes_and_in_the_tutorial_are_not_sent_nor_whether_somebody_was_unsure() {
+    let answered = |answer: Option<&str>, confidence| {
+        let (answer, on) = (answer.map(str::to_string), AnswerDevice::Display);
+        Event::Probe(ProbeEvent::Answered { probe: 1, question: 2, answer, confidence, on })
+    };
+    let chosen = |choice| {
+        let event = TutorialEvent::Answered { step: "recipes".to_string(), choice };
+        Event::Protocol(ProtocolEvent::Tutorial(event))
+    };
+    for (one, other, fields) in [
+        (answered(Some("rice raw"), Some(3)), answered(None, None), json!(["answer", "confidence"])),
+        (chosen(1), chosen(2), json!(["choice"])),
+    ] {
+        let [one, other] = [one, other].map(|event| event_text(&stamped(event)));
+        assert_eq!(one, other);
+        let told: Value = serde_json::from_str(&one).expect("JSON");
+        assert_eq!(told["left_out"], fields);
     }
 }
 

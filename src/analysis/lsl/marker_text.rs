@@ -7,6 +7,7 @@ use crate::session::event::Event;
 use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
+use crate::session::tutorial::TutorialEvent;
 
 /// Names of the log's fields whose values become parts of an event's code, in this order.
 const PARTS: [&str; 14] = [
@@ -73,6 +74,8 @@ fn private_fields(event: &Event) -> &'static [&'static str] {
         Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
         Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
         Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
+        Event::Probe(ProbeEvent::Answered { .. }) => &["answer", "confidence"],
+        Event::Protocol(ProtocolEvent::Tutorial(TutorialEvent::Answered { .. })) => &["choice"],
         Event::Protocol(ProtocolEvent::CriterionWaived { .. }) | Event::Probe(ProbeEvent::Skipped { .. }) => {
             &["reason"]
         }

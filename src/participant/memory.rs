@@ -1,8 +1,6 @@
 //! Memory of recipes in a simulated participant: learned in the instruction, fading without use, recalled (rightly or
 //! wrongly) for an order, and doubted after unexpected events.
 
-use rand::RngExt;
-
 use super::population::{ParticipantTraits, Population, normal, rare_chance};
 use super::true_beliefs::ParticipantBeliefs;
 use super::weighted_draw::drawn_by_weight;
@@ -138,14 +136,10 @@ impl RecipeMemory {
     /// Recalls one version of an ordered dish's recipe, in which the participant then believes.
     pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         let aspect = kitchen.aspect_of_dish(dish);
-        let mut draw = self.random.random::<f64>();
-        let values = beliefs.distribution(aspect);
-        let recalled = values.iter().position(|p| {
-            draw -= p;
-            draw < 0.0
-        });
+        let versions = beliefs.distribution(aspect);
+        let recalled = drawn_by_weight(&mut self.random, versions).unwrap_or(versions.len() - 1);
         let sure = RECALLED_CERTAINTY.max(beliefs.certainty(aspect).min(CONFIRMED_CERTAINTY));
-        beliefs.settle(aspect, recalled.unwrap_or(0), sure);
+        beliefs.settle(aspect, recalled, sure);
     }
 
     /// Lets the participant lose the thread while working on an order: the recipe is recalled again from a partly faded

@@ -102,7 +102,8 @@ pub struct Population {
     pub slip: TraitSpread,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
-    /// Probability that a press is thoughtless: effective but useless.
+    /// Probability that a press is thoughtless: any of the presses that would be effective as the participant believes,
+    /// which may be the intended one.
     pub thoughtless: TraitSpread,
     /// Probability that the participant notices an own slip.
     pub notices_slip: f64,
@@ -277,7 +278,7 @@ pub struct ParticipantTraits {
     pub slip: f64,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: f64,
-    /// Probability that a press is thoughtless: effective but useless.
+    /// Probability that a press is thoughtless: any press that seems effective.
     pub thoughtless: f64,
     /// Probability that the participant looks at a location right before using it.
     pub checks: f64,

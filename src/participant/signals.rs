@@ -1,8 +1,8 @@
 //! The effect of signals on the simulated participant, who may notice and read a signal; reading costs time and
 //! attention.
+//!
 //! The values of these effects come from the literature on glances and interruptions and were fixed before any
 //! condition with signals was simulated:
-//! was simulated:
 //!
 //! - Reading takes a glance, during which the participant sees and presses nothing else: 0.5 to 1.5 s, as people
 //!   allocate to single glances at displays beside a primary task (Green 1998, "Visual and Task Demands of Driver

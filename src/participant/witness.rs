@@ -112,8 +112,8 @@ impl PressReason {
     }
 }
 
-/// State aspects with false beliefs, in the order of the layout; an order and the believed recipes of the dishes that
-/// it may want are one target.
+/// State aspects with false beliefs, in the order of the layout; an order and the recipe of the dish that it truly wants
+/// are one target.
 fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<AspectId>> {
     let is_wrong = |aspect: &AspectId| code_of(kitchen, believed, *aspect) != code_of(kitchen, truth, *aspect);
     let mut left: Vec<AspectId> =

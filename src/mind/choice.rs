@@ -56,6 +56,8 @@ pub struct ChoiceModel {
     slips_from: Vec<Vec<(usize, f64)>>,
     /// Probability that a press slips to one given button, whichever button is intended.
     anywhere: f64,
+    /// Probability that a press slips to the neighbour of the intended button or, respectively, to its look-alike.
+    slipping: f64,
     /// `[n][k]`: exp(-tau k / n), the weight of a button whose cost to go, summed over n draws, exceeds that of the
     /// best button by k presses.
     weights: Vec<Vec<f64>>,
@@ -77,7 +79,7 @@ impl ChoiceModel {
             all.map(|(from, times)| (from, slipping * times as f64)).collect()
         };
         let slips_from = (0..slips_to.len()).map(of_button).collect();
-        ChoiceModel { parameters: parameters.clone(), slips_from, slips_to, anywhere, weights: Vec::new() }
+        ChoiceModel { parameters: parameters.clone(), slips_from, slips_to, anywhere, slipping, weights: Vec::new() }
     }
 
     /// The choice model for beliefs represented by exactly `draws` drawn worlds. Softmax weights are not truncated.
@@ -131,28 +133,41 @@ impl ChoiceModel {
     /// Probability that each button is pressed, from the probability that each button is intended: applies slips.
     fn with_slips(&self, intended: &[f64]) -> Vec<f64> {
         let lapse = self.parameters.lapse;
-        let [anywhere, slipping] = self.parameters.slip_probabilities(intended.len());
-        let mut pressed: Vec<f64> = intended.iter().map(|p| (1.0 - lapse) * p + anywhere).collect();
+        let mut pressed: Vec<f64> = intended.iter().map(|p| (1.0 - lapse) * p + self.anywhere).collect();
         for (to, p) in self.slips_to.iter().zip(intended) {
             for button in to {
-                pressed[button.index()] += slipping * p;
+                pressed[button.index()] += self.slipping * p;
             }
         }
         pressed
+    }
+
+    /// The tabulated softmax weights for the number of draws of [`ChoiceModel::for_draws`].
+    #[inline]
+    fn draws_row(&self) -> &[f64] {
+        self.weights.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// Probabilities of the slips that hit a button while another one is intended, each times the weight of the
+    /// intended button.
+    #[inline]
+    fn slips_to_button<'a>(
+        &'a self,
+        button: usize,
+        weight: &'a impl Fn(usize) -> f64,
+    ) -> impl Iterator<Item = f64> + 'a {
+        self.slips_from[button].iter().map(|&(from, chance)| chance * weight(from))
     }
 
     /// Likelihood p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses,
     /// summed over the drawn worlds that represent the belief b. Needs a model from [`ChoiceModel::for_draws`].
     #[inline]
     pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
-        let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
-        let least = sums.iter().copied().min().unwrap_or(0);
-        let weight = |sum: u32| weights.get((sum - least) as usize).copied().unwrap_or(0.0);
-        let total: f64 = sums.iter().map(|&sum| weight(sum)).sum();
-        let slipped = |&(from, chance): &(usize, f64)| chance * weight(sums[from]);
-        let slips = self.slips_from[button.index()].iter().map(slipped);
-        let intended = (1.0 - self.parameters.lapse) * weight(sums[button.index()]);
-        let pressed = slips.fold(intended, |pressed, slipped| pressed + slipped);
+        let weight = relative_weights(self.draws_row(), sums, fewest(sums));
+        let total: f64 = (0..sums.len()).map(&weight).sum();
+        let intended = (1.0 - self.parameters.lapse) * weight(button.index());
+        let pressed =
+            self.slips_to_button(button.index(), &weight).fold(intended, |pressed, slipped| pressed + slipped);
         pressed / total + self.anywhere
     }
 
@@ -160,14 +175,11 @@ impl ChoiceModel {
     /// That likelihood is the sum of the two parts weighted by the lapse.
     #[inline]
     pub fn press_parts(&self, sums: &[u32], button: ButtonId) -> PressParts {
-        let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
-        let least = sums.iter().copied().min().unwrap_or(0);
-        let weight = |sum: u32| weights.get((sum - least) as usize).copied().unwrap_or(0.0);
-        let total: f64 = sums.iter().map(|&sum| weight(sum)).sum();
-        let slips: f64 =
-            self.slips_from[button.index()].iter().map(|&(from, chance)| chance * weight(sums[from])).sum();
+        let weight = relative_weights(self.draws_row(), sums, fewest(sums));
+        let total: f64 = (0..sums.len()).map(&weight).sum();
+        let slips: f64 = self.slips_to_button(button.index(), &weight).sum();
         let slipped = (slips / total + self.anywhere) / self.parameters.lapse;
-        PressParts { chosen: weight(sums[button.index()]) / total, slipped }
+        PressParts { chosen: weight(button.index()) / total, slipped }
     }
 
     /// Likelihood p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the
@@ -181,17 +193,12 @@ impl ChoiceModel {
     /// p(a | b) of every button, given that a button is pressed, from the same sums as
     /// [`ChoiceModel::press_likelihood`].
     pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
-        let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
-        let least = sums.iter().copied().min().unwrap_or(0);
-        let mut intended = [0.0; MAX_BUTTONS];
-        for (weight, &sum) in intended.iter_mut().zip(sums) {
-            *weight = weights.get((sum - least) as usize).copied().unwrap_or(0.0);
-        }
-        let total: f64 = intended.iter().sum();
+        let (intended, total) = all_weights(self.draws_row(), sums, fewest(sums));
+        let weight = |button: usize| intended[button];
         let mut pressed = [0.0; MAX_BUTTONS];
-        for (button, from) in self.slips_from.iter().enumerate() {
-            let slipped: f64 = from.iter().map(|&(from, chance)| chance * intended[from]).sum();
-            pressed[button] = ((1.0 - self.parameters.lapse) * intended[button] + slipped) / total + self.anywhere;
+        for (button, pressed) in pressed.iter_mut().enumerate().take(self.buttons()) {
+            let slipped: f64 = self.slips_to_button(button, &weight).sum();
+            *pressed = ((1.0 - self.parameters.lapse) * weight(button) + slipped) / total + self.anywhere;
         }
         pressed
     }
@@ -201,14 +208,8 @@ impl ChoiceModel {
     /// this number of draws.
     #[inline]
     pub fn weights(&self, here: u32, sums: &[u32], draws: u32) -> ChoiceWeights {
-        let least = sums.iter().copied().min().unwrap_or(0);
-        let row = &self.weights[draws as usize];
-        let mut press = [0.0; MAX_BUTTONS];
-        let mut total = 0.0;
-        for (weight, &sum) in press.iter_mut().zip(sums) {
-            *weight = row.get((sum - least) as usize).copied().unwrap_or(0.0);
-            total += *weight;
-        }
+        let least = fewest(sums);
+        let (press, total) = all_weights(&self.weights[draws as usize], sums, least);
         let gain = (f64::from(least) - f64::from(here)) / f64::from(draws) + 1.0 - self.parameters.wait_cost;
         let wait = (self.parameters.tau * gain).min(f64::MAX.ln() / 2.0).exp();
         ChoiceWeights { wait, press, total }
@@ -247,4 +248,30 @@ impl ChoiceModel {
         let [next, alike] = self.slips_to[button.index()];
         HumanChoice::Press(if at < (1.0 + anywhere) / 2.0 { next } else { alike })
     }
+}
+
+/// The smallest of the costs to go after the buttons, summed over draws.
+#[inline]
+fn fewest(sums: &[u32]) -> u32 {
+    sums.iter().copied().min().unwrap_or(0)
+}
+
+/// The softmax weight of each button, by its index, relative to the best button. `sums` are the costs to go after the
+/// buttons, summed over draws, `least` is the smallest of them, and `row` is the table of weights for the number of
+/// draws; weights beyond it are 0.
+#[inline]
+fn relative_weights<'a>(row: &'a [f64], sums: &'a [u32], least: u32) -> impl Fn(usize) -> f64 + 'a {
+    move |button| row.get((sums[button] - least) as usize).copied().unwrap_or(0.0)
+}
+
+/// The softmax weights of all buttons as in [`relative_weights`], and their sum.
+#[inline]
+fn all_weights(row: &[f64], sums: &[u32], least: u32) -> ([f64; MAX_BUTTONS], f64) {
+    let weight = relative_weights(row, sums, least);
+    let (mut weights, mut total) = ([0.0; MAX_BUTTONS], 0.0);
+    for (button, own) in weights.iter_mut().enumerate().take(sums.len()) {
+        *own = weight(button);
+        total += *own;
+    }
+    (weights, total)
 }

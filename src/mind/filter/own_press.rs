@@ -28,8 +28,8 @@ fn restrict(dirichlet: &Dirichlet, keep: impl Fn(usize) -> bool, becomes: impl F
     }
 }
 
-/// Updates the estimate by a press whose effect depends on one location; returns whether the press is of this kind.
-pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: ButtonAction, effective: bool) -> bool {
+/// Updates the estimate by a press whose effect depends on one location; other presses change nothing here.
+pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: ButtonAction, effective: bool) {
     let hand = AspectId::of_location(kitchen.hands[Agent::Human.index()]);
     let empty = value_of(kitchen, hand, ContentId::EMPTY);
     match action {
@@ -62,9 +62,8 @@ pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: Butt
                 |value| result(value).unwrap_or(value),
             );
         }
-        ButtonAction::Use(_) | ButtonAction::Serve(_) => return false,
+        ButtonAction::Use(_) | ButtonAction::Serve(_) => {}
     }
-    true
 }
 
 fn value_of(kitchen: &Kitchen, aspect: AspectId, content: ContentId) -> usize {

@@ -7,6 +7,7 @@
 
 use ratatui::layout::Rect;
 
+use super::view::regions::top;
 use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
 use crate::session::Session;
 use crate::session::settings::ParticipantKind;
@@ -108,9 +109,9 @@ impl KitchenMap {
         // An order takes one line on small screens, else separate lines for name, dish and recipe.
         let strip_rows = if cells.height >= 18 { 4 } else { 1 };
         let (strip_cells, body_cells) = match above {
-            true => split_rows(cells, strip_rows),
+            true => top(cells, strip_rows),
             false => {
-                let (body, strip) = split_rows(cells, cells.height.saturating_sub(strip_rows));
+                let (body, strip) = top(cells, cells.height.saturating_sub(strip_rows));
                 (strip, body)
             }
         };
@@ -126,7 +127,7 @@ impl KitchenMap {
 
     /// Arranges kitchen elements in columns with common rows, below the line that names the agents' zones.
     fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> KitchenMap {
-        let (line, cells) = split_rows(cells, 1);
+        let (line, cells) = top(cells, 1);
         let columns = clusters(items, 0);
         let is_store = |column: &[&Item]| column.iter().all(|item| matches!(item.thing, KitchenMapElement::Storage(_)));
         let in_rows: Vec<&Item> = columns.iter().filter(|c| !is_store(c)).flatten().copied().collect();
@@ -274,24 +275,14 @@ fn is_order(kitchen: &Kitchen, thing: KitchenMapElement) -> bool {
     matches!(thing, KitchenMapElement::Location(id) if kitchen.location(id).kind == LocationKind::Order)
 }
 
-fn split_rows(cells: Rect, rows: u16) -> (Rect, Rect) {
-    let rows = rows.min(cells.height);
-    (Rect { height: rows, ..cells }, Rect { y: cells.y + rows, height: cells.height - rows, ..cells })
-}
-
-fn extent(item: &Item, axis: usize) -> [f64; 2] {
-    let area = item.area;
-    if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
-}
-
 /// Groups of kitchen elements whose extents along an axis overlap, in the order of the axis.
 fn clusters<'a>(items: &[&'a Item], axis: usize) -> Vec<Vec<&'a Item>> {
     let mut sorted = items.to_vec();
-    sorted.sort_by(|a, b| extent(a, axis)[0].total_cmp(&extent(b, axis)[0]));
+    sorted.sort_by(|a, b| extent_of(a.area, axis)[0].total_cmp(&extent_of(b.area, axis)[0]));
     let mut groups: Vec<Vec<&Item>> = Vec::new();
     let mut end = f64::NEG_INFINITY;
     for item in sorted {
-        let [low, high] = extent(item, axis);
+        let [low, high] = extent_of(item.area, axis);
         match groups.last_mut() {
             Some(group) if low < end => group.push(item),
             _ => groups.push(vec![item]),
@@ -310,8 +301,9 @@ fn clusters_forced<'a>(items: &[&'a Item]) -> Vec<Vec<&'a Item>> {
 
 /// Bounds of a group of kitchen elements along an axis: the middles of the gaps to the neighbouring groups.
 fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f64; 2] {
-    let low = |group: &[&Item]| group.iter().map(|item| extent(item, axis)[0]).fold(f64::INFINITY, f64::min);
-    let high = |group: &[&Item]| group.iter().map(|item| extent(item, axis)[1]).fold(f64::NEG_INFINITY, f64::max);
+    let low = |group: &[&Item]| group.iter().map(|item| extent_of(item.area, axis)[0]).fold(f64::INFINITY, f64::min);
+    let high =
+        |group: &[&Item]| group.iter().map(|item| extent_of(item.area, axis)[1]).fold(f64::NEG_INFINITY, f64::max);
     let from = if index == 0 { whole[0] } else { (high(&groups[index - 1]) + low(&groups[index])) / 2.0 };
     let to = match groups.get(index + 1) {
         Some(next) => (high(&groups[index]) + low(next)) / 2.0,
@@ -410,6 +402,7 @@ fn cover(mut spots: Vec<KitchenMapBox>) -> Vec<KitchenMapBox> {
     spots
 }
 
+/// Least and largest coordinate of an area along an axis (0: x, 1: y).
 fn extent_of(area: DisplayArea, axis: usize) -> [f64; 2] {
     if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
 }

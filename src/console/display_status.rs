@@ -72,7 +72,7 @@ impl ParticipantDisplayHealth {
         };
         let wrong = match self.malformed + self.refused {
             0 => String::new(),
-            _ => format!(", {} messages malformed, {} messages refused", self.malformed, self.refused),
+            _ => format!(", {} messages malformed, {} connections rejected", self.malformed, self.refused),
         };
         let upright = if self.upright { " upright" } else { "" };
         let found = format!("{width}x{height}{upright}{trip}{others}{wrong}");

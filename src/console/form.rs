@@ -9,7 +9,7 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::probe_keys;
-use super::sending::send;
+use super::sending::{refuse, send};
 use super::sheet_key::SheetKey;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
@@ -272,9 +272,4 @@ pub(super) fn leave(model: &mut ConsoleModel, session: &Session) -> Option<Conso
 
 fn tell(model: &mut ConsoleModel, session: &Session, event: ProtocolEvent) -> Option<ConsoleCommand> {
     send(model, session, Event::Protocol(event), NoticeLevel::Done, "")
-}
-
-fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
-    model.say(NoticeLevel::Refused, reason);
-    None
 }

@@ -14,7 +14,7 @@ pub enum AccuracyCheckAction {
 }
 
 impl AccuracyCheckAction {
-    /// The proposed action for a measured gaze accuracy; `None` if the check measured none.
+    /// The proposed action for a measured gaze accuracy; without a measured accuracy, to repeat the check.
     pub fn for_result(found: Option<&GazeAccuracy>) -> AccuracyCheckAction {
         match found {
             Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => AccuracyCheckAction::Repeat,

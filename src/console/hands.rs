@@ -7,7 +7,7 @@ use super::key_action::ManualAction;
 use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::picker::{Picker, PickerAnswer, PickerOutcome, PickerQuestion};
-use super::sending::send;
+use super::sending::{refuse, send};
 use crate::communication::Sender;
 use crate::history::wording;
 use crate::kitchen::Agent;
@@ -96,17 +96,17 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
     }
 }
 
+/// Whether the trial may be repeated, since it was aborted or excluded.
+pub(super) fn can_redo(session: &Session) -> bool {
+    matches!(session.phase, TrialPhase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
+}
+
 fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match session.phase {
-        TrialPhase::Over(_) if session.aborted.is_some() || session.excluded.is_some() => Some(ConsoleCommand::Redo),
+        _ if can_redo(session) => Some(ConsoleCommand::Redo),
         TrialPhase::Over(_) => refuse(model, "only an aborted or excluded trial can be repeated"),
         _ => refuse(model, "abort the trial before you repeat it"),
     }
-}
-
-fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
-    model.say(NoticeLevel::Refused, reason);
-    None
 }
 
 fn ask(model: &mut ConsoleModel, question: PickerQuestion) -> Option<ConsoleCommand> {

@@ -4,7 +4,7 @@ use super::beliefs::{beliefs, visibility};
 use super::compared::ComparisonAction;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
-use super::hands::skippable;
+use super::hands::{can_redo, skippable};
 use super::held_keys::is_right_after_list;
 use super::key_action::{KeyAction, ManualAction, RaterAction, ViewAction};
 use super::playback::{Playback, ReplayAction, SPEEDS};
@@ -52,11 +52,6 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
                 | KeyAction::ResumeRobot
                 | KeyAction::Hand(ManualAction::Calibrate)
         )
-}
-
-/// Whether the trial may be repeated, since it was aborted or excluded.
-pub(super) fn can_redo(session: &Session) -> bool {
-    matches!(session.phase, TrialPhase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
 }
 
 /// Whether the open dialog or sheet lets the key of an action through.

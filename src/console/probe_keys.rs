@@ -5,7 +5,7 @@ use crossterm::event::KeyCode;
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
-use super::sending::send;
+use super::sending::{refuse, send};
 use super::sheet_key::SheetKey;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, StartedProbe};
 use crate::session::settings::ParticipantKind;
@@ -137,10 +137,5 @@ pub(super) fn write(
         SheetKey::Leave | SheetKey::Skip | SheetKey::Letter(_) => {}
     }
     model.probe_entry = entry;
-    None
-}
-
-fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
-    model.say(NoticeLevel::Refused, reason);
     None
 }

@@ -21,14 +21,19 @@ pub(super) fn send(
     words: &str,
 ) -> Option<ConsoleCommand> {
     if let Some(reason) = refusal(session, model.now, &event) {
-        model.say(NoticeLevel::Refused, reason);
-        return None;
+        return refuse(model, &reason);
     }
     match words {
         "" => model.notice = None,
         words => model.say(level, words),
     }
     Some(ConsoleCommand::Input(event))
+}
+
+/// Tells the wizard why a key has no effect now.
+pub(super) fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
+    model.say(NoticeLevel::Refused, reason);
+    None
 }
 
 /// Releases the robot after a stop.

@@ -366,7 +366,8 @@ pub fn below_title(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(1) }
 }
 
-fn top(area: Rect, rows: u16) -> (Rect, Rect) {
+/// Splits off the top rows of an area, at most all of them: the rows, and the rest.
+pub(in crate::console) fn top(area: Rect, rows: u16) -> (Rect, Rect) {
     let rows = rows.min(area.height);
     (Rect { height: rows, ..area }, Rect { y: area.y + rows, height: area.height - rows, ..area })
 }

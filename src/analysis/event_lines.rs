@@ -23,8 +23,9 @@ use crate::session::{Event, TimestampedEvent, TrialPhase};
 /// Heading above the text lines of events.
 pub const HEADING: &str = " trial time  what happened";
 
-/// The text line for an event that was just applied, with the time on the trial's clock; `None` for gaze samples and
-/// arm motion.
+/// The text line for an event that was just applied, with the time on the trial's clock; `None` for events without a
+/// line: gaze samples, fixations, blinks, drawn signals, arm motion, estimates without a probable false belief, changes
+/// between normal and reduced speed, and recommendations of no communication.
 pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
     let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {
@@ -103,7 +104,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::ParticipantBelieves(belief) => believes(kitchen, belief),
         Event::SessionEnded => "session over".to_string(),
     };
-    // Control characters are removed: notes and names of devices can contain them, and they would disturb the terminal.
+    // Control characters are escaped: notes and names of devices can contain them, and they would disturb the terminal.
     let (words, session) = (printable(&words), &follower.session);
     Some(match session.phase {
         TrialPhase::Ready => format!("{:>11}  {words}", "before"),

@@ -32,7 +32,7 @@ pub struct ParameterSweepRow {
     pub spared_error: Option<f64>,
     /// Mean number of errors in an error sequence; null without sequences.
     pub mean_sequence_length: Option<f64>,
-    /// Presses of both agents per served order; null if no order was served.
+    /// Median over served orders of the number of presses of both agents since the previously served order; null if no order was served.
     pub presses_per_order: Option<f64>,
     /// Errors that follow from false beliefs, per 100 presses of the human; null if the participants' beliefs are not
     /// known.

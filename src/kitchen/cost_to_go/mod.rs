@@ -3,7 +3,7 @@
 //! The cost to go is computed backwards from the goal. The tables of `journeys` give, for every part of the dishes to
 //! be served (targets), the number of presses to the board from every place and for every combination of free hands and
 //! places. An `assign::Assignment` chooses which item becomes which part, which gives a lower bound. A
-//! `plan::PressPlan` executes the assignment press by press and clears obstacles, which gives an upper bound. Where the
+//! `partial_plan::PressPlan` executes the assignment press by press and clears obstacles, which gives an upper bound. Where the
 //! bounds differ, a bounded `search` over single presses decides. Values are cached by state classes (see `goal`: all
 //! useless contents are one class), whole decisions by state. A value depends on the state and the recipes only, never
 //! on earlier requests.

@@ -137,7 +137,7 @@ impl<'a> BestFirstSearch<'a> {
     /// Runs the search, which stops once a solution reaches `lower`; returns the best solution's length.
     fn best(mut self, start: &CompactState, lower: u32) -> u32 {
         let rating = RankedAssignments::new(&self.costs.ground, self.goal, start);
-        self.fidelity(start, rating, 0, lower);
+        self.rate_plan(start, rating, 0, lower);
         // The presses that a plan settles first are nearly always right: therefore the start state itself is expanded
         // last among states with equal bounds.
         self.keep(lower, LAST, 0, start);
@@ -148,7 +148,7 @@ impl<'a> BestFirstSearch<'a> {
             }
             if next.gap == UNSEEN {
                 let rating = RankedAssignments::new(&self.costs.ground, self.goal, &next.state);
-                self.fidelity(&next.state, rating, next.presses, next.bound);
+                self.rate_plan(&next.state, rating, next.presses, next.bound);
                 continue;
             }
             expansions += 1;
@@ -215,11 +215,11 @@ impl<'a> BestFirstSearch<'a> {
             return self.keep(lower, UNSEEN, presses, state);
         }
         let rating = rating.unwrap_or_else(|| RankedAssignments::new(&self.costs.ground, self.goal, state));
-        self.fidelity(state, rating, presses, bound);
+        self.rate_plan(state, rating, presses, bound);
     }
 
     /// Computes the plan of a state, from the state after all presses that are certainly optimal.
-    fn fidelity(&mut self, state: &CompactState, mut rating: RankedAssignments, presses: u32, bound: u32) {
+    fn rate_plan(&mut self, state: &CompactState, mut rating: RankedAssignments, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
         let (settling, settled, served) = plan.settle();

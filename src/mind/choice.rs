@@ -156,7 +156,7 @@ impl ChoiceModel {
         button: usize,
         weight: &'a impl Fn(usize) -> f64,
     ) -> impl Iterator<Item = f64> + 'a {
-        self.slips_from[button].iter().map(|&(from, chance)| chance * weight(from))
+        self.slips_from[button].iter().map(move |&(from, chance)| chance * weight(from))
     }
 
     /// Likelihood p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses,

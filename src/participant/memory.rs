@@ -3,7 +3,8 @@
 
 use rand::RngExt;
 
-use super::population::{ParticipantTraits, Population, normal, rare_chance};
+use super::draws::{normal, rare_chance};
+use super::population::{ParticipantTraits, Population};
 use super::true_beliefs::ParticipantBeliefs;
 use super::weighted_draw::drawn_by_weight;
 use crate::base::rng::Stream;

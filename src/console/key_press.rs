@@ -23,7 +23,8 @@ use super::preflight;
 use super::probe_keys;
 use super::sending::send;
 use super::sheet_key::SheetKey;
-use super::view::dialog::{help_pages, report_rest};
+use super::view::dialog::report_rest;
+use super::view::help::help_pages;
 use crate::session::event::TrialEndReason;
 use crate::session::{Event, Session, TrialPhase};
 
@@ -58,6 +59,8 @@ pub(super) fn press(
         model.dialog = None;
     }
     match action {
+        // A trial goes on by itself after a freeze probe, even while a note is typed.
+        Some(KeyAction::StopRobot) if session.is_running() => stop_robot(model, session),
         // In text input, where the robot stands, the space bar types a space instead of stopping it.
         _ if let Some(Dialog::Note(line)) = &model.dialog => {
             let line = line.clone();
@@ -133,13 +136,14 @@ fn choose(
     mut cursor: ListCursor,
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
-    let left = palette::actions(&model.keys, model.layer, &cursor);
+    let left = palette::actions(model, &cursor);
     let reply = cursor.key(left.len(), code);
     let chosen = left.get(cursor.at).filter(|_| reply == ListReply::Taken);
     let chosen = chosen.and_then(|line| Some((line.action.clone(), *line.chords.first()?, line.help.clone())));
     model.dialog = Some(Dialog::Palette(cursor)).filter(|_| reply == ListReply::Open);
     let (action, chord, help) = chosen?;
     model.answered = Some(model.clock);
+    palette::remember(model, &action);
     match action {
         KeyAction::Signal(..) | KeyAction::Accept => {
             model.say(NoticeLevel::Done, format!("press {chord} to {help}: signals are not sent from a list"));
@@ -154,7 +158,7 @@ fn choose(
 fn may_leave_for_quit(model: &ConsoleModel) -> bool {
     matches!(
         model.dialog,
-        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help | Dialog::Difference(_))
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help(_) | Dialog::Difference(_))
     )
 }
 
@@ -214,7 +218,7 @@ fn answer(
     touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     let dialog = model.dialog.clone()?;
-    if let (Dialog::Help, Some(KeyAction::Look(look))) = (&dialog, &action)
+    if let (Dialog::Help(_), Some(KeyAction::Look(look))) = (&dialog, &action)
         && *look != ViewAction::All
         && help_pages(model) > 0
     {

@@ -62,15 +62,8 @@ pub(super) fn press(
         // A trial goes on by itself after a freeze probe, even while a note is typed.
         Some(KeyAction::StopRobot) if session.is_running() => stop_robot(model, session),
         // In text input, where the robot stands, the space bar types a space instead of stopping it.
-        _ if let Some(Dialog::Note(line)) = &model.dialog => {
-            let line = line.clone();
-            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == KeyPressKind::Press);
-            if counts { hands::write(model, session, line, code) } else { None }
-        }
-        _ if let Some(Dialog::Answer(line)) = &model.dialog => {
-            let line = line.clone();
-            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == KeyPressKind::Press);
-            if counts { form::type_answer(model, session, line, code) } else { None }
+        _ if matches!(model.dialog, Some(Dialog::Note(_) | Dialog::Answer(_))) => {
+            in_text(model, session, (code, chord), touch)
         }
         Some(KeyAction::StopRobot) => stop_robot(model, session),
         Some(KeyAction::Quit) if chord.ctrl && touch == KeyPressKind::Press && may_leave_for_quit(model) => {
@@ -107,6 +100,23 @@ pub(super) fn press(
             unknown(model, session, chord);
             None
         }
+    }
+}
+
+/// Handles a key of an open text input. Keys with ctrl and a held enter key do not count.
+fn in_text(
+    model: &mut ConsoleModel,
+    session: &Session,
+    (code, chord): (KeyCode, KeyChord),
+    touch: KeyPressKind,
+) -> Option<ConsoleCommand> {
+    if chord.ctrl || (code == KeyCode::Enter && touch != KeyPressKind::Press) {
+        return None;
+    }
+    match model.dialog.clone() {
+        Some(Dialog::Note(line)) => hands::write(model, session, line, code),
+        Some(Dialog::Answer(line)) => form::type_answer(model, session, line, code),
+        _ => None,
     }
 }
 

@@ -137,9 +137,9 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
             model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "repeat the trial".to_string())),
         );
     }
+    keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
     let note = KeyAction::Hand(ManualAction::NoteInWords);
     keys.extend(model.keys.chord_for(&note).map(|key| (key, "type note".to_string())));
-    keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
 }
 

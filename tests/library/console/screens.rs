@@ -99,7 +99,7 @@ fn only_the_place_of_the_latest_gaze_sample_is_looked_at_now() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = WizardVisibility::State;
     let kitchen = stage.session.kitchen.clone();
-    // Half a second at one place, then at the next one.
+    // A quarter of a second at one place, then at the next one.
     for (index, location) in kitchen.locations.iter().take(4).enumerate() {
         let [x, y] = location.display.centre();
         stage.look(23.0 + 0.25 * index as f64, x, y);

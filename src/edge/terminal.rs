@@ -103,7 +103,7 @@ impl TerminalScreen {
     }
 
     /// Sets up the screen of a terminal in raw mode.
-    fn set_up(frames: FrameWriter) -> io::Result<TerminalScreen> {
+    fn set_up(frames: Arc<FrameWriter>) -> io::Result<TerminalScreen> {
         let ground = ground().unwrap_or(TerminalBackground::Dark);
         frames.show(way_in()?);
         let composed = ComposedFrame::default();

@@ -86,8 +86,9 @@ impl TrainingShell {
             opened: now,
             at: now,
         };
-        // At position 1 the trial has started; the replay is paused until the wizard begins.
-        shell.film.wind(1);
+        // The replay is paused at the start of the trial until the wizard begins.
+        shell.film.wind(shell.film.trial_start());
+        shell.now = shell.film.session.time;
         Ok(shell)
     }
 

@@ -150,7 +150,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
     Ok(AppliedEvent { effects, change })
 }
 
-/// Checks sequence number, time and precondition of an event.
+/// Checks time and precondition of an event. Whoever reads a log checks the sequence number.
 fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
     if stamped.time < session.time {
         return Err(ApplyError {
@@ -351,8 +351,8 @@ fn press(
     }
     if press.effective {
         update(session, now, |state| *state = press.after);
-        if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =
-            (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, press.before))
+        if let ButtonAction::Serve(order) = kitchen.button(agent, button).action
+            && let OrderContent::Dish(dish) = press.before.order(order)
         {
             let presses = session.all_presses();
             session.served.push(ServedOrder { time: now, dish, presses });
@@ -369,12 +369,4 @@ fn press(
         effects.push(SessionEffect::At { time: now, timer: Timer::EndTrialByPresses });
     }
     KitchenChange::Press { press, presses: session.presses }
-}
-
-/// The order that a press of a serve button served, given the state before the press.
-fn served_dish(action: &ButtonAction, before: State) -> OrderContent {
-    match action {
-        ButtonAction::Serve(order) => before.order(*order),
-        _ => OrderContent::None,
-    }
 }

@@ -21,7 +21,6 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::communication::settings::ShadowMode;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::layout::LayoutSpec;
 use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::measures::JudgedPress;
@@ -30,6 +29,7 @@ use tomcom::measures::sequences::{sequences, sequences_any_aspect};
 use tomcom::participant::population::Population;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
+use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::parallel::WorkerPool;
 use tomcom::session::SessionSpec;
 use tomcom::session::plan::Study;
@@ -176,9 +176,9 @@ impl Setting {
         self.spec.participant.population.clone().unwrap_or_default()
     }
 
-    /// A whole study of this population: every participant with every condition. The caches of `cost` serve one trial
+    /// A whole study of this population: every participant with every condition. The caches of `kept` serve one trial
     /// after the other.
-    fn study(&self, cost: &mut Option<CostToGo>, population: &Population, seed: u64) -> Result<Rates, &'static str> {
+    fn study(&self, kept: &mut KeptCost, population: &Population, seed: u64) -> Result<Rates, &'static str> {
         let mut spec = self.spec.clone();
         (spec.seed, spec.participant.population) = (seed, Some(population.clone()));
         let study = Study::new(&spec, Vec::new(), None, self.texts.each_ref().map(String::as_str))
@@ -187,11 +187,11 @@ impl Setting {
         for participant in 0..study.plan.codes().len() {
             for period in 1..=study.plan.conditions.len() as u32 {
                 let (spec, trial) = study.simulated(participant, period);
-                let own = cost.take().unwrap_or_else(|| CostToGo::new(self.kitchen.clone()));
-                let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, own);
+                let cost = kept.take(&self.kitchen);
+                let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, cost);
                 headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
                 rates.add(&engine);
-                *cost = Some(engine.into_follower().cost);
+                kept.keep(&self.kitchen, engine.into_follower().cost);
             }
         }
         Ok(rates)
@@ -205,16 +205,15 @@ impl Setting {
         seeds: &[u64],
         mut tell: impl FnMut(usize, &[Rates]) -> Result<(), Box<dyn Error>>,
     ) -> Result<(), Box<dyn Error>> {
-        let workers = WorkerPool::new(|| None);
+        let workers = WorkerPool::new(KeptCost::default);
         // As many populations are simulated together as are needed to give every processor a study.
         let at_once = rayon::current_num_threads().div_ceil(seeds.len());
         for first in (0..populations.len()).step_by(at_once) {
             let block = first..populations.len().min(first + at_once);
             let items: Vec<(usize, u64)> =
                 block.clone().flat_map(|number| seeds.iter().map(move |&seed| (number, seed))).collect();
-            let one = |cost: &mut Option<CostToGo>, &(number, seed): &(usize, u64)| {
-                self.study(cost, &populations[number], seed)
-            };
+            let one =
+                |kept: &mut KeptCost, &(number, seed): &(usize, u64)| self.study(kept, &populations[number], seed);
             let found = workers.each(&items, one, || ()).into_iter().collect::<Result<Vec<Rates>, _>>()?;
             for (number, studies) in block.zip(found.chunks(seeds.len())) {
                 tell(number, studies)?;

@@ -29,7 +29,7 @@ impl ListedError {
     pub fn all(follower: &SessionFollower) -> Vec<ListedError> {
         let session = &follower.session;
         let presses = session.timeline.iter().filter_map(|entry| match entry.what {
-            TimelineEvent::Press { agent: Agent::Human, button, no_effect } => Some((button, no_effect.is_none())),
+            TimelineEvent::Press { agent: Agent::Human, button, no_effect, .. } => Some((button, no_effect.is_none())),
             _ => None,
         });
         // The judged presses and the human's presses on the timeline are the same presses in the same order.

@@ -187,11 +187,10 @@ impl SessionFollower {
                 let (state, belief) = (self.session.state, self.belief_at(stamped.time));
                 self.probed = Some(ProbedEstimate { probe, state, belief });
             }
-            Event::Probe(ProbeEvent::Ended { .. }) => {
-                let begun = self.session.probes.over.last().map_or(stamped.time, |over| over.begun);
-                self.judge.postpone(stamped.time - begun);
-            }
             _ => {}
+        }
+        if let Some(pause) = self.session.probe_pause(stamped) {
+            self.judge.postpone(pause);
         }
         self.estimate(stamped, &applied.change);
         self.watch_gaze(&stamped.event);

@@ -64,12 +64,12 @@ impl WizardTrainingSummary {
 }
 
 /// The record of a false belief episode before any signal of the wizard about that false belief was judged.
-pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> HarmfulFalseBelief {
+pub fn unheard(session: &Session, period: &FalseBeliefPeriod) -> HarmfulFalseBelief {
     HarmfulFalseBelief {
-        aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
-        began_ns: spell.began,
-        corrected_ns: spell.corrected.map(|(end, _)| end),
-        errors: spell.errors,
+        aspect: session.kitchen.aspects[period.aspect.index()].name.clone(),
+        began_ns: period.began,
+        corrected_ns: period.corrected.map(|(end, _)| end),
+        errors: period.errors,
         believed: String::new(),
         truth: String::new(),
         words: String::new(),

@@ -89,13 +89,13 @@ impl WizardLog {
     /// Summary of the wizard's performance in a session that has been followed to its end.
     pub fn figures(&self, follower: &SessionFollower) -> WizardSummary {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
-        let measures = WizardMeasures::from_signals(&sent, spells(follower).as_deref());
+        let measures = WizardMeasures::from_signals(&sent, false_belief_periods(follower).as_deref());
         WizardSummary { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
     }
 }
 
 /// Periods of false belief on the trial's clock; `None` where the participant's beliefs are not known.
-pub fn spells(follower: &SessionFollower) -> Option<Vec<FalseBeliefPeriod>> {
+pub fn false_belief_periods(follower: &SessionFollower) -> Option<Vec<FalseBeliefPeriod>> {
     let known = follower.session.spec.participant.kind == ParticipantKind::Simulated
         && follower.judged.iter().all(|press| press.belief_known);
     known.then(|| periods(follower, follower.episodes.all()))

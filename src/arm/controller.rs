@@ -33,8 +33,8 @@ const BLOCKED_S: f64 = 4.0;
 const FREE_S: f64 = 0.25;
 /// Tracking error of a joint, in radians, and number of cycles with such an error, above which the joint counts as
 /// faulty.
-const ASTRAY_RAD: f64 = 0.05;
-const ASTRAY_CYCLES: u32 = 3;
+const DEVIATION_RAD: f64 = 0.05;
+const DEVIATION_CYCLES: u32 = 3;
 /// Longest time to wait for the click of a button that the arm pushes down, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
 /// The arm counts as standing still if all joints are slower than this, in radians per second.
@@ -86,7 +86,7 @@ pub struct ArmController {
     waited_s: f64,
     /// Time without a hand in the arm's way, in seconds.
     free_s: f64,
-    astray: u32,
+    deviating_cycles: u32,
     touch: ContactTracker,
 }
 
@@ -105,7 +105,7 @@ impl ArmController {
         let world = PhysicsWorld::new(&arm, &here, &places, around.table_m);
         let mode = SafetyMode::default();
         let (way, since_s, rate) = (VecDeque::new(), 0.0, 0.0);
-        let (goal, may_press, halts, watches_hands, waited_s, astray) = (None, false, false, true, 0.0, 0);
+        let (goal, may_press, halts, watches_hands, waited_s, deviating_cycles) = (None, false, false, true, 0.0, 0);
         ArmController {
             arm,
             world,
@@ -123,7 +123,7 @@ impl ArmController {
             watches_hands,
             waited_s,
             free_s: 0.0,
-            astray,
+            deviating_cycles,
             touch: ContactTracker::default(),
         }
     }
@@ -218,7 +218,7 @@ impl ArmController {
     pub fn resume(&mut self) {
         if self.mode.is_stopped() {
             self.mode = SafetyMode::Normal;
-            (self.astray, self.rate) = (0, 0.0);
+            (self.deviating_cycles, self.rate) = (0, 0.0);
             self.here = self.world.joints().0;
             self.give_up();
         }
@@ -363,7 +363,7 @@ impl ArmController {
             self.stop(SafetyMode::ProtectiveStop);
             return Some(PressFailure::Contact(felt.human_n));
         }
-        if let Some(joint) = self.joint_astray() {
+        if let Some(joint) = self.deviating_joint() {
             self.stop(SafetyMode::Fault);
             // The brakes hold the arm in its present pose.
             self.here = self.world.joints().0;
@@ -388,11 +388,11 @@ impl ArmController {
     }
 
     /// The joint whose tracking error has been too large for too many cycles; `None` if there is no such joint.
-    fn joint_astray(&mut self) -> Option<usize> {
+    fn deviating_joint(&mut self) -> Option<usize> {
         let (angles, _) = self.world.joints();
         let off = |joint: &usize| (angles[*joint] - self.here[*joint]).abs();
         let worst = (0..JOINTS).max_by(|one, two| off(one).total_cmp(&off(two)))?;
-        self.astray = if off(&worst) > ASTRAY_RAD { self.astray + 1 } else { 0 };
-        (self.astray >= ASTRAY_CYCLES).then_some(worst)
+        self.deviating_cycles = if off(&worst) > DEVIATION_RAD { self.deviating_cycles + 1 } else { 0 };
+        (self.deviating_cycles >= DEVIATION_CYCLES).then_some(worst)
     }
 }

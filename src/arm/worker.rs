@@ -87,7 +87,7 @@ impl RobotTaskExecutor {
         };
         let moves = match (&self.body, self.busy) {
             (Some(body), _) => body.next_due(!self.waits()),
-            (None, Some(errand)) => (!self.held || errand.driven).then_some(errand.until),
+            (None, Some(ongoing)) => (!self.held || ongoing.driven).then_some(ongoing.until),
             (None, None) => None,
         };
         again.into_iter().chain(moves).min()
@@ -95,7 +95,7 @@ impl RobotTaskExecutor {
 
     /// Whether the wizard holds the arm above the button of the present press.
     fn waits(&self) -> bool {
-        self.held && self.busy.is_none_or(|errand| !errand.driven)
+        self.held && self.busy.is_none_or(|ongoing| !ongoing.driven)
     }
 
     /// Starts the press that the wizard chose; otherwise decides on a press if the arm is free and the state changed
@@ -155,29 +155,29 @@ impl RobotTaskExecutor {
     pub fn act(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, now: SessionTime, state: State) -> Vec<RobotEvent> {
         let may_press = !self.waits();
         let Some(body) = &mut self.body else { return self.touch(kitchen, cost, state).into_iter().collect() };
-        let mut deeds = Vec::new();
+        let mut events = Vec::new();
         if let Some((button, why)) = body.go_on() {
-            deeds.extend(self.go_without(now, button, why));
-            return deeds;
+            events.extend(self.go_without(now, button, why));
+            return events;
         }
-        if let Some(errand) = self.busy.filter(|_| body.asks(may_press, state)) {
-            match is_useful(kitchen, cost, state, errand) {
+        if let Some(ongoing) = self.busy.filter(|_| body.asks(may_press, state)) {
+            match is_useful(kitchen, cost, state, ongoing) {
                 true => body.go_for_it(may_press, state),
                 false => {
                     body.give_up();
                     self.busy = None;
-                    deeds.push(RobotEvent::Abort(errand.button, AbortReason::NoLongerUseful));
+                    events.push(RobotEvent::Abort(ongoing.button, AbortReason::NoLongerUseful));
                 }
             }
         }
         let cycle = body.cycle(now);
-        deeds.extend(cycle.news);
+        events.extend(cycle.news);
         if let Some(button) = cycle.clicked {
             self.busy = None;
-            deeds.push(RobotEvent::Press(button));
+            events.push(RobotEvent::Press(button));
         }
-        deeds.extend(cycle.report.and_then(|report| self.follow(now, report)));
-        deeds
+        events.extend(cycle.report.and_then(|report| self.follow(now, report)));
+        events
     }
 
     /// Handles a failed press, and returns the robot activity to record, if there is one.
@@ -214,28 +214,28 @@ impl RobotTaskExecutor {
     /// Lets the timed arm touch the button. The arm presses if the press is still among the best presses or the wizard
     /// chose the press; otherwise the arm abandons the press.
     fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotEvent> {
-        let errand = self.busy.take()?;
-        match is_useful(kitchen, cost, state, errand) {
-            true => Some(RobotEvent::Press(errand.button)),
-            false => Some(RobotEvent::Abort(errand.button, AbortReason::NoLongerUseful)),
+        let ongoing = self.busy.take()?;
+        match is_useful(kitchen, cost, state, ongoing) {
+            true => Some(RobotEvent::Press(ongoing.button)),
+            false => Some(RobotEvent::Abort(ongoing.button, AbortReason::NoLongerUseful)),
         }
     }
 
     /// Reacts to a change of the state without a press: a press that is no longer useful is abandoned at once.
     pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotEvent> {
-        let errand = self.busy?;
-        match is_useful(kitchen, cost, state, errand) {
+        let ongoing = self.busy?;
+        match is_useful(kitchen, cost, state, ongoing) {
             true => None,
             false => self.give_up(AbortReason::NoLongerUseful),
         }
     }
 
     fn give_up(&mut self, reason: AbortReason) -> Option<RobotEvent> {
-        let errand = self.busy.take()?;
+        let ongoing = self.busy.take()?;
         if let Some(body) = &mut self.body {
             body.give_up();
         }
-        Some(RobotEvent::Abort(errand.button, reason))
+        Some(RobotEvent::Abort(ongoing.button, reason))
     }
 
     /// Stops the robot at the wizard's command; the present press is abandoned.
@@ -254,9 +254,9 @@ impl RobotTaskExecutor {
     /// Skips the present press at the wizard's command. The robot does not choose the skipped press again for a while;
     /// an earlier skipped press becomes available again.
     pub fn skip(&mut self, now: SessionTime) -> Option<RobotEvent> {
-        let errand = self.busy?;
+        let ongoing = self.busy?;
         self.skipped.clear();
-        self.leave_out(now, errand.button);
+        self.leave_out(now, ongoing.button);
         self.give_up(AbortReason::Skipped)
     }
 
@@ -297,8 +297,8 @@ impl RobotTaskExecutor {
 
     /// Shifts all pending times of the robot and its arm by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
-        if let Some(errand) = &mut self.busy {
-            errand.until = errand.until + by;
+        if let Some(ongoing) = &mut self.busy {
+            ongoing.until = ongoing.until + by;
         }
         for (_, until) in &mut self.skipped {
             *until = *until + by;
@@ -310,8 +310,8 @@ impl RobotTaskExecutor {
 }
 
 /// Whether a press of the robot is among the best presses, or the wizard chose the press.
-fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: OngoingPress) -> bool {
+fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, ongoing: OngoingPress) -> bool {
     let best =
         |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Exact, state, &kitchen.true_recipes());
-    errand.driven || best(cost).contains(&errand.button)
+    ongoing.driven || best(cost).contains(&ongoing.button)
 }

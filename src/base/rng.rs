@@ -2,7 +2,7 @@
 //! of the program therefore never changes the draws of another part, and trial k does not depend on the number of
 //! trials.
 
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 pub use rand_chacha::ChaCha8Rng as Stream;
 
 /// The random stream called `name` of the run with this `seed`; `index` tells trials, rollouts or participants apart.
@@ -12,6 +12,14 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
         key = mix(key ^ u64::from(byte));
     }
     Stream::seed_from_u64(mix(key ^ mix(index)))
+}
+
+/// Shuffles a list, so that all orders are equally likely (Fisher and Yates). The draws are part of what a seed means:
+/// another order of drawing would change the recordings of every seed.
+pub fn shuffle<T>(list: &mut [T], random: &mut Stream) {
+    for last in (1..list.len()).rev() {
+        list.swap(last, random.random_range(0..=last));
+    }
 }
 
 /// The random seed for everything that depends on this trial of the run alone.
@@ -30,7 +38,6 @@ pub fn mix(value: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::RngExt;
 
     #[test]
     fn streams_repeat_and_differ_by_name_seed_and_index() {
@@ -41,5 +48,12 @@ mod tests {
         assert_ne!(draw(7, "robot", 0), draw(7, "orders", 0));
         assert_ne!(of_trial(7, 0), of_trial(7, 1));
         assert_ne!(of_trial(7, 0), of_trial(8, 0));
+    }
+
+    #[test]
+    fn a_seed_shuffles_a_list_always_into_the_same_order() {
+        let mut list: Vec<u8> = (0..8).collect();
+        shuffle(&mut list, &mut stream(7, "shuffle", 0));
+        assert_eq!(list, [0; 8]);
     }
 }

@@ -48,7 +48,7 @@ struct Future {
     person: Particle,
     /// The button to which the robot's arm is moving, the time of arrival in seconds, and whether the robot makes the
     /// press in any case.
-    errand: Option<(ButtonId, f64, bool)>,
+    robot_press: Option<(ButtonId, f64, bool)>,
     now_s: f64,
     presses: u32,
     /// The state aspects of the signal, and the time at which the human reads it; `None` once it is read.
@@ -124,11 +124,11 @@ impl ReferencePlanner {
         for &aspect in situation.changed.iter().filter(|_| sees) {
             person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
         }
-        let errand = match situation.robot {
+        let robot_press = match situation.robot {
             RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        let mut future = Future { state: situation.state, person, errand, now_s: 0.0, presses: 0, signal };
+        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, signal };
         future.read_by(&self.kitchen, 0.0);
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
@@ -148,16 +148,18 @@ impl ReferencePlanner {
     fn robot_until(&self, cost: &mut CostToGo, future: &mut Future, until_s: f64, press_s: f64, random: &mut Stream) {
         let (kitchen, recipes) = (&self.kitchen, self.kitchen.true_recipes());
         loop {
-            if future.errand.is_none() {
+            if future.robot_press.is_none() {
                 let choices = policy::choices(kitchen, cost, Fidelity::Exact, future.state, &recipes);
                 if !choices.is_empty() {
                     let button = choices[random.random_range(0..choices.len())];
-                    future.errand = Some((button, future.now_s + press_s, false));
+                    future.robot_press = Some((button, future.now_s + press_s, false));
                 }
             }
-            let Some((button, due_s, driven)) = future.errand.filter(|(_, due_s, _)| *due_s <= until_s) else { return };
+            let Some((button, due_s, driven)) = future.robot_press.filter(|(_, due_s, _)| *due_s <= until_s) else {
+                return;
+            };
             future.read_by(kitchen, due_s);
-            (future.now_s, future.errand) = (due_s, None);
+            (future.now_s, future.robot_press) = (due_s, None);
             if driven || policy::best_presses(kitchen, cost, Fidelity::Exact, future.state, &recipes).contains(&button)
             {
                 let before = future.state;
@@ -183,16 +185,16 @@ impl ReferencePlanner {
         let draw = random.random::<f64>();
         let glances: Vec<f64> = kitchen.locations.iter().map(|_| random.random()).collect();
         future.see(kitchen, |place| glances[place.index()] < other_looks);
-        let mut deed = self.deed(cost, &future.person, draw, random);
-        if let Some(button) = deed {
+        let mut chosen = self.chosen_press(cost, &future.person, draw, random);
+        if let Some(button) = chosen {
             let places = kitchen.watched(button).into_iter();
             let seen: Vec<LocationId> = places.filter(|place| glances[place.index()] < looks).collect();
             future.see(kitchen, |place| seen.contains(&place));
             if !seen.is_empty() {
-                deed = self.deed(cost, &future.person, draw, random);
+                chosen = self.chosen_press(cost, &future.person, draw, random);
             }
         }
-        let Some(button) = deed else { return };
+        let Some(button) = chosen else { return };
         let before = future.state;
         let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
         // A human whose belief is contradicted by the effect of the press looks at the locations involved.
@@ -208,7 +210,7 @@ impl ReferencePlanner {
     }
 
     /// The human's action for a uniform random number `draw`: `None` for waiting, or a press, slips included.
-    fn deed(&self, cost: &mut CostToGo, person: &Particle, draw: f64, random: &mut Stream) -> Option<ButtonId> {
+    fn chosen_press(&self, cost: &mut CostToGo, person: &Particle, draw: f64, random: &mut Stream) -> Option<ButtonId> {
         let (kitchen, decision) = (&self.kitchen, &self.human.decision);
         let (here, after) = person.prospects(kitchen, cost, self.spec.rollout.states, random);
         let least = after.iter().copied().fold(f64::INFINITY, f64::min);

@@ -7,19 +7,13 @@
 
 use ratatui::layout::Rect;
 
+use super::map_items::{
+    Item, KitchenMapElement, MIN_CARD, clusters, clusters_forced, ends, extent, is_order, items, owner, widths,
+};
 use super::view::regions::top;
-use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
+use crate::kitchen::{Agent, DisplayArea, Kitchen};
 use crate::session::Session;
 use crate::session::settings::ParticipantKind;
-
-/// An element of the kitchen map: a location or an ingredient storage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KitchenMapElement {
-    /// Location of the kitchen, such as a hand, a board or an order.
-    Location(LocationId),
-    /// Ingredient storage, as an index into [`Kitchen::storages`].
-    Storage(usize),
-}
 
 /// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]
@@ -57,14 +51,6 @@ pub struct KitchenMap {
 #[derive(Clone, Copy, Debug)]
 struct Bounds([[f64; 2]; 2]);
 
-struct Item {
-    thing: KitchenMapElement,
-    area: DisplayArea,
-    owner: Option<Agent>,
-    min_columns: u16,
-}
-
-const MIN_CARD: u16 = 12;
 const MAX_ORDER: u16 = 44;
 /// Columns beside the name of the participant's hand: for rule and gap, and for a key with its space where the hand has
 /// a key.
@@ -238,116 +224,10 @@ fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64
     }
 }
 
-fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
-    let location = |(index, location): (usize, &crate::kitchen::Location)| {
-        let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
-        let thing = KitchenMapElement::Location(LocationId(index as u8));
-        // Columns beside a location's name for rule, key and gap (the participant's hand seldom has a key); orders
-        // stand in a strip of their own.
-        let beside = match location.kind {
-            LocationKind::Hand(Agent::Human) => own_hand + u16::from(with_keys),
-            // Without the gap, there is room for the keys of the storage.
-            _ if with_keys => 4,
-            _ => 5,
-        };
-        let min_columns = (location.label().chars().count() as u16 + beside).max(MIN_CARD);
-        Item { thing, area: location.display, owner, min_columns }
-    };
-    let storage = |(index, storage): (usize, &crate::kitchen::IngredientStorage)| Item {
-        thing: KitchenMapElement::Storage(index),
-        area: storage.display,
-        owner: Some(storage.agent),
-        // Columns for a space before the storage's name and for its key; the robot's storage keeps a gap to its right
-        // neighbour where there is room.
-        min_columns: storage.label.chars().count() as u16
-            + match storage.agent {
-                Agent::Human if with_keys => 4,
-                Agent::Human => 1,
-                Agent::Robot if with_keys => 1,
-                Agent::Robot => 2,
-            },
-    };
-    let locations = kitchen.locations.iter().enumerate().map(location);
-    locations.chain(kitchen.storages.iter().enumerate().map(storage)).collect()
-}
-
-fn is_order(kitchen: &Kitchen, thing: KitchenMapElement) -> bool {
-    matches!(thing, KitchenMapElement::Location(id) if kitchen.location(id).kind == LocationKind::Order)
-}
-
-/// Groups of kitchen elements whose extents along an axis overlap, in the order of the axis.
-fn clusters<'a>(items: &[&'a Item], axis: usize) -> Vec<Vec<&'a Item>> {
-    let mut sorted = items.to_vec();
-    sorted.sort_by(|a, b| extent_of(a.area, axis)[0].total_cmp(&extent_of(b.area, axis)[0]));
-    let mut groups: Vec<Vec<&Item>> = Vec::new();
-    let mut end = f64::NEG_INFINITY;
-    for item in sorted {
-        let [low, high] = extent_of(item.area, axis);
-        match groups.last_mut() {
-            Some(group) if low < end => group.push(item),
-            _ => groups.push(vec![item]),
-        }
-        end = end.max(high);
-    }
-    groups
-}
-
-/// Puts every kitchen element into a row of its own, from top to bottom.
-fn clusters_forced<'a>(items: &[&'a Item]) -> Vec<Vec<&'a Item>> {
-    let mut sorted = items.to_vec();
-    sorted.sort_by(|a, b| (a.area.y + a.area.h / 2.0).total_cmp(&(b.area.y + b.area.h / 2.0)));
-    sorted.into_iter().map(|item| vec![item]).collect()
-}
-
-/// Bounds of a group of kitchen elements along an axis: the middles of the gaps to the neighbouring groups.
-fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f64; 2] {
-    let low = |group: &[&Item]| group.iter().map(|item| extent_of(item.area, axis)[0]).fold(f64::INFINITY, f64::min);
-    let high =
-        |group: &[&Item]| group.iter().map(|item| extent_of(item.area, axis)[1]).fold(f64::NEG_INFINITY, f64::max);
-    let from = if index == 0 { whole[0] } else { (high(&groups[index - 1]) + low(&groups[index])) / 2.0 };
-    let to = match groups.get(index + 1) {
-        Some(next) => (high(&groups[index]) + low(next)) / 2.0,
-        None => whole[1],
-    };
-    [from, to.max(from)]
-}
-
-/// Widths of the kitchen map's columns: first what their names need, then equal shares of the rest for columns with
-/// locations.
-fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
-    let need: Vec<u16> = columns.iter().map(|c| c.iter().map(|item| item.min_columns).max().unwrap_or(0)).collect();
-    let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, KitchenMapElement::Location(_)));
-    let growing = columns.iter().filter(|c| grows(c)).count().max(1) as u16;
-    let sum: u16 = need.iter().sum();
-    let spare = total.saturating_sub(sum);
-    let mut widths: Vec<u16> = Vec::new();
-    let mut grown = 0;
-    for (column, need) in columns.iter().zip(&need) {
-        let mut width = *need;
-        if grows(column) {
-            width += spare / growing + u16::from(grown < spare % growing);
-            grown += 1;
-        }
-        widths.push(width);
-    }
-    // Missing columns of the terminal are taken from the widest columns of the kitchen map.
-    for _ in total..sum {
-        if let Some(widest) = widths.iter_mut().max() {
-            *widest -= 1;
-        }
-    }
-    widths
-}
-
 /// Row number `index` of an area that is divided into `count` rows of equal height.
 fn share(cells: Rect, count: usize, index: usize) -> Rect {
     let edge = |index: usize| cells.y + (usize::from(cells.height) * index / count.max(1)) as u16;
     Rect { y: edge(index), height: edge(index + 1) - edge(index), ..cells }
-}
-
-fn owner(column: &[&Item]) -> Option<Agent> {
-    let first = column.first()?.owner;
-    if column.iter().all(|item| item.owner == first) { first } else { None }
 }
 
 fn spot(item: &Item, region: Rect, display: Bounds) -> KitchenMapBox {
@@ -395,14 +275,9 @@ fn cover(mut spots: Vec<KitchenMapBox>) -> Vec<KitchenMapBox> {
     for spot in &mut spots {
         for axis in 0..2 {
             let [low, high] = spot.display.0[axis];
-            let [from, to] = extent_of(spot.area, axis);
+            let [from, to] = extent(spot.area, axis);
             spot.display.0[axis] = [low.min(from), high.max(to)];
         }
     }
     spots
-}
-
-/// Least and largest coordinate of an area along an axis (0: x, 1: y).
-fn extent_of(area: DisplayArea, axis: usize) -> [f64; 2] {
-    if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
 }

@@ -9,10 +9,11 @@ use super::form;
 use super::hands;
 use super::held_keys::is_right_after_list;
 use super::key_action::{KeyAction, KeyLayer};
-use super::list_cursor::ListCursor;
 use super::notice::NoticeLevel;
+use super::palette;
 use super::panel::Panel;
 use super::panels;
+use super::possible::effects;
 use super::preflight;
 use super::sending::{resume_robot, send};
 use crate::communication::Sender;
@@ -118,11 +119,11 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         }
         KeyAction::Rate(rate) => coding::act(model, session, rate),
         KeyAction::Help => {
-            (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
+            (model.dialog, model.help_from) = (Some(Dialog::Help(effects(session, model))), 0);
             None
         }
         KeyAction::Palette => {
-            model.dialog = Some(Dialog::Palette(ListCursor::default()));
+            palette::open(model, session, "");
             None
         }
         // A replay can be left without a question, for nothing is lost, and a rater's codes are saved after every key;

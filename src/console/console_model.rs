@@ -10,7 +10,7 @@ use super::compared::SenderComparisonView;
 use super::display_status::ParticipantDisplayHealth;
 use super::gaze_advice::AccuracyCheckAction;
 use super::gaze_pairing::GazePairing;
-use super::key_action::KeyLayer;
+use super::key_action::{KeyAction, KeyLayer};
 use super::keys::KeyBindings;
 use super::lesson::TrainingPanel;
 use super::list_cursor::ListCursor;
@@ -44,8 +44,9 @@ const TRAIL: usize = 240;
 /// A dialog of the console that is open above its panels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dialog {
-    /// Help of the console: the table of keys.
-    Help,
+    /// Help of the console: the table of keys. For each entry of the table, whether its key had an effect when the help
+    /// was opened: the order of the lines does not change while the help is read.
+    Help(Vec<bool>),
     /// Question whether to end the session and close the console.
     Quit,
     /// Question whether to end the trial.
@@ -196,6 +197,10 @@ pub struct ConsoleModel {
     pub waiver: Option<usize>,
     /// What the wizard has selected to do with the result of a gaze accuracy check, until enter confirms it.
     pub gaze_choice: Option<AccuracyCheckAction>,
+    /// Action that the wizard chose last in the palette, if it may stand first there.
+    pub(super) palette_chosen: Option<KeyAction>,
+    /// Action that stands first in the open palette.
+    pub(super) palette_first: Option<KeyAction>,
     /// Time at which enter last chose a row of a list, on [`ConsoleModel::clock`].
     pub(super) answered: Option<SessionTime>,
     /// Key that the last mouse click stood for, with the click's time on [`ConsoleModel::clock`].
@@ -244,6 +249,8 @@ impl ConsoleModel {
             probe_entry: ProbeEntry::default(),
             waiver: None,
             gaze_choice: None,
+            palette_chosen: None,
+            palette_first: None,
             answered: None,
             clicked: None,
             exact_keys: false,

@@ -52,8 +52,8 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             model.dialog = Some(Dialog::Preflight);
             None
         }
-        ManualAction::NoteInWords if session.phase != TrialPhase::Paused => {
-            refuse(model, "notes can be typed only in a pause, since the space bar stops the robot")
+        ManualAction::NoteInWords if !types_notes(session.phase) => {
+            refuse(model, "notes can be typed only while no trial runs, since the space bar stops the robot")
         }
         ManualAction::NoteInWords => {
             model.dialog = Some(Dialog::Note(TextInput::default()));
@@ -77,6 +77,11 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             None => refuse(model, "no freeze probe is open"),
         },
     }
+}
+
+/// Whether a note can be typed now: the space bar types a space in it, so no trial may run.
+pub(super) fn types_notes(phase: TrialPhase) -> bool {
+    !matches!(phase, TrialPhase::Running | TrialPhase::Closed)
 }
 
 /// Number of the freeze probe whose remaining questions can be skipped now.

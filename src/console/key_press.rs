@@ -23,7 +23,8 @@ use super::preflight;
 use super::probe_keys;
 use super::sending::send;
 use super::sheet_key::SheetKey;
-use super::view::dialog::{help_pages, report_rest};
+use super::view::dialog::report_rest;
+use super::view::help::help_pages;
 use crate::session::event::TrialEndReason;
 use crate::session::{Event, Session, TrialPhase};
 
@@ -58,16 +59,11 @@ pub(super) fn press(
         model.dialog = None;
     }
     match action {
+        // A trial goes on by itself after a freeze probe, even while a note is typed.
+        Some(KeyAction::StopRobot) if session.is_running() => stop_robot(model, session),
         // In text input, where the robot stands, the space bar types a space instead of stopping it.
-        _ if let Some(Dialog::Note(line)) = &model.dialog => {
-            let line = line.clone();
-            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == KeyPressKind::Press);
-            if counts { hands::write(model, session, line, code) } else { None }
-        }
-        _ if let Some(Dialog::Answer(line)) = &model.dialog => {
-            let line = line.clone();
-            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == KeyPressKind::Press);
-            if counts { form::type_answer(model, session, line, code) } else { None }
+        _ if matches!(model.dialog, Some(Dialog::Note(_) | Dialog::Answer(_))) => {
+            in_text(model, session, (code, chord), touch)
         }
         Some(KeyAction::StopRobot) => stop_robot(model, session),
         Some(KeyAction::Quit) if chord.ctrl && touch == KeyPressKind::Press && may_leave_for_quit(model) => {
@@ -107,6 +103,23 @@ pub(super) fn press(
     }
 }
 
+/// Handles a key of an open text input. Keys with ctrl and a held enter key do not count.
+fn in_text(
+    model: &mut ConsoleModel,
+    session: &Session,
+    (code, chord): (KeyCode, KeyChord),
+    touch: KeyPressKind,
+) -> Option<ConsoleCommand> {
+    if chord.ctrl || (code == KeyCode::Enter && touch != KeyPressKind::Press) {
+        return None;
+    }
+    match model.dialog.clone() {
+        Some(Dialog::Note(line)) => hands::write(model, session, line, code),
+        Some(Dialog::Answer(line)) => form::type_answer(model, session, line, code),
+        _ => None,
+    }
+}
+
 /// Handles a key of an open list. Quick typing and held arrow keys count; a held enter key, and keys with ctrl such as
 /// the one that opened the list, do not.
 fn in_list(
@@ -133,13 +146,14 @@ fn choose(
     mut cursor: ListCursor,
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
-    let left = palette::actions(&model.keys, model.layer, &cursor);
+    let left = palette::actions(model, &cursor);
     let reply = cursor.key(left.len(), code);
     let chosen = left.get(cursor.at).filter(|_| reply == ListReply::Taken);
     let chosen = chosen.and_then(|line| Some((line.action.clone(), *line.chords.first()?, line.help.clone())));
     model.dialog = Some(Dialog::Palette(cursor)).filter(|_| reply == ListReply::Open);
     let (action, chord, help) = chosen?;
     model.answered = Some(model.clock);
+    palette::remember(model, &action);
     match action {
         KeyAction::Signal(..) | KeyAction::Accept => {
             model.say(NoticeLevel::Done, format!("press {chord} to {help}: signals are not sent from a list"));
@@ -154,7 +168,7 @@ fn choose(
 fn may_leave_for_quit(model: &ConsoleModel) -> bool {
     matches!(
         model.dialog,
-        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help | Dialog::Difference(_))
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help(_) | Dialog::Difference(_))
     )
 }
 
@@ -214,7 +228,7 @@ fn answer(
     touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     let dialog = model.dialog.clone()?;
-    if let (Dialog::Help, Some(KeyAction::Look(look))) = (&dialog, &action)
+    if let (Dialog::Help(_), Some(KeyAction::Look(look))) = (&dialog, &action)
         && *look != ViewAction::All
         && help_pages(model) > 0
     {

@@ -27,6 +27,7 @@ pub mod keymap;
 pub mod keys;
 pub mod lesson;
 pub mod list_cursor;
+pub mod map_items;
 mod mouse;
 pub mod note;
 pub mod notice;

@@ -3,7 +3,7 @@
 
 use crossterm::event::KeyCode;
 
-use super::arrange::{KitchenMap, KitchenMapElement};
+use super::arrange::KitchenMap;
 use super::chord::KeyChord;
 use super::click::ClickAction;
 use super::click_question;
@@ -14,8 +14,9 @@ use super::form::sheet;
 use super::held_keys::{ANSWER_S, KeyPressKind};
 use super::key_action::{KeyAction, KeyLayer, RaterAction};
 use super::key_press::press;
-use super::list_cursor::ListCursor;
+use super::map_items::KitchenMapElement;
 use super::notice::NoticeLevel;
+use super::palette;
 use super::panel::Panel;
 use super::panels;
 use super::playback::ReplayAction;
@@ -53,7 +54,7 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
         Some(ClickAction::Key(chord)) => key(model, session, chord),
         Some(ClickAction::Row(row)) => choose(model, session, row),
         Some(ClickAction::Palette(filter)) => {
-            model.dialog = Some(Dialog::Palette(ListCursor { filter: filter.to_string(), at: 0 }));
+            palette::open(model, session, filter);
             None
         }
         Some(ClickAction::Belief(aspect)) => {
@@ -147,7 +148,7 @@ pub(super) fn wheel(
     cell: (u16, u16),
     steps: i64,
 ) -> Option<ConsoleCommand> {
-    if matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Report(_) | Dialog::Help)) {
+    if matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Report(_) | Dialog::Help(_))) {
         let arrow = if steps > 0 { KeyCode::Up } else { KeyCode::Down };
         return press(model, session, arrow, KeyChord::plain(arrow), KeyPressKind::Press);
     }

@@ -1,5 +1,5 @@
-//! Single-line text input: the wizard's note while the trial is paused, or a typed answer before or after a trial. Only
-//! here the space bar types a space instead of stopping the robot, since no trial runs and the robot stands.
+//! Single-line text input: the wizard's note while no trial runs, or a typed answer before or after a trial. Only here
+//! the space bar types a space instead of stopping the robot, since the robot stands.
 
 use crossterm::event::KeyCode;
 

@@ -5,7 +5,7 @@ use super::beliefs::visibility;
 use super::console_model::ConsoleModel;
 use super::key_action::ViewAction;
 use super::panel::Panel;
-use super::view::dialog::help_pages;
+use super::view::help::help_pages;
 use crate::session::Session;
 
 /// One scroll step: seconds in the timeline, entries in the list of events.

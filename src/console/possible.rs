@@ -4,9 +4,9 @@ use super::beliefs::{beliefs, visibility};
 use super::compared::ComparisonAction;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
-use super::hands::{can_redo, skippable};
+use super::hands::{can_redo, skippable, types_notes};
 use super::held_keys::is_right_after_list;
-use super::key_action::{KeyAction, ManualAction, RaterAction, ViewAction};
+use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAction};
 use super::playback::{Playback, ReplayAction, SPEEDS};
 use super::preflight;
 use super::sending::refusal;
@@ -27,6 +27,13 @@ pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyA
 /// Whether an action would have an effect once the open dialog is closed.
 pub(super) fn is_possible_behind(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     (!has_sheet(session, model) || acts_on_sheet(session, action)) && does(session, model, action)
+}
+
+/// For each entry of the key table, whether its key has an effect now.
+pub(super) fn effects(session: &Session, model: &ConsoleModel) -> Vec<bool> {
+    let has_layer = |binding: &KeyBinding| binding.layer.is_none_or(|layer| layer == model.layer);
+    let has_effect = |binding: &KeyBinding| has_layer(binding) && is_possible_behind(session, model, &binding.action);
+    model.keys.bindings.iter().map(has_effect).collect()
 }
 
 /// Whether a sheet (a form at full size) covers the console and takes the keys.
@@ -63,15 +70,16 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         None => true,
         // Enter answers the question whether to send, and esc closes it, so both keys lose their usual action.
         Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(ViewAction::All)),
-        // In text input the space bar types a space instead of stopping the robot.
-        Some(Dialog::Note(_) | Dialog::Answer(_) | Dialog::Report(_)) => false,
+        // In text input the space bar types a space instead of stopping the robot, unless the trial goes on.
+        Some(Dialog::Note(_) | Dialog::Answer(_)) => stops && session.is_running(),
+        Some(Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
             KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
             KeyAction::ResumeRobot | KeyAction::Hand(ManualAction::HoldRobot) => true,
             KeyAction::Quit => has_control(),
             _ => stops,
         },
-        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Help | Dialog::Difference(_)) => {
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Help(_) | Dialog::Difference(_)) => {
             stops || (*action == KeyAction::Quit && has_control())
         }
         Some(Dialog::Quit | Dialog::EndTrial | Dialog::Calibration) => stops,
@@ -133,7 +141,7 @@ fn intervenes(session: &Session, hand: ManualAction) -> bool {
         ManualAction::Redo => can_redo(session),
         ManualAction::Preflight => phase == TrialPhase::Ready,
         ManualAction::Calibrate => admits(Event::Calibration(GazeCheckEvent::begin())),
-        ManualAction::NoteInWords => phase == TrialPhase::Paused,
+        ManualAction::NoteInWords => types_notes(phase),
         ManualAction::AskProbe => admits(Event::Probe(ProbeEvent::Requested)),
         ManualAction::SkipProbe => skippable(session).is_some(),
         ManualAction::Exclude => !matches!(phase, TrialPhase::Ready | TrialPhase::Closed),

@@ -32,7 +32,7 @@ pub fn screen(session: &Session, model: &ConsoleModel) -> WizardScreenContent {
 
 fn name(dialog: &Dialog) -> &'static str {
     match dialog {
-        Dialog::Help => "help",
+        Dialog::Help(_) => "help",
         Dialog::Quit => "quit",
         Dialog::EndTrial => "end_trial",
         Dialog::Palette(_) => "palette",

@@ -145,7 +145,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         let help = format!("record note {digit} of the session file");
         lines.push(wizards(line(&name, &[KeyChord::char(digit)], KeyAction::Note(index), NOTES, &help, footer)));
     }
-    let help = "type a note (while paused)";
+    let help = "type a note (while no trial runs)";
     lines.push(wizards(line(
         "note_in_words",
         &[KeyChord::char('0')],

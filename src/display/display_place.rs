@@ -20,7 +20,11 @@ pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> Sce
     let location = match action {
         ButtonAction::Take(item) => {
             let is_it = |storage: &crate::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
-            return SceneElement::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
+            // Every button that takes an item belongs to a storage (`src/kitchen/compile/buttons.rs`).
+            match kitchen.storages.iter().position(is_it) {
+                Some(storage) => return SceneElement::Storage(storage),
+                None => hand,
+            }
         }
         ButtonAction::Use(location) => location,
         ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),

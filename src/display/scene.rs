@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::display_place::{SceneElement, spot};
 use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
@@ -192,21 +193,15 @@ fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
 }
 
 fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
-    let hand = kitchen.hands[Agent::Human.index()].index();
-    let shelf = |item| {
-        let is_it = |storage: &crate::kitchen::IngredientStorage| storage.agent == Agent::Human && storage.item == item;
-        kitchen.storages.iter().position(is_it).unwrap_or_default()
-    };
     let knob = |button: &crate::kitchen::Button| {
-        let (does, at) = match button.action {
-            ButtonAction::Take(item) => ("take", shelf(item)),
-            ButtonAction::Use(location) => ("use", location.index()),
-            ButtonAction::Process(process) => {
-                ("process", kitchen.processes[usize::from(process)].place.map_or(hand, |place| place.index()))
-            }
-            ButtonAction::Trash => ("trash", hand),
-            ButtonAction::Serve(order) => ("serve", order.index()),
+        let does = match button.action {
+            ButtonAction::Take(_) => "take",
+            ButtonAction::Use(_) => "use",
+            ButtonAction::Process(_) => "process",
+            ButtonAction::Trash => "trash",
+            ButtonAction::Serve(_) => "serve",
         };
+        let (SceneElement::Location(at) | SceneElement::Storage(at)) = spot(kitchen, Agent::Human, button.action);
         let label = match does {
             "serve" => words.of_name("serve"),
             _ => words.of_name(&button.name),

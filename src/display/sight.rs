@@ -236,7 +236,7 @@ fn content(kitchen: &Kitchen, id: ContentId) -> ShownContent {
 
 fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     let newest = session.timeline.iter().rev().find_map(|entry| match entry.what {
-        TimelineEvent::Press { agent: by, button, no_effect } if by == agent => Some((button, no_effect)),
+        TimelineEvent::Press { agent: by, button, no_effect, .. } if by == agent => Some((button, no_effect)),
         _ => None,
     });
     let (button, no_effect) = newest?;

@@ -33,7 +33,7 @@ impl BidsTree {
                 }
             }
             Err(reason) if reason.kind() == ErrorKind::NotFound => {
-                fs::create_dir_all(root).map_err(|reason| FileError::unreadable(root, reason, REMEDY))?;
+                fs::create_dir_all(root).map_err(|reason| FileError::not_written(root, reason, REMEDY))?;
             }
             Err(reason) => return Err(FileError::unreadable(root, reason, REMEDY)),
         }
@@ -54,7 +54,7 @@ impl BidsTree {
                 false => fs::write(&path, &file.text),
             }
         };
-        write().map_err(|reason| FileError::unreadable(&path, reason, REMEDY))
+        write().map_err(|reason| FileError::not_written(&path, reason, REMEDY))
     }
 }
 

@@ -4,10 +4,11 @@
 
 use std::borrow::{Borrow, Cow};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::overwrite;
+use super::replace_file::{self, Replacement};
 use super::written_tables::{ListedTables, reader};
 use crate::study::column::{CsvRow, CsvTable};
 use crate::study::dictionary::columns;
@@ -155,7 +156,7 @@ impl AnalysisFolder {
     /// The report cannot be written.
     pub fn report(&self, page: &str) -> Result<PathBuf, AnalysisWriteError> {
         let path = self.folder.join(REPORT_NAME);
-        match fs::write(&path, page) {
+        match replace_file::replace(&path, page.as_bytes()) {
             Ok(()) => Ok(path),
             Err(reason) => Err(AnalysisWriteError { path, reason }),
         }
@@ -164,15 +165,15 @@ impl AnalysisFolder {
     fn write_table(
         &self,
         table: CsvTable,
-        rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<bool>,
+        rows: impl FnOnce(&mut Replacement) -> io::Result<bool>,
     ) -> Result<Option<CsvTable>, AnalysisWriteError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
         let write = || {
-            let mut out = BufWriter::new(File::create(&path)?);
+            let mut out = Replacement::begin(&path)?;
             let names: Vec<Cow<str>> = columns(table).into_iter().map(|column| column.column).collect();
             writeln!(out, "{}", names.join(","))?;
             let has_rows = rows(&mut out)?;
-            out.flush().map(|()| has_rows.then_some(table))
+            out.finish().map(|()| has_rows.then_some(table))
         };
         write().map_err(|reason| AnalysisWriteError { path: path.clone(), reason })
     }

@@ -18,14 +18,25 @@ pub type FileResult<T> = Result<T, FileError>;
 /// An error of a file that the program reads or writes: unreadable, unsuitable as a whole, or invalid in one place.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum FileError {
-    /// The file cannot be read or written at all.
+    /// The file cannot be read at all.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
-        /// Path of the file that cannot be read or written.
+        /// Path of the file that cannot be read.
         path: PathBuf,
-        /// Why the file cannot be read or written.
+        /// Why the file cannot be read.
         reason: io::Error,
-        /// What a valid file, or a suitable name for the file, would be.
+        /// What a valid file would be.
+        #[help]
+        remedy: String,
+    },
+    /// The file cannot be written.
+    #[error("{}: cannot be written: {reason}", path.display())]
+    Unwritable {
+        /// Path of the file or folder that cannot be written.
+        path: PathBuf,
+        /// Why the file or folder cannot be written.
+        reason: io::Error,
+        /// What a suitable name or place for the file would be.
         #[help]
         remedy: String,
     },
@@ -95,14 +106,19 @@ impl FileError {
         )
     }
 
-    /// The error about a file that cannot be read or written.
+    /// The error about a file that cannot be read.
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
         FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
 
     /// The error about an output file, whose name the user chose, that cannot be written.
     pub fn unwritable(path: &Path, reason: io::Error) -> FileError {
-        FileError::unreadable(path, reason, "give another name for the file, in a folder that can be written to")
+        FileError::not_written(path, reason, "give another name for the file, in a folder that can be written to")
+    }
+
+    /// The error about a file or folder that cannot be written, with what would be right in its place.
+    pub fn not_written(path: &Path, reason: io::Error, remedy: &str) -> FileError {
+        FileError::Unwritable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
 }
 

@@ -236,7 +236,7 @@ pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> s
     check_fitted(path)?;
     let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
     let text = toml::to_string(file).map_err(std::io::Error::other)?;
-    std::fs::write(path, format!("{comment}\n{text}"))
+    overwrite::write(path, format!("{comment}\n{text}").as_bytes())
 }
 
 /// The default session with its kitchen; both are part of the program, so that it runs without any file.

@@ -2,13 +2,13 @@
 //! is SHA-256 of every byte after the first line, so that it can be checked without this program (`tail -n +2 FILE |
 //! sha256sum`).
 
-use std::fs::OpenOptions;
-use std::io::{self, ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
 use super::file_error::{FileError, FileResult, read_text};
+use super::replace_file;
 use crate::study::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 
 /// Text in the first line of a frozen plan's file, before the digest.
@@ -23,17 +23,13 @@ pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
     // Writing JSON cannot fail here, since a plan contains only string keys and finite numbers.
     let body = serde_json::to_string_pretty(frozen).unwrap_or_default() + "\n";
     let digest = sha256(body.as_bytes());
-    let write = || -> io::Result<()> {
-        let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-        file.write_all(format!("{HEAD}{digest}\n{body}").as_bytes())?;
-        file.sync_all()
-    };
-    write().map_err(|reason| match reason.kind() {
+    let written = replace_file::create(path, format!("{HEAD}{digest}\n{body}").as_bytes());
+    written.map_err(|reason| match reason.kind() {
         ErrorKind::AlreadyExists => {
             let remedy = "another name for the file: a frozen plan is never overwritten".to_string();
             FileError::from_finding(path, "a file that is there already".to_string(), remedy)
         }
-        _ => FileError::unreadable(path, reason, "a new file in a folder that can be written to"),
+        _ => FileError::not_written(path, reason, "a new file in a folder that can be written to"),
     })?;
     Ok(digest)
 }

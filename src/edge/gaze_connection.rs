@@ -19,6 +19,8 @@ use super::gaze_line::{begins_object, code_in, parse};
 
 /// Longest line of a gaze connection, in bytes.
 const MAX_LINE: usize = 4096;
+/// Number of bytes, without blanks, that show whether a connection begins with a JSON object.
+const OPENING: usize = 2;
 /// Time limit for the first line of a gaze connection.
 const FIRST_LINE: Duration = Duration::from_secs(10);
 /// Time limit for sending the reply to a pairing code.
@@ -80,6 +82,8 @@ enum LineContent {
 struct LineReader {
     line: Vec<u8>,
     is_too_long: bool,
+    /// The first [`OPENING`] bytes of the connection that are not blank, as far as they have arrived.
+    opening: Vec<u8>,
     /// Whether the first line of the connection is complete.
     has_line: bool,
     /// Whether a gaze sample has arrived on the connection.
@@ -89,6 +93,9 @@ struct LineReader {
 impl LineReader {
     /// Adds a byte to the present line; returns the content of the line if the byte ends it.
     fn take(&mut self, byte: u8) -> Option<LineContent> {
+        if !self.has_line && self.opening.len() < OPENING && !byte.is_ascii_whitespace() {
+            self.opening.push(byte);
+        }
         if byte != b'\n' {
             // The length limit protects the memory against a sender that never ends its line.
             match self.line.len() < MAX_LINE {
@@ -114,9 +121,10 @@ impl LineReader {
         found
     }
 
-    /// Whether the beginning of the first line shows that the sender is not an eye tracker's program.
+    /// Whether the beginning of the first line shows that the sender is not an eye tracker's program. Takes the same
+    /// time for a line of any length, since it is asked after every byte.
     fn is_foreign(&self) -> bool {
-        !self.has_line && begins_object(&self.line) == Some(false)
+        !self.has_line && (self.is_too_long || begins_object(&self.opening) == Some(false))
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::file_error::{FileError, FileResult};
 use super::gaze_table;
-use super::log::{LOG_NAME, LogReader, at_line};
+use super::log::{LOG_NAME, LogReader};
 use super::tracker_folder::{TrackerFinding, tracker_data};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceHomography;
@@ -58,8 +58,7 @@ fn of_recording(path: &Path) -> FileResult<GazeFile> {
     let mut session = log.session();
     let mut found = GazeFile::default();
     while let Some(line) = log.next_line()? {
-        apply(&mut session, &line.stamped)
-            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?;
         if let Event::Gaze(sample) = line.stamped.event
             && session.is_running()
             && found.samples.len() < MAX_SAMPLES

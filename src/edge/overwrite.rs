@@ -1,8 +1,10 @@
 //! Check before the program overwrites a file: an existing file is replaced only if this program wrote it.
 
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
+
+use super::replace_file;
 
 /// Number of bytes from the beginning of a file in which the file's kind is looked for.
 const HEAD: u64 = 1 << 16;
@@ -27,6 +29,20 @@ pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io:
     }
     let found = format!("a file is there that is not {what} of tomcom; choose another name, or delete it first");
     Err(io::Error::new(ErrorKind::AlreadyExists, found))
+}
+
+/// Writes a file under a path that the user gave, after [`check`]. A file is replaced when the new content is complete,
+/// so that a full disk does not destroy the old content; where a link leads, the file is replaced and the link stays.
+/// Pipes and devices cannot be replaced, and are written to.
+///
+/// # Errors
+/// The file or its folder cannot be written to.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    match fs::metadata(path) {
+        Ok(data) if data.is_file() => replace_file::replace(&path.canonicalize()?, bytes),
+        Ok(_) => OpenOptions::new().write(true).open(path)?.write_all(bytes),
+        Err(_) => replace_file::replace(path, bytes),
+    }
 }
 
 /// The first line of a text, without its line end and without a byte order mark.

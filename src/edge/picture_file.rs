@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::file_error::{FileError, FileResult};
-use super::{overwrite, replace_file};
+use super::overwrite;
 
 /// Checks that a picture can be written to this path. `what` names the picture in messages.
 ///
@@ -19,5 +19,5 @@ pub fn check_picture(path: &Path, what: &str) -> FileResult<()> {
 /// # Errors
 /// The file cannot be written.
 pub fn write_picture(path: &Path, svg: &str) -> FileResult<()> {
-    replace_file::replace(path, svg.as_bytes()).map_err(|reason| FileError::unwritable(path, reason))
+    overwrite::write(path, svg.as_bytes()).map_err(|reason| FileError::unwritable(path, reason))
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::file_error::{FileError, FileResult, read_text};
-use super::{overwrite, replace_file};
+use super::overwrite;
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 
 const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
@@ -77,7 +77,7 @@ pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
     for trial in pool.trials() {
         text += &line(&trial);
     }
-    replace_file::replace(path, text.as_bytes()).map_err(|reason| FileError::unwritable(path, reason))
+    overwrite::write(path, text.as_bytes()).map_err(|reason| FileError::unwritable(path, reason))
 }
 
 fn line(value: &impl Serialize) -> String {

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::file_error::{FileError, FileResult};
-use super::{overwrite, replace_file};
+use super::overwrite;
 use crate::study::drawn_study::SignificanceTestMethod;
 use crate::study::power_answer::{PowerSummary, SampleSizePower, TestPower};
 
@@ -57,7 +57,7 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
             }
         }
         let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
-        replace_file::replace(path, &bytes)
+        overwrite::write(path, &bytes)
     };
     write().map_err(|reason| FileError::unwritable(path, reason))
 }

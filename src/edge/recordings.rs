@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, ruling};
-use crate::session::header::PreviousPart;
+use super::log::{LOG_NAME, read_header, ruling};
+use crate::session::header::{FORMAT, PreviousPart};
 use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
-use crate::session::{Event, LogHeader, TimestampedEvent};
+use crate::session::{Event, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
 /// count as one recording. Simulated recordings and other files do not count.
@@ -117,7 +117,12 @@ struct Part {
 impl Part {
     /// Reads the log of one part of a recording; `None` if the recording does not belong to this study plan.
     fn read(path: &Path, plan: &str) -> FileResult<Option<Part>> {
-        let Ok(file) = open_regular(path) else { return Ok(None) };
+        let file = match open_regular(path) {
+            Ok(file) => file,
+            // No log at this path: an empty folder, or a file beside the recordings.
+            Err(reason) if matches!(reason.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+            Err(reason) => return Err(FileError::unreadable(path, reason, "a readable recording")),
+        };
         let mut lines = BufReader::with_capacity(1 << 16, file);
         let mut line = Vec::new();
         let mut next = |line: &mut Vec<u8>| {
@@ -130,7 +135,11 @@ impl Part {
         if !next(&mut line)? {
             return Ok(None);
         }
-        let Ok(header) = serde_json::from_slice::<LogHeader>(&line) else { return Ok(None) };
+        // A recording with a damaged header is an error: its trial would be offered again otherwise.
+        if !is_log(&line) {
+            return Ok(None);
+        }
+        let header = read_header(path, String::from_utf8_lossy(&line).trim_end())?;
         let Some(step) = header.session.step.filter(|step| step.plan == plan && header.started.is_some()) else {
             return Ok(None);
         };
@@ -215,6 +224,11 @@ impl Part {
             outcome,
         }
     }
+}
+
+/// Whether the first line of a file names the format of this program's logs.
+fn is_log(line: &[u8]) -> bool {
+    line.windows(FORMAT.len()).any(|part| part == FORMAT.as_bytes())
 }
 
 /// Whether a line of a log is a gaze or arm sample, as most lines are; such lines are skipped here.

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -58,7 +58,7 @@ impl PartWriter {
         let unwritable = |reason| FileError::unwritable(&self.path, reason);
         let mut line = serde_json::to_vec(value).map_err(|error| unwritable(io::Error::from(error)))?;
         line.push(b'\n');
-        self.file.write(&line).map_err(|reason| FileError::unwritable(&self.path, reason))
+        self.file.write_all(&line).map_err(|reason| FileError::unwritable(&self.path, reason))
     }
 
     /// Completes the part's file and gives it its name.

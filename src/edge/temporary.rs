@@ -26,7 +26,12 @@ pub fn new_file(below: &Path, stem: &str, ending: &str) -> io::Result<(PathBuf, 
     first_free(below, stem, ending, make_file)
 }
 
-fn first_free<T>(
+/// Creates the first of `STEM`, `STEM-2`, `STEM-3`, …, each with the name's ending, that does not exist. `make` creates a
+/// file or folder at a path, and refuses a path at which something exists.
+///
+/// # Errors
+/// The file or folder cannot be created.
+pub fn first_free<T>(
     below: &Path,
     stem: &str,
     ending: &str,

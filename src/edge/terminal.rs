@@ -97,6 +97,13 @@ impl TerminalScreen {
         let frames = FrameWriter::start()?;
         enable_raw_mode()?;
         *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(frames.clone());
+        TerminalScreen::set_up(frames).inspect_err(|_| {
+            give_back();
+        })
+    }
+
+    /// Sets up the screen of a terminal in raw mode.
+    fn set_up(frames: Arc<FrameWriter>) -> io::Result<TerminalScreen> {
         let ground = ground().unwrap_or(TerminalBackground::Dark);
         frames.show(way_in()?);
         let composed = ComposedFrame::default();

@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::file_error::{FileError, FileResult};
+use super::replace_file;
 use crate::analysis::training_record::WizardTrainingRecord;
 
 /// Writes a training record to a new file in the folder and returns its path.
@@ -16,12 +17,8 @@ pub fn write(folder: &Path, record: &WizardTrainingRecord) -> io::Result<PathBuf
     let text = serde_json::to_string_pretty(record).map_err(io::Error::other)? + "\n";
     for number in 1.. {
         let path = path(folder, &record.wizard, number);
-        match fs::OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(mut file) => {
-                io::Write::write_all(&mut file, text.as_bytes())?;
-                file.sync_all()?;
-                return Ok(path);
-            }
+        match replace_file::create(&path, text.as_bytes()) {
+            Ok(()) => return Ok(path),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }

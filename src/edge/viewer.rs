@@ -5,6 +5,7 @@ use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use super::rerun::{TRIAL_TIME, VERSION};
@@ -15,7 +16,7 @@ const PORT: u16 = 9900;
 /// Time limit for the Rerun viewer to become ready, and period of asking whether it is.
 const READY: Duration = Duration::from_secs(30);
 const RETRY: Duration = Duration::from_millis(500);
-/// Time limit and size limit of the viewer program's answer about its version.
+/// Time limit and size limit of an answer of the viewer program, about its version or to a request.
 const ANSWER: Duration = Duration::from_secs(5);
 const ANSWER_BYTES: u64 = 1 << 16;
 
@@ -42,7 +43,7 @@ impl ViewerAvailability {
         let folders = env::var_os("PATH").unwrap_or_default();
         let there = env::split_paths(&folders).map(|folder| folder.join(&name)).find(|path| path.is_file());
         let Some(path) = there else { return ViewerAvailability::None };
-        match version_of(&path) {
+        match version_of(&path, ANSWER) {
             Some(version) if version != VERSION => ViewerAvailability::Other(version),
             None => ViewerAvailability::None,
             Some(_) if !has_screen() => ViewerAvailability::NoScreen,
@@ -51,12 +52,29 @@ impl ViewerAvailability {
     }
 }
 
-/// The version that the viewer program at this path reports: "rerun-cli 0.36.3 …".
-fn version_of(path: &Path) -> Option<String> {
-    let said = Command::new(path).arg("--version").stdin(Stdio::null()).output().ok()?;
-    let text = String::from_utf8_lossy(&said.stdout).into_owned();
+/// The version that the viewer program at this path reports within the time limit: "rerun-cli 0.36.3 …".
+fn version_of(path: &Path, within: Duration) -> Option<String> {
+    let mut command = Command::new(path);
+    command.arg("--version").stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut viewer = command.spawn().ok()?;
+    let said = viewer.stdout.take().and_then(|out| read_within(out, within));
+    // Another program of this name may not end by itself.
+    let _ = viewer.kill().and_then(|()| viewer.wait());
+    let said = said?;
+    let text = String::from_utf8_lossy(&said);
     let line = text.lines().find_map(|line| line.strip_prefix("rerun-cli "))?;
     line.split_whitespace().next().map(str::to_string)
+}
+
+/// What a program writes until it closes its output, up to the size limit; `None` after the time limit.
+fn read_within(out: impl Read + Send + 'static, within: Duration) -> Option<Vec<u8>> {
+    let (sender, receiver) = mpsc::channel();
+    std::thread::spawn(move || {
+        let mut said = Vec::new();
+        // After the time limit nobody receives what was read.
+        let _ = out.take(ANSWER_BYTES).read_to_end(&mut said).map(|_| sender.send(said));
+    });
+    receiver.recv_timeout(within).ok()
 }
 
 /// Whether there is a screen on which windows can be opened.
@@ -141,5 +159,31 @@ pub fn browse(url: &str) {
     if has_screen() {
         // If there is no command that opens pages, the user can open the printed address.
         let _ = Command::new(opener).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::fs;
+    use std::os::unix::fs::PermissionsExt;
+
+    use super::*;
+    use crate::edge::temporary::new_folder;
+
+    #[test]
+    fn a_viewer_that_does_not_end_or_says_too_much_is_not_waited_for() {
+        let folder = new_folder(&env::temp_dir(), &format!("tomcom-viewer-{}", std::process::id())).unwrap();
+        let path = folder.join("rerun");
+        let version = |script: &str, within| {
+            fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+            fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+            version_of(&path, within)
+        };
+        assert_eq!(version("echo rerun-cli 0.36.3 now", ANSWER).as_deref(), Some("0.36.3"));
+        let began = Instant::now();
+        assert_eq!(version("exec sleep 600", Duration::from_millis(100)), None);
+        assert_eq!(version("echo rerun-cli 0.36.3; exec yes", ANSWER).as_deref(), Some("0.36.3"));
+        assert!(began.elapsed() < Duration::from_secs(60), "{:?}", began.elapsed());
+        fs::remove_dir_all(folder).unwrap();
     }
 }

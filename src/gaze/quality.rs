@@ -64,7 +64,8 @@ impl DroppedInputCounts {
     }
 }
 
-/// Detects faults of a gaze stream, sample by sample. Only samples with a device time are checked.
+/// Detects faults of a gaze stream, sample by sample. Only samples whose time is known are checked; duplicates are found
+/// among samples with a device time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeFaultDetector {
     newest: Option<SessionTime>,

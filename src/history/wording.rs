@@ -1,6 +1,6 @@
 //! Wording of buttons, locations, signals, phases and events as texts for screens and reports.
 
-use super::probe_wording;
+use super::{press_wording, probe_wording};
 use crate::base::words::count;
 use crate::communication::offer::OfferedCommunication;
 use crate::communication::recommendation::SignalReason;
@@ -193,9 +193,13 @@ fn tutorial(event: &TutorialEvent) -> String {
 /// An entry of the timeline in words, together with who caused the entry.
 pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
-        TimelineEvent::Press { agent, button: id, no_effect } => {
-            let why = no_effect.map(|(why, about)| format!(": {}", because(kitchen, why, about, "that")));
-            (agent.name(), format!("{}{}", button(kitchen, *agent, *id), why.unwrap_or_default()))
+        TimelineEvent::Press { agent, button: id, before, after, no_effect } => {
+            let did = match no_effect {
+                Some((why, about)) => Some(because(kitchen, *why, *about, "that")),
+                None => press_wording::effect(kitchen, *agent, *id, (*before, *after)),
+            };
+            let did = did.map_or(String::new(), |did| format!(": {did}"));
+            (agent.name(), format!("{}{did}", button(kitchen, *agent, *id)))
         }
         TimelineEvent::Signal { by, signal: shown } => (sender(*by), signal(shown)),
         TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => ("wizard", "took the signal back".to_string()),

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, Press, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, KitchenChange, Press, State};
 
 /// Time in seconds after a change by somebody else within which a press at the same place is a race: the press comes
 /// too early to be a reaction to the change.
@@ -44,6 +44,19 @@ impl PressJudge {
     /// Creates a judge of presses at the start of a trial, when nobody has changed anything yet.
     pub fn new(kitchen: Arc<Kitchen>) -> PressJudge {
         PressJudge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
+    }
+
+    /// Takes note of a change of the kitchen; returns the verdict on a press of the human.
+    pub fn note(&mut self, cost: &mut CostToGo, now: SessionTime, change: &KitchenChange) -> Option<PressVerdict> {
+        match change {
+            KitchenChange::Press { press, .. } if press.agent == Agent::Human => {
+                return Some(self.human_pressed(cost, now, press));
+            }
+            KitchenChange::Press { press, .. } => self.others_changed(now, press.before, press.after),
+            KitchenChange::Correction { before, after, .. } => self.others_changed(now, *before, *after),
+            _ => {}
+        }
+        None
     }
 
     /// Records which locations a robot press, or a correction by the wizard, changed.

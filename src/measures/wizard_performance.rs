@@ -58,7 +58,7 @@ pub enum SignalVerdict {
         /// Time from the beginning of the false belief to the signal, in seconds.
         latency_s: f64,
         /// The index of the false belief period that the signal is about.
-        spell: usize,
+        period: usize,
     },
     /// Repeated: a further signal about the same false belief.
     Again,
@@ -87,33 +87,33 @@ impl SignalVerdict {
 }
 
 /// The verdict on each of a wizard's signals, in the order of the signals.
-pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<SignalVerdict> {
-    let mut hit = vec![false; spells.len()];
-    let worth = |sent: &WizardSignal| {
-        let about = |spell: &FalseBeliefPeriod| sent.aspects.contains(&spell.aspect);
-        let open = |spell: &FalseBeliefPeriod| spell.holds(sent.clock);
-        let mut now = spells.iter().enumerate().filter(|(_, spell)| about(spell) && open(spell));
+pub fn verdicts(sent: &[WizardSignal], periods: &[FalseBeliefPeriod]) -> Vec<SignalVerdict> {
+    let mut hit = vec![false; periods.len()];
+    let verdict = |sent: &WizardSignal| {
+        let about = |period: &FalseBeliefPeriod| sent.aspects.contains(&period.aspect);
+        let open = |period: &FalseBeliefPeriod| period.holds(sent.clock);
+        let mut now = periods.iter().enumerate().filter(|(_, period)| about(period) && open(period));
         // If a signal shows two aspects, the aspect whose false belief led to an error counts.
-        let of_errors = now.clone().find(|(_, spell)| spell.errors > 0);
+        let of_errors = now.clone().find(|(_, period)| period.errors > 0);
         match of_errors.or_else(|| now.next()) {
-            Some((index, spell)) if spell.errors > 0 && !hit[index] => {
+            Some((index, period)) if period.errors > 0 && !hit[index] => {
                 hit[index] = true;
-                return SignalVerdict::Hit { latency_s: sent.clock.secs_since(spell.began), spell: index };
+                return SignalVerdict::Hit { latency_s: sent.clock.secs_since(period.began), period: index };
             }
-            Some((_, spell)) if spell.errors > 0 => return SignalVerdict::Again,
+            Some((_, period)) if period.errors > 0 => return SignalVerdict::Again,
             Some(_) => return SignalVerdict::Harmless,
             None => {}
         }
-        let is_late = |spell: &FalseBeliefPeriod| {
-            spell.corrected.is_some_and(|(end, press)| end <= sent.clock && sent.press <= press + LATE_PRESSES)
+        let is_late = |period: &FalseBeliefPeriod| {
+            period.corrected.is_some_and(|(end, press)| end <= sent.clock && sent.press <= press + LATE_PRESSES)
         };
         match () {
-            () if spells.iter().any(|spell| about(spell) && is_late(spell)) => SignalVerdict::Late,
-            () if spells.iter().any(open) => SignalVerdict::WrongTarget,
+            () if periods.iter().any(|period| about(period) && is_late(period)) => SignalVerdict::Late,
+            () if periods.iter().any(open) => SignalVerdict::WrongTarget,
             () => SignalVerdict::Needless,
         }
     };
-    sent.iter().map(worth).collect()
+    sent.iter().map(verdict).collect()
 }
 
 /// Summary of durations: their number, median and maximum.
@@ -177,7 +177,7 @@ pub struct WizardMeasures {
 
 impl WizardMeasures {
     /// The wizard's performance, from the signals of a trial and, where known, the periods of false belief.
-    pub fn from_signals(sent: &[WizardSignal], spells: Option<&[FalseBeliefPeriod]>) -> WizardMeasures {
+    pub fn from_signals(sent: &[WizardSignal], periods: Option<&[FalseBeliefPeriod]>) -> WizardMeasures {
         let drawn: Vec<f64> = sent.iter().filter_map(|sent| sent.to_display_ms).collect();
         let measures = WizardMeasures {
             signals: sent.len() as u64,
@@ -185,24 +185,24 @@ impl WizardMeasures {
             key_to_display_ms: TimeSummary::from_times(drawn),
             ..WizardMeasures::default()
         };
-        let Some(spells) = spells else { return measures };
-        let worths = worths(sent, spells);
-        let count = |is: fn(&SignalVerdict) -> bool| Some(worths.iter().filter(|worth| is(worth)).count() as u64);
-        let latency = |worth: &SignalVerdict| {
-            if let SignalVerdict::Hit { latency_s, .. } = worth { Some(*latency_s) } else { None }
+        let Some(periods) = periods else { return measures };
+        let verdicts = verdicts(sent, periods);
+        let count = |is: fn(&SignalVerdict) -> bool| Some(verdicts.iter().filter(|verdict| is(verdict)).count() as u64);
+        let latency = |verdict: &SignalVerdict| {
+            if let SignalVerdict::Hit { latency_s, .. } = verdict { Some(*latency_s) } else { None }
         };
-        let latencies: Vec<f64> = worths.iter().filter_map(latency).collect();
-        let episodes = spells.iter().filter(|spell| spell.errors > 0).count() as u64;
+        let latencies: Vec<f64> = verdicts.iter().filter_map(latency).collect();
+        let episodes = periods.iter().filter(|period| period.errors > 0).count() as u64;
         WizardMeasures {
             episodes: Some(episodes),
             hits: Some(latencies.len() as u64),
             omissions: Some(episodes - latencies.len() as u64),
             latency_s: TimeSummary::from_times(latencies),
-            repeated: count(|worth| matches!(worth, SignalVerdict::Again)),
-            late: count(|worth| matches!(worth, SignalVerdict::Late)),
-            wrong_targets: count(|worth| matches!(worth, SignalVerdict::WrongTarget)),
-            needless: count(|worth| matches!(worth, SignalVerdict::Needless)),
-            harmless: count(|worth| matches!(worth, SignalVerdict::Harmless)),
+            repeated: count(|verdict| matches!(verdict, SignalVerdict::Again)),
+            late: count(|verdict| matches!(verdict, SignalVerdict::Late)),
+            wrong_targets: count(|verdict| matches!(verdict, SignalVerdict::WrongTarget)),
+            needless: count(|verdict| matches!(verdict, SignalVerdict::Needless)),
+            harmless: count(|verdict| matches!(verdict, SignalVerdict::Harmless)),
             ..measures
         }
     }

@@ -1,6 +1,6 @@
 //! Timed behaviour of the simulated participant: actions that are due, and reactions to events of the session.
 
-use super::population::rare_chance;
+use super::draws::rare_chance;
 use super::simulated::{ParticipantAction, SimulatedParticipant};
 use super::true_beliefs::ParticipantBeliefs;
 use crate::base::time::SessionTime;

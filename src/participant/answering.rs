@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::population::{chance, normal};
+use super::draws::{chance, normal};
 use super::simulated::SimulatedParticipant;
 use super::witness;
 use crate::base::rng::{Stream, stream};

@@ -2,7 +2,8 @@
 
 use rand::RngExt;
 
-use super::population::{ParticipantTraits, chance, normal};
+use super::draws::{chance, normal};
+use super::population::ParticipantTraits;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;

@@ -3,7 +3,8 @@
 
 use rand::RngExt;
 
-use super::population::{ParticipantTraits, chance};
+use super::draws::chance;
+use super::population::ParticipantTraits;
 use crate::base::rng::Stream;
 use crate::kitchen::{ButtonId, ContentId, Kitchen};
 

@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::decision::{Impatience, effective_presses};
-use super::population::{chance, normal};
+use super::draws::{chance, normal};
 use super::simulated::{ParticipantAction, SimulatedParticipant};
 use super::slips::slipped_button;
 use super::true_beliefs::wanted_dish;

@@ -2,8 +2,8 @@
 
 use rand::RngExt;
 
+use super::draws::chance;
 use super::eyes::FixationProgress;
-use super::population::chance;
 use super::simulated::SimulatedParticipant;
 use super::true_beliefs::wanted_dish;
 use super::weighted_draw::drawn_by_weight;

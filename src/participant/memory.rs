@@ -1,7 +1,8 @@
 //! Memory of recipes in a simulated participant: learned in the instruction, fading without use, recalled (rightly or
 //! wrongly) for an order, and doubted after unexpected events.
 
-use super::population::{ParticipantTraits, Population, normal, rare_chance};
+use super::draws::{normal, rare_chance};
+use super::population::{ParticipantTraits, Population};
 use super::true_beliefs::ParticipantBeliefs;
 use super::weighted_draw::drawn_by_weight;
 use crate::base::rng::Stream;

@@ -6,7 +6,7 @@
 //!
 //! Modules from the ground up:
 //!
-//! - Components: [`population`] (distribution of traits), [`true_beliefs`], `weighted_draw`, `memory` (of recipes), `eyes`,
+//! - Components: `draws`, [`population`] (distribution of traits), [`true_beliefs`], `weighted_draw`, `memory` (of recipes), `eyes`,
 //!   `attention`, `signal_sense`.
 //! - Planning: `knowledge` (of buttons and processing steps), `goals` (missing parts), `habits` (and lapses),
 //!   `planning` (backward chaining), `decision` (next presses).
@@ -20,6 +20,7 @@ mod acting;
 mod answering;
 mod attention;
 mod decision;
+mod draws;
 mod eyes;
 pub mod gaze_gaps;
 mod goals;

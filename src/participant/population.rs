@@ -1,9 +1,8 @@
 //! Population of simulated participants: distributions of traits, and individual participants drawn from them.
 
-use rand::RngExt;
-use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
+use super::draws::normal;
 use crate::base::rng::Stream;
 
 /// Distribution of one trait over the simulated population, given by median and relative spread.
@@ -66,22 +65,6 @@ impl TraitSpread {
         let odds = self.median / (1.0 - self.median) * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp();
         odds / (1.0 + odds)
     }
-}
-
-/// A draw from the standard normal distribution.
-pub(super) fn normal(random: &mut Stream) -> f64 {
-    StandardNormal.sample(random)
-}
-
-/// Draws whether an event with probability `p` happens.
-pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
-    random.random::<f64>() < p
-}
-
-/// Draws whether an event with probability `p` happens. If `p` is 0 no random number is drawn, so that a new trait does
-/// not change participants without the trait.
-pub(super) fn rare_chance(random: &mut Stream, p: f64) -> bool {
-    p > 0.0 && chance(random, p)
 }
 
 /// Parameters of the simulated population. The defaults of planning and slips are calibrated to the paper's participants

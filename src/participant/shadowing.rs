@@ -6,8 +6,8 @@
 //! [`SimulatedParticipant::act`]. A participant that presses as recorded may believe what the recorded person believed:
 //! that is the ideal observer of `examples/ideal_observer`.
 
+use super::draws::chance;
 use super::habits::Habits;
-use super::population::chance;
 use super::simulated::{ParticipantAction, SimulatedParticipant};
 use super::true_beliefs::wanted_dish;
 use crate::base::rng::{Stream, stream};

@@ -19,7 +19,7 @@ use std::collections::VecDeque;
 
 use rand::RngExt;
 
-use super::population::{chance, rare_chance};
+use super::draws::{chance, rare_chance};
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;

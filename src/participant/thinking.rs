@@ -2,9 +2,9 @@
 //! on next presses.
 
 use super::decision::{DecisionContext, Impatience};
+use super::draws::chance;
 use super::habits::Lapses;
 use super::learning;
-use super::population::chance;
 use super::simulated::SimulatedParticipant;
 use super::true_beliefs::wanted_dish;
 use crate::base::time::SessionTime;

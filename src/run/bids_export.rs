@@ -14,8 +14,8 @@ use crate::analysis::bids::{
 use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LogEnding, LogReader, at_line};
-use crate::kitchen::{Agent, KitchenChange};
+use crate::edge::log::{LogEnding, LogReader};
+use crate::kitchen::KitchenChange;
 use crate::measures::errors::PressJudge;
 use crate::session::event::Event;
 use crate::session::protocol::ProtocolEvent;
@@ -152,23 +152,14 @@ fn read(
     let cost = cost.for_kitchen(&kitchen);
     let (mut judge, mut tables) = (PressJudge::new(kitchen.clone()), RecordingTables::new(&session, with_words));
     while let Some(line) = log.next_line()? {
-        let wrong =
-            |error: apply::ApplyError| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy);
-        let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
+        let change = apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?.change;
+        let error = judge.note(cost, line.stamped.time, &change).map(|verdict| verdict.error);
+        if let Some(pause) = session.probe_pause(&line.stamped) {
+            judge.postpone(pause);
+        }
         let outcome = match change {
-            KitchenChange::Press { press, .. } if press.agent == Agent::Human => {
-                let error = judge.human_pressed(cost, line.stamped.time, &press).error;
-                Some(PressOutcome { effective: press.effective, error: Some(error) })
-            }
-            KitchenChange::Press { press, .. } => {
-                judge.others_changed(line.stamped.time, press.before, press.after);
-                Some(PressOutcome { effective: press.effective, error: None })
-            }
+            KitchenChange::Press { press, .. } => Some(PressOutcome { effective: press.effective, error }),
             KitchenChange::UncountedPress { .. } => Some(PressOutcome::default()),
-            KitchenChange::Correction { before, after, .. } => {
-                judge.others_changed(line.stamped.time, before, after);
-                None
-            }
             _ => None,
         };
         tables.note(&line.stamped, &session, outcome);

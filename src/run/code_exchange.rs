@@ -1,11 +1,12 @@
 //! Export and import of raters' codes and of two raters' consensus codes, as one table.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::codes::CodedRecording;
 use super::error::RunError;
-use crate::edge::log::consensus_file;
 use crate::edge::log::rater_codes::{self, RaterCodeRow};
+use crate::edge::log::{RecordingLock, RecordingWriteError, consensus_file};
 use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use crate::measures::consensus::RaterConsensus;
 use crate::session::settings::is_code;
@@ -14,7 +15,8 @@ use crate::session::settings::is_code;
 const RATER: &str = "a rater's code of 1 to 32 letters, digits, - and _, never a name; or two codes such as R1+R2, \
                      for the consensus of these raters";
 
-/// Author of a row of the table of codes: one rater, or two raters with a consensus.
+/// Author of a row of the table of codes: one rater, or two raters with a consensus, in the order of the alphabet.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum RowAuthor {
     Rater(String),
     Pair([String; 2]),
@@ -26,67 +28,83 @@ impl RowAuthor {
             None => is_code(text).then(|| RowAuthor::Rater(text.to_string())),
             Some((one, other)) => {
                 let is_pair = is_code(one) && is_code(other) && one != other;
-                is_pair.then(|| RowAuthor::Pair([one.to_string(), other.to_string()]))
+                is_pair.then(|| RowAuthor::Pair([one.min(other).to_string(), one.max(other).to_string()]))
             }
+        }
+    }
+
+    /// Takes the right to code as this author the recording in a folder.
+    fn lock(&self, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
+        match self {
+            RowAuthor::Rater(rater) => RecordingLock::take_for_codes(folder, &[rater]),
+            RowAuthor::Pair([one, other]) => RecordingLock::take_for_codes(folder, &[one, other]),
         }
     }
 }
 
 /// Imports the rows of a file into the recordings, in addition to existing codes. No row is imported if one of them is
-/// invalid.
+/// invalid, or if another program codes as one of the raters: the codes of a rater are always replaced as a whole.
 ///
 /// # Errors
 /// The file cannot be read, a row does not refer to an error of these recordings, a consensus contradicts a code that
-/// both raters gave, or a folder is not writable.
+/// both raters gave, another program codes as one of the raters, or a folder is not writable.
 pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
     let (text, rows) = rater_codes::read_export(file)?;
-    let mut changed = vec![Vec::new(); recordings.len()];
-    let mut settled = Vec::new();
+    let wrong =
+        |row: &RaterCodeRow, found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
     let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
+    let mut imported = Vec::new();
     for row in &rows {
-        let wrong = |found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
         let Some(index) = names.iter().position(|name| *name == row.recording) else {
             let found = format!("the recording \"{}\"", row.recording);
             let remedy = format!("one of the recordings that were given: {}", names.join(", "));
-            return Err(wrong(found, &remedy).into());
+            return Err(wrong(row, found, &remedy).into());
         };
-        let one = &mut recordings[index];
         let Some(author) = RowAuthor::parse(&row.rater) else {
-            return Err(wrong(format!("the rater \"{}\"", row.rater), RATER).into());
+            return Err(wrong(row, format!("the rater \"{}\"", row.rater), RATER).into());
         };
-        if let Some((found, remedy)) = one.codable.fault(row.press, &row.code) {
-            return Err(wrong(found, &remedy).into());
+        if let Some((found, remedy)) = recordings[index].codable.fault(row.press, &row.code) {
+            return Err(wrong(row, found, &remedy).into());
         }
+        imported.push((index, author, row));
+    }
+    // Consensus codes are added last, since the codes of single raters can stand in later rows of the table.
+    imported.sort_by_key(|(_, author, _)| matches!(author, RowAuthor::Pair(_)));
+    let authors: BTreeSet<(usize, &RowAuthor)> = imported.iter().map(|(index, author, _)| (*index, author)).collect();
+    let locked = |(index, author): &(usize, &RowAuthor)| author.lock(&recordings[*index].folder);
+    let _locks = authors.iter().map(locked).collect::<Result<Vec<RecordingLock>, _>>()?;
+    for index in authors.iter().map(|(index, _)| *index).collect::<BTreeSet<usize>>() {
+        recordings[index].read_codes()?;
+    }
+    for (index, author, row) in &imported {
+        if let Err((found, remedy)) = recordings[*index].add(author, row) {
+            return Err(wrong(row, found, &remedy).into());
+        }
+    }
+    for (index, author) in authors {
+        let one = &recordings[index];
         match author {
-            RowAuthor::Rater(rater) => {
-                one.codes.entry(rater.clone()).or_default().0.insert(row.press, row.code.clone());
-                changed[index].push(rater);
+            RowAuthor::Rater(rater) => rater_codes::write(&one.folder, rater, &one.codes[rater])?,
+            RowAuthor::Pair(_) => {
+                one.consensus.as_ref().map_or(Ok(()), |consensus| consensus_file::write(&one.folder, consensus))?;
             }
-            // Consensus codes are added last, since the codes of single raters can stand in later rows of the table.
-            RowAuthor::Pair(raters) => settled.push((index, raters, row)),
-        }
-    }
-    for (index, raters, row) in &settled {
-        let fault = recordings[*index].settle(raters, row.press, &row.code);
-        if let Err((found, remedy)) = fault {
-            return Err(rater_codes::wrong_line(file, &text, row.line, found, &remedy).into());
-        }
-    }
-    for (index, (one, mut raters)) in recordings.iter().zip(changed).enumerate() {
-        raters.sort();
-        raters.dedup();
-        for rater in raters {
-            rater_codes::write(&one.folder, &rater, &one.codes[&rater])?;
-        }
-        let is_settled = settled.iter().any(|(settled, ..)| *settled == index);
-        if let Some(consensus) = one.consensus.as_ref().filter(|_| is_settled) {
-            consensus_file::write(&one.folder, consensus)?;
         }
     }
     Ok(rows.len() as u64)
 }
 
 impl CodedRecording {
+    /// Adds the code of a row of the table; returns what was found and what would be right if that is not possible.
+    fn add(&mut self, author: &RowAuthor, row: &RaterCodeRow) -> Result<(), (String, String)> {
+        match author {
+            RowAuthor::Rater(rater) => {
+                self.codes.entry(rater.clone()).or_default().0.insert(row.press, row.code.clone());
+                Ok(())
+            }
+            RowAuthor::Pair(raters) => self.settle(raters, row.press, &row.code),
+        }
+    }
+
     /// Adds a consensus code of two raters; returns what was found and what would be right if that is not possible.
     fn settle(&mut self, raters: &[String; 2], press: u64, code: &ErrorCauseCode) -> Result<(), (String, String)> {
         let new = RaterConsensus::new(&raters[0], &raters[1]);

@@ -58,6 +58,16 @@ impl CodedRecording {
         })
     }
 
+    /// Reads the codes beside the recording again.
+    ///
+    /// # Errors
+    /// A file with codes is damaged.
+    pub(super) fn read_codes(&mut self) -> FileResult<()> {
+        self.codes = rater_codes::read_all(&self.folder, &self.codable)?;
+        self.consensus = consensus_file::read(&self.folder, &self.codable)?;
+        Ok(())
+    }
+
     /// Name of the recording's folder.
     pub fn name(&self) -> String {
         let resolved = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());

@@ -15,6 +15,7 @@
 
 mod agents;
 mod consequences;
+mod due_timers;
 mod informing;
 mod probing;
 mod robot;
@@ -37,14 +38,12 @@ use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
-use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::offers;
 use crate::session::orders::OrderList;
 use crate::session::probes::ProbeEvent;
 use crate::session::settings::ParticipantKind;
-use crate::session::silence;
 use crate::session::timers::TimerQueue;
-use crate::session::{AppliedEvent, Event, LogHeader, Session, SessionEffect, SessionSpec, Timer, TimestampedEvent};
+use crate::session::{AppliedEvent, Event, LogHeader, Session, SessionSpec, TimestampedEvent};
 use crate::wizard::{ScriptedWizard, WizardAction};
 
 /// Runs a session: raises due events, accepts external ones, and stamps all of them.
@@ -258,8 +257,8 @@ impl SessionEngine {
             return;
         }
         let state = self.session().state;
-        let deed = self.participant.as_mut().and_then(|one| one.act(now, state));
-        match deed {
+        let action = self.participant.as_mut().and_then(|one| one.act(now, state));
+        match action {
             Some(ParticipantAction::Gaze(sample)) if self.session().spec.participant.simulates_gaze() => {
                 if !self.gaps.as_mut().is_some_and(|gaps| gaps.swallows(now)) {
                     self.record_own(now, Event::Gaze(sample));
@@ -290,25 +289,6 @@ impl SessionEngine {
         }
     }
 
-    fn fire_timer(&mut self, now: SessionTime) {
-        let Some(timer) = self.timers.take_first() else { return };
-        let kitchen = self.session().kitchen.clone();
-        let event = match timer {
-            Timer::ClearOrder(order) => Event::OrderCleared { order: kitchen.location(order).name.clone() },
-            Timer::NewOrder(order) => {
-                let dish = kitchen.dish(self.orders.draw()).name.clone();
-                Event::OrderShown { order: kitchen.location(order).name.clone(), dish }
-            }
-            Timer::EndSignal => Event::SignalEnded { reason: SignalEndReason::Elapsed },
-            Timer::EndTrial => Event::TrialEnded { reason: TrialEndReason::Time },
-            Timer::EndTrialByOrders => Event::TrialEnded { reason: TrialEndReason::Orders },
-            Timer::EndTrialByPresses => Event::TrialEnded { reason: TrialEndReason::Presses },
-            Timer::HumanWaits => Event::HumanWaits { silent_ns: silence::lasted(self.session(), now) },
-            Timer::ReviewOffer => return self.review_offer(now),
-        };
-        self.record_own(now, event);
-    }
-
     /// Applies the immediate consequences of an event, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
@@ -332,7 +312,7 @@ impl SessionEngine {
             let kitchen = self.session().kitchen.clone();
             let state = self.session().state;
             match self.robot.decide(&kitchen, &mut self.follower.cost, now, state) {
-                Some(deed) => self.record_deed(now, deed),
+                Some(event) => self.record_robot(now, event),
                 None => return,
             }
         }
@@ -382,34 +362,12 @@ impl SessionEngine {
         if let Some(estimate) = estimate {
             self.record_own(now, Event::BeliefEstimated(estimate));
         }
-        for deed in robots {
-            self.record_deed(now, deed);
+        for event in robots {
+            self.record_robot(now, event);
         }
         self.end_outdated_proposal(now);
         self.check_criterion(now);
         self.measure_calibration(now);
         Ok(())
-    }
-
-    fn perform(&mut self, effect: SessionEffect) {
-        match effect {
-            SessionEffect::At { time, timer } => self.timers.set(time, timer),
-            SessionEffect::Cancel(timer) => self.timers.cancel(timer),
-            SessionEffect::CancelAll => {
-                self.timers.cancel_all();
-                self.robot.rest();
-            }
-            SessionEffect::Postpone(by) => {
-                self.timers.postpone(by);
-                self.robot.postpone(by);
-                if let Some(participant) = &mut self.participant {
-                    participant.postpone(by);
-                }
-                if let Some(wizard) = &mut self.wizard {
-                    wizard.postpone(by);
-                }
-            }
-            SessionEffect::Close => {}
-        }
     }
 }

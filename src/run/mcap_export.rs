@@ -10,7 +10,7 @@ use crate::analysis::follower::SessionFollower;
 use crate::analysis::foxglove::McapMessageConverter;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogEnding, LogReader, at_line};
+use crate::edge::log::{LOG_NAME, LogEnding, LogReader};
 use crate::edge::mcap_file::McapFile;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::LogHeader;
@@ -45,15 +45,13 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
     }
     let folder = log.folder().to_path_buf();
     let unwritable =
-        |reason: io::Error| FileError::unreadable(&folder, reason, "a folder of a recording, which can be written to");
+        |reason: io::Error| FileError::not_written(&folder, reason, "a folder of a recording, which can be written to");
     let mut file = McapFile::create(&folder).map_err(unwritable)?;
     let session = log.session();
     let cost = CostToGo::new(session.kitchen.clone());
     let (mut follower, maker) = (SessionFollower::new(session, cost), McapMessageConverter::default());
     while let Some(line) = log.next_line()? {
-        follower
-            .apply(&line.stamped)
-            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        follower.apply(&line.stamped).map_err(|error| log.refused(&line, error))?;
         maker
             .messages(&line.stamped, &follower)
             .iter()

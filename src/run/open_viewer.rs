@@ -266,6 +266,10 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
         }
         (_, several) => elsewhere(several)?,
     };
+    // Beside the log, a stream that is damaged is replaced, too.
+    if locked.is_none() {
+        check_foreign(&path)?;
+    }
     let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
     match sealed {
@@ -274,20 +278,31 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
     }
 }
 
+/// Checks that a stream file can be written to this path, whatever the file's name is.
+///
+/// # Errors
+/// There is a file at the path that this program did not write.
+fn check_foreign(path: &Path) -> Result<(), RerunViewerError> {
+    for path in [path, &begun(path)] {
+        let is_own = |_: &[u8]| stream_head::identity(path).is_ok_and(|found| found.is_some());
+        if let Err(reason) = overwrite::check(path, "a stream", is_own) {
+            return Err(RerunViewerError::Unwritable { path: path.to_path_buf(), reason });
+        }
+    }
+    Ok(())
+}
+
+/// Path of a stream file while it is being written.
+fn begun(path: &Path) -> PathBuf {
+    let mut begun = path.as_os_str().to_os_string();
+    begun.push(BEGUN);
+    PathBuf::from(begun)
+}
+
 /// Builds the stream file of these recordings. An existing stream file is replaced only when the new one is complete,
 /// so a damaged log does not destroy it.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewerError> {
-    let mut begun = path.as_os_str().to_os_string();
-    begun.push(BEGUN);
-    let begun = PathBuf::from(begun);
-    if !path.ends_with(RRD_NAME) {
-        for path in [path, &begun] {
-            let is_own = |_: &[u8]| stream_head::identity(path).is_ok_and(|found| found.is_some());
-            if let Err(reason) = overwrite::check(path, "a stream", is_own) {
-                return Err(RerunViewerError::Unwritable { path: path.to_path_buf(), reason });
-            }
-        }
-    }
+    let begun = begun(path);
     let outlets = StreamOutlets { file: Some(begun.clone()), server: None, at: None };
     let written = playing(recordings).map_err(RerunViewerError::from).and_then(|all| write(all, recordings, &outlets));
     match written {

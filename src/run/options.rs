@@ -89,7 +89,7 @@ impl SettingOverrides {
         let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];
         if let Some((key, _)) = decided.into_iter().find(|(_, is_given)| *is_given && spec.plan.is_some()) {
             let found = format!("{key}, with a session file that has a plan");
-            let remedy = "no {key}: the plan of the study decides about conditions and seed";
+            let remedy = format!("no {key}: the plan of the study decides about conditions and seed");
             return Err(SettingError::new(key, found, remedy));
         }
         spec.seed = self.seed.unwrap_or(spec.seed);

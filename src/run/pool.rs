@@ -6,16 +6,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::engine::SessionEngine;
-use super::headless;
-use super::parallel::WorkerPool;
+use super::kept_cost::KeptCost;
 use super::simulate::SimulationShard;
+use super::{headless, parallel};
 use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::SessionSetup;
 use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::plan::{Participants, Study};
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
@@ -156,10 +155,10 @@ impl PoolStudy<'_> {
         (spec, done, trial)
     }
 
-    /// Simulates a trial of the pool; returns also the cost to go, whose cache the next trial uses.
-    fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, cost: CostToGo) -> (PoolTrial, CostToGo) {
+    /// Simulates a trial of the pool.
+    fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, kept: &mut KeptCost) -> PoolTrial {
         let (spec, arm, trial) = self.settings(item);
-        let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, cost);
+        let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, kept.take(kitchen));
         let mut signals = SignalTimes::default();
         let keep = |stamped: &TimestampedEvent| {
             signals.note(stamped);
@@ -184,7 +183,8 @@ impl PoolStudy<'_> {
         let group = self.study.group(item.participant as usize).name;
         let PoolItem { participant, period, .. } = item;
         let planned = self.planned(item);
-        (PoolTrial { participant, group, period, planned, arm, counts }, follower.cost)
+        kept.keep(kitchen, follower.cost);
+        PoolTrial { participant, group, period, planned, arm, counts }
     }
 }
 
@@ -197,14 +197,8 @@ pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> F
     request.check(path)?;
     let pool = request.study(path)?;
     let kitchen = Arc::new(request.files.kitchen.kitchen.clone());
-    let workers = WorkerPool::new(|| Some(CostToGo::new(kitchen.clone())));
-    let one = |cost: &mut Option<CostToGo>, item: &PoolItem| {
-        let own = cost.take().unwrap_or_else(|| CostToGo::new(kitchen.clone()));
-        let (trial, own) = pool.simulate(&kitchen, *item, own);
-        *cost = Some(own);
-        trial
-    };
-    let trials = workers.each(&pool.items(), one, done);
+    let one = |kept: &mut KeptCost, item: &PoolItem| pool.simulate(&kitchen, *item, kept);
+    let trials = parallel::each_with(&pool.items(), KeptCost::default, one, done);
     let header = pool.header.clone();
     SimulationPool::from_trials(header, trials)
         .map_err(|wrong| FileError::from_finding(path, wrong.found, wrong.remedy))

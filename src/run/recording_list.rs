@@ -9,9 +9,8 @@ use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
-use crate::edge::log::{LogEnding, LogReader, at_line};
+use crate::edge::log::{LogEnding, LogReader};
 use crate::edge::recordings;
-use crate::kitchen::{Agent, KitchenChange};
 use crate::measures::errors::PressJudge;
 use crate::session::apply;
 
@@ -129,21 +128,13 @@ fn read(
     let mut judge = PressJudge::new(kitchen);
     let mut errors = 0;
     while let Some(line) = log.next_line()? {
-        let wrong = |error: crate::session::apply::ApplyError| {
-            at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy)
-        };
-        let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
-        match change {
-            KitchenChange::Press { press, .. }
-                if press.agent == Agent::Human && depth == RecordingListDetail::WithErrors =>
-            {
-                errors += u64::from(judge.human_pressed(cost, line.stamped.time, &press).error);
+        let change = apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?.change;
+        if depth == RecordingListDetail::WithErrors {
+            let verdict = judge.note(cost, line.stamped.time, &change);
+            errors += u64::from(verdict.is_some_and(|verdict| verdict.error));
+            if let Some(pause) = session.probe_pause(&line.stamped) {
+                judge.postpone(pause);
             }
-            KitchenChange::Press { press, .. } if press.agent == Agent::Robot => {
-                judge.others_changed(line.stamped.time, press.before, press.after);
-            }
-            KitchenChange::Correction { before, after, .. } => judge.others_changed(line.stamped.time, before, after),
-            _ => {}
         }
     }
     let at_console = ExclusionStatus::at_console(&session);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader, at_line};
+use crate::edge::log::{LOG_NAME, LogReader};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, KitchenChange};
 use crate::session::{Event, Session, TimestampedEvent};
@@ -58,10 +58,7 @@ impl RecordingReplay {
     /// A line is not an event, or the event is not possible in the session's present state.
     pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
         let Some(line) = self.log.next_line()? else { return Ok(None) };
-        let applied = self
-            .follower
-            .apply(&line.stamped)
-            .map_err(|error| at_line(self.log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        let applied = self.follower.apply(&line.stamped).map_err(|error| self.log.refused(&line, error))?;
         Ok(Some(ReplayedEvent { stamped: line.stamped, change: applied.change }))
     }
 
@@ -104,6 +101,13 @@ impl RecordingReplay {
     }
 }
 
+/// Canonical path of a recording's log, the same for every path that leads to the recording.
+pub fn log_place(recording: &Path) -> PathBuf {
+    let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.to_path_buf() };
+    // A recording that does not exist is reported later, when the program opens it.
+    log.canonicalize().unwrap_or(log)
+}
+
 /// Checks that no recording is given twice.
 ///
 /// # Errors
@@ -111,9 +115,7 @@ impl RecordingReplay {
 pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
     let mut known = BTreeSet::new();
     for recording in recordings {
-        let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.clone() };
-        // A recording that does not exist is reported later, when the program opens it.
-        if !known.insert(log.canonicalize().unwrap_or(log)) {
+        if !known.insert(log_place(recording)) {
             let remedy = "each recording once".to_string();
             return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
         }

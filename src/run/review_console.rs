@@ -1,5 +1,7 @@
 //! The console that shows a recording, or a session that is still running: pause, step, seek, speed.
 
+mod playing;
+
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -13,23 +15,17 @@ use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSetting
 use crate::base::time::SessionTime;
 use crate::console::compared::SenderComparisonView;
 use crate::console::notice::NoticeLevel;
-use crate::console::playback::{Playback, ReplayAction, SPEEDS};
+use crate::console::playback::{Playback, ReplayAction};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
 use crate::edge::log::{LogEnding, RecordingLock};
 use crate::edge::terminal::TerminalScreen;
-use crate::history::landmark::ReplayLandmark;
 use crate::history::wording;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::Event;
 
-/// Longest time per frame that is spent on applying events at full speed.
-const WORK: Duration = Duration::from_millis(20);
 /// Time spent on reading the rest of a recording, of the 50 ms between two ticks for files.
 const READING: Duration = Duration::from_millis(35);
-/// Length of one step of seeking in a recording, 10 s.
-const SEEK: SessionTime = SessionTime(10_000_000_000);
 
 /// Opens the console that shows a recording; with `follow`, at the growing end of a running session; optionally with a
 /// comparison of wizard and assistants.
@@ -230,69 +226,6 @@ impl Review {
         self.model.playback.as_ref().is_some_and(what)
     }
 
-    fn go(&mut self, to: ReplayAction) {
-        let speeds = SPEEDS.len() - 1;
-        match to {
-            ReplayAction::PlayPause => {
-                let at_end = self.film.position == self.film.length().1 && !self.grows;
-                if at_end {
-                    self.stand_at(self.film.trial_start());
-                }
-                self.playback(|playback| playback.playing = !playback.playing);
-            }
-            ReplayAction::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
-            ReplayAction::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
-            ReplayAction::StepForward => self.stand_at(self.film.next_step()),
-            ReplayAction::StepBack => self.stand_at(self.film.last_step()),
-            ReplayAction::On(what) => self.look_for(what, true),
-            ReplayAction::BackTo(what) => self.look_for(what, false),
-            ReplayAction::ToStart => self.stand_at(0),
-            ReplayAction::ToEvent(number) => self.stand_at(number as usize + 1),
-            ReplayAction::ToTime(time) => self.seek(time),
-            ReplayAction::SeekForward => self.seek(self.now + SEEK),
-            ReplayAction::SeekBack => self.seek(self.now - SEEK),
-            ReplayAction::ToEnd => {
-                let (length, events) = self.film.length();
-                self.wind(events);
-                self.now = length;
-                let grows = self.grows;
-                self.playback(|playback| playback.playing = grows);
-            }
-        }
-        let follows = self.grows && to == ReplayAction::ToEnd;
-        if !matches!(to, ReplayAction::Faster | ReplayAction::Slower) {
-            self.playback(|playback| playback.follows = follows);
-        }
-        self.at = Instant::now();
-    }
-
-    fn stand_at(&mut self, position: usize) {
-        self.wind(position);
-        self.now = self.film.time();
-        self.playback(|playback| playback.playing = false);
-    }
-
-    /// Moves the replay to the next or previous landmark of this kind, if there is one.
-    fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
-        match self.film.landmark(what, forward) {
-            Some(position) => self.stand_at(position),
-            None => {
-                let which = if forward { "later" } else { "earlier" };
-                self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {}", what.name()));
-            }
-        }
-    }
-
-    fn seek(&mut self, time: SessionTime) {
-        self.now = time.min(self.film.length().0);
-        self.wind(self.film.until(self.now));
-    }
-
-    fn wind(&mut self, position: usize) {
-        self.model.trail.clear();
-        self.film.wind(position);
-    }
-
     /// Passes the events from this position on to the comparison of wizard and assistants.
     fn tell(&self, from: usize) {
         if let Some(comparison) = &self.comparison {
@@ -327,43 +260,6 @@ impl Review {
             self.grows = false;
         }
         Ok(())
-    }
-
-    /// Advances the replay by the time that has passed since the last frame.
-    fn play(&mut self) {
-        let passed = self.at.elapsed();
-        self.at = Instant::now();
-        let (length, events) = self.film.length();
-        if self.is(|playback| playback.follows) {
-            // For a session that is still running, the shown clock goes on between events.
-            let ahead = if self.grows { self.read_at.elapsed().as_nanos() as u64 } else { 0 };
-            self.now = self.now.max(length + SessionTime(ahead));
-        } else if self.is(|playback| playback.playing) {
-            let speed = self.model.playback.as_ref().map_or(1.0, |playback| SPEEDS[playback.speed]);
-            self.now = match speed.is_finite() {
-                true => (self.now + SessionTime::from_secs_f64(passed.as_secs_f64() * speed)).min(length),
-                false => length,
-            };
-        } else {
-            return;
-        }
-        if !self.film.is_read() {
-            self.now = self.now.min(self.film.read_to());
-        }
-        let until = self.film.until(self.now);
-        let began = Instant::now();
-        while self.film.position < until && began.elapsed() < WORK {
-            let Some(stamped) = self.film.forward() else { break };
-            if let Event::Gaze(sample) = stamped.event {
-                self.model.see(stamped.time, sample);
-            }
-        }
-        if self.film.position < until {
-            self.now = self.film.time();
-        } else if self.film.position == events && !self.grows {
-            self.playback(|playback| playback.playing = false);
-        }
-        self.dirty = true;
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::engine::SessionEngine;
 use super::headless;
+use super::kept_cost::KeptCost;
 use super::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
 use crate::analysis::belief_check::TrialBeliefCollector;
@@ -75,20 +76,19 @@ pub fn measure(
     mut finished: impl FnMut(&CohortRow),
 ) -> RobustnessTable {
     let kitchen = Arc::new(request.battery.session.kitchen.kitchen.clone());
-    let workers = WorkerPool::new(|| Some(CostToGo::new(kitchen.clone())));
+    let workers = WorkerPool::new(KeptCost::default);
     let items: Vec<(CohortPart, u64)> =
         PARTS.into_iter().flat_map(|part| (0..request.trials).map(move |trial| (part, trial))).collect();
     let of_cohort = |cohort: &CohortSpec| {
-        let one = |cost: &mut Option<CostToGo>, (part, trial): &(CohortPart, u64)| {
-            let own = cost.take().unwrap_or_else(|| CostToGo::new(kitchen.clone()));
+        let one = |kept: &mut KeptCost, (part, trial): &(CohortPart, u64)| {
             let spec = settings_of_trial(&settings(request, cohort, *part), *trial);
-            let (events, follower) = simulate(&kitchen, spec.clone(), *trial, own);
+            let (events, follower) = simulate(&kitchen, spec.clone(), *trial, kept.take(&kitchen));
             let summary = TrialSummary::from_follower(&follower);
-            let (views, own) = match part {
+            let (views, cost) = match part {
                 CohortPart::Assisted(_) => (<[TrialBeliefs; 2]>::default(), follower.cost),
                 CohortPart::ChosenOn | CohortPart::Unassisted => views(spec, *trial, &events, follower),
             };
-            *cost = Some(own);
+            kept.keep(&kitchen, cost);
             (views, summary)
         };
         let simulated = workers.each(&items, one, &done);

@@ -9,7 +9,7 @@ use crate::analysis::compared_recording::{RecordingSenderComparison, SenderCompa
 use crate::analysis::watcher::SenderComparisonSettings;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LogReader, at_line};
+use crate::edge::log::LogReader;
 
 /// Matching windows that the option `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
@@ -33,7 +33,7 @@ fn follow(recording: &Path, request: &SenderComparisonSettings) -> FileResult<Re
     let mut comparer = SenderComparer::new(log.session(), request);
     while let Some(line) = log.next_line()? {
         let added = comparer.add(&line.stamped);
-        added.map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        added.map_err(|error| log.refused(&line, error))?;
     }
     let standing = exclusion_status(comparer.session(), &log)?;
     Ok(comparer.finish(recording.display().to_string(), standing))

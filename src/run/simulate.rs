@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::engine::SessionEngine;
 use super::error::RunError;
+use super::kept_cost::KeptCost;
 use super::leaving::ways_to_look;
 use super::parallel::WorkerPool;
 use super::replay::RecordingReplay;
@@ -155,16 +156,15 @@ pub fn each_trial(
         check_simulated(&folder_of_trial(&simulation.out, &header.session), &header)?;
     }
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
-    let cost = CostToGo::new(kitchen.clone());
-    let workers = WorkerPool::new(|| Some(cost.clone()));
+    let workers = WorkerPool::new(KeptCost::default);
     let mut trials = simulation.own_trials();
     loop {
         let block: Vec<u64> = trials.by_ref().take(BLOCK).collect();
         if block.is_empty() {
             return Ok(());
         }
-        let one = |own: &mut Option<CostToGo>, trial: &u64| {
-            let simulated = simulate_trial(simulation, &kitchen, *trial, (own, &cost));
+        let one = |kept: &mut KeptCost, trial: &u64| {
+            let simulated = simulate_trial(simulation, &kitchen, *trial, kept);
             if simulated.is_ok() {
                 done();
             }
@@ -240,18 +240,17 @@ fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
     folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session)
 }
 
-/// Simulates a trial, or reads its complete recording. `own`: cost to go of this thread's last trial, whose cache is
-/// reused; `unused`: a new cost to go.
+/// Simulates a trial, or reads its complete recording. `kept`: the cost to go of this thread's last trial.
 fn simulate_trial(
     simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
     trial: u64,
-    (own, unused): (&mut Option<CostToGo>, &CostToGo),
+    kept: &mut KeptCost,
 ) -> Result<SimulatedTrial, RunError> {
     let header = header_of_trial(simulation, trial);
     let folder = folder_of_trial(&simulation.out, &header.session);
     let opened = SimulatedLogState::open(&folder, &header)?;
-    let cost = own.take().unwrap_or_else(|| unused.clone());
+    let cost = kept.take(kitchen);
     let (follower, found, moved) = match opened {
         SimulatedLogState::Whole => {
             let mut replay = RecordingReplay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
@@ -266,7 +265,7 @@ fn simulate_trial(
         }
     };
     let (arm, figures) = (follower.session.study_arm(), TrialSummary::from_follower(&follower));
-    *own = Some(follower.cost);
+    kept.keep(kitchen, follower.cost);
     Ok(SimulatedTrial { folder, arm, figures, found, moved })
 }
 

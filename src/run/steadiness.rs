@@ -6,7 +6,7 @@ use super::parallel;
 use super::replay::each_once;
 use crate::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, at_line};
+use crate::edge::log::LogReader;
 use crate::session::{Session, apply};
 
 /// Measures how steady the offers of recordings are. `done` is called after each recording.
@@ -31,8 +31,7 @@ fn tally(recording: &Path) -> FileResult<(OfferSteadinessTally, Session)> {
     let mut tally = OfferSteadinessTally::new(&session);
     while let Some(line) = log.next_line()? {
         tally.before(&session, line.stamped.time);
-        apply(&mut session, &line.stamped)
-            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?;
         tally.after(&session);
     }
     Ok((tally, session))

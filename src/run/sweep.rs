@@ -322,7 +322,7 @@ fn setting(row: &ParameterSweepRow, axis: &ParameterSweepAxis) -> String {
 }
 
 fn write_table(path: &Path, axes: &[ParameterSweepAxis], rows: &[ParameterSweepRow]) -> std::io::Result<()> {
-    let mut table = csv::Writer::from_path(path)?;
+    let mut table = csv::Writer::from_writer(Vec::new());
     let names = ["condition", "trials"].into_iter().chain(axes.iter().map(|axis| axis.name));
     table.write_record(names.chain(NUMBERS.map(|(name, _)| name)))?;
     for (index, row) in rows.iter().enumerate() {
@@ -332,7 +332,8 @@ fn write_table(path: &Path, axes: &[ParameterSweepAxis], rows: &[ParameterSweepR
         let numbers = NUMBERS.iter().map(|(_, value)| value(row).map_or(String::new(), |value| format!("{value:.4}")));
         table.write_record(first.chain(numbers))?;
     }
-    table.flush()
+    let bytes = table.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
+    overwrite::write(path, &bytes)
 }
 
 /// The table of the parameter sweep as text.

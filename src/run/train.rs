@@ -12,7 +12,7 @@ use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use super::training_shell::TrainingShell;
 use crate::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
-use crate::analysis::wizard_log::spells;
+use crate::analysis::wizard_log::false_belief_periods;
 use crate::console::playback::SPEEDS;
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
@@ -67,12 +67,12 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
     if film.session.spec.trial.condition != Condition::None {
         return Err(unfit("a trial in which somebody sends signals"));
     }
-    let spells = spells(&film.replay.follower)
+    let periods = false_belief_periods(&film.replay.follower)
         .ok_or_else(|| unfit("a trial in which the participant's beliefs are not known"))?;
     // The recording is shown as a wizard session with the information that the paper's wizard had.
     film.session.spec.trial.condition = Condition::Wizard;
     film.session.spec.console.visibility = WizardVisibility::State;
-    Ok((film, spells))
+    Ok((film, periods))
 }
 
 /// Plays one recording after another until all recordings are finished or the wizard quits.
@@ -83,13 +83,13 @@ async fn watch(
 ) -> Result<Vec<WatchedRecording>, ReviewError> {
     let mut judged = Vec::new();
     let mut desk = None;
-    for ((film, spells), recording) in films.into_iter().zip(&lesson.recordings) {
+    for ((film, periods), recording) in films.into_iter().zip(&lesson.recordings) {
         let desk = match &mut desk {
             Some(desk) => desk,
             none => none.insert(OperatorDesk::without_devices(&film.session.spec.console)?),
         };
         let mut shell =
-            TrainingShell::new(film, spells, name_of(recording, lesson), lesson.criterion, lesson.speed, desk)?;
+            TrainingShell::new(film, periods, name_of(recording, lesson), lesson.criterion, lesson.speed, desk)?;
         let left = event_loop::run(&mut shell, desk).await?;
         judged.push(shell.judged(before));
         if left != Some(LeavingReason::Next) {

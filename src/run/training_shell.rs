@@ -23,7 +23,7 @@ use crate::edge::terminal::{TerminalScreen, theme};
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::wizard_performance::{
-    FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, worths,
+    FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, verdicts,
 };
 use crate::mind::RecordedBelief;
 use crate::session::event::SignalEndReason;
@@ -33,7 +33,7 @@ use crate::session::{Event, TimestampedEvent, apply};
 pub(super) struct TrainingShell {
     film: SeekableReplay,
     name: String,
-    spells: Vec<FalseBeliefPeriod>,
+    periods: Vec<FalseBeliefPeriod>,
     /// Periods of false belief in the recording that led to errors, with the judgement of the wizard's signals.
     beliefs: Vec<HarmfulFalseBelief>,
     criterion: TrainingCriterion,
@@ -56,7 +56,7 @@ impl TrainingShell {
     /// Key bindings of the recording are not valid for its kitchen any more, or the terminal was closed.
     pub fn new(
         film: SeekableReplay,
-        spells: Vec<FalseBeliefPeriod>,
+        periods: Vec<FalseBeliefPeriod>,
         name: String,
         criterion: TrainingCriterion,
         speed: usize,
@@ -69,12 +69,12 @@ impl TrainingShell {
         let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
         model.playback = Some(Playback { speed, ..Playback::new(name.clone()) });
         model.lesson = Some(TrainingPanel { task: lesson_report::task(&criterion), ..Default::default() });
-        let beliefs = spells.iter().map(|spell| lesson_report::unheard(&film.session, spell)).collect();
-        let (now, told_missed) = (Instant::now(), vec![false; spells.len()]);
+        let beliefs = periods.iter().map(|period| lesson_report::unheard(&film.session, period)).collect();
+        let (now, told_missed) = (Instant::now(), vec![false; periods.len()]);
         let mut shell = TrainingShell {
             film,
             name,
-            spells,
+            periods,
             beliefs,
             criterion,
             model,
@@ -86,8 +86,9 @@ impl TrainingShell {
             opened: now,
             at: now,
         };
-        // At position 1 the trial has started; the replay is paused until the wizard begins.
-        shell.film.wind(1);
+        // The replay is paused at the start of the trial until the wizard begins.
+        shell.film.wind(shell.film.trial_start());
+        shell.now = shell.film.session.time;
         Ok(shell)
     }
 
@@ -167,10 +168,10 @@ impl TrainingShell {
         let aspects = aspects_told(&session.kitchen, session.state, &signal);
         self.sent.push(WizardSignal { clock, press, aspects, to_display_ms: None, taken_back: false });
         let words = wording::signal(&signal);
-        let Some(worth) = worths(&self.sent, &self.spells).pop() else { return };
-        self.signals.push(JudgedSignal { press, clock_ns: clock, signal, worth: worth.name().to_string() });
+        let Some(verdict) = verdicts(&self.sent, &self.periods).pop() else { return };
+        self.signals.push(JudgedSignal { press, clock_ns: clock, signal, worth: verdict.name().to_string() });
         self.show(shown);
-        let (level, text) = match worth {
+        let (level, text) = match verdict {
             SignalVerdict::Hit { latency_s, .. } => {
                 (NoticeLevel::Done, format!("hit: the belief has been false for {latency_s:.1} s"))
             }
@@ -190,8 +191,8 @@ impl TrainingShell {
     /// The false beliefs that the participant has at a time of the trial's clock, as text.
     fn wrong_now(&self, clock: SessionTime) -> String {
         let kitchen = &self.film.session.kitchen;
-        let open = self.spells.iter().filter(|spell| spell.holds(clock));
-        let names: Vec<String> = open.map(|spell| name(kitchen, spell.aspect)).collect();
+        let open = self.periods.iter().filter(|period| period.holds(clock));
+        let names: Vec<String> = open.map(|period| name(kitchen, period.aspect)).collect();
         names.join(", ")
     }
 
@@ -230,19 +231,19 @@ impl TrainingShell {
     fn hear(&mut self, witness: &RecordedBelief) {
         let session = &self.film.session;
         let clock = session.trial_clock(session.time);
-        let open = self.spells.iter().zip(&mut self.beliefs).filter(|(spell, _)| spell.holds(clock));
-        open.for_each(|(spell, belief)| lesson_report::hear(belief, session, spell.aspect, witness));
+        let open = self.periods.iter().zip(&mut self.beliefs).filter(|(period, _)| period.holds(clock));
+        open.for_each(|(period, belief)| lesson_report::hear(belief, session, period.aspect, witness));
     }
 
     fn say_missed(&mut self) {
         let clock = self.film.session.trial_clock(self.now);
         let hits = self.hits();
-        for index in 0..self.spells.len() {
-            let spell = &self.spells[index];
-            let is_over = spell.corrected.is_some_and(|(end, _)| end <= clock);
-            if is_over && spell.errors > 0 && !hits.contains(&index) && !self.told_missed[index] {
+        for index in 0..self.periods.len() {
+            let period = &self.periods[index];
+            let is_over = period.corrected.is_some_and(|(end, _)| end <= clock);
+            if is_over && period.errors > 0 && !hits.contains(&index) && !self.told_missed[index] {
                 self.told_missed[index] = true;
-                let errors = count(spell.errors, "error", "errors");
+                let errors = count(period.errors, "error", "errors");
                 let belief = &self.beliefs[index];
                 let text = format!(
                     "missed, with {errors}: {}; {}",
@@ -256,25 +257,27 @@ impl TrainingShell {
 
     /// Indices of the periods of false belief that the wizard's signals hit.
     fn hits(&self) -> Vec<usize> {
-        let hit = |worth: SignalVerdict| if let SignalVerdict::Hit { spell, .. } = worth { Some(spell) } else { None };
-        worths(&self.sent, &self.spells).into_iter().filter_map(hit).collect()
+        let hit =
+            |verdict: SignalVerdict| if let SignalVerdict::Hit { period, .. } = verdict { Some(period) } else { None };
+        verdicts(&self.sent, &self.periods).into_iter().filter_map(hit).collect()
     }
 
     /// The wizard's performance on the periods of false belief that have begun.
     fn measures(&self) -> WizardMeasures {
         let clock = self.film.session.trial_clock(self.now);
-        let begun: Vec<FalseBeliefPeriod> = self.spells.iter().filter(|spell| spell.began <= clock).cloned().collect();
+        let begun: Vec<FalseBeliefPeriod> =
+            self.periods.iter().filter(|period| period.began <= clock).cloned().collect();
         WizardMeasures::from_signals(&self.sent, Some(&begun))
     }
 
     /// The false beliefs that led to errors and have begun so far.
     fn judged_beliefs(&self) -> Vec<HarmfulFalseBelief> {
         let clock = self.film.session.trial_clock(self.now);
-        let worths = worths(&self.sent, &self.spells);
+        let verdicts = verdicts(&self.sent, &self.periods);
         let hit_by = |index: usize| {
-            worths.iter().position(|worth| matches!(worth, SignalVerdict::Hit { spell, .. } if *spell == index))
+            verdicts.iter().position(|verdict| matches!(verdict, SignalVerdict::Hit { period, .. } if *period == index))
         };
-        let begun = self.spells.iter().enumerate().filter(|(_, spell)| spell.errors > 0 && spell.began <= clock);
+        let begun = self.periods.iter().enumerate().filter(|(_, period)| period.errors > 0 && period.began <= clock);
         begun.map(|(index, _)| HarmfulFalseBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
     }
 

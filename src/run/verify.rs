@@ -13,7 +13,7 @@ use crate::analysis::follower::SessionFollower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LogEnding, LogLine, LogReader, at_line, event_line};
+use crate::edge::log::{LogEnding, LogLine, LogReader, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
 use crate::session::header::PEOPLE_SINCE;
@@ -93,9 +93,7 @@ impl RepeatedRecording {
         let mut again = RepeatedSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;
         while let Some(line) = log.next_line()? {
-            replayed
-                .apply(&line.stamped)
-                .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+            replayed.apply(&line.stamped).map_err(|error| log.refused(&line, error))?;
             if difference.is_none() {
                 difference = again.difference_at(&line, log.path());
             }

@@ -4,6 +4,7 @@ use super::admit::{admit, is_too_early};
 use super::event::{Event, SignalEndReason, TimestampedEvent, TrialEndReason};
 use super::gaze_samples::take_sample;
 use super::phase::TrialPhase;
+use super::session_effect::{SessionEffect, Timer};
 use super::session_state::{ServedOrder, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, offers, probes, protocol, robot_changes, silence, trial_clock};
@@ -12,49 +13,8 @@ use crate::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{
-    Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, State,
+    Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, Press, State,
 };
-
-/// An action that the running session must perform after an event. A replay performs none.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SessionEffect {
-    /// Set a timer; [`SessionEffect::Postpone`] can delay it.
-    At {
-        /// Session time at which the timer is due.
-        time: SessionTime,
-        /// What happens when the timer is due.
-        timer: Timer,
-    },
-    /// Cancel a timer that has been set.
-    Cancel(Timer),
-    /// Cancel all timers, at the end of the trial.
-    CancelAll,
-    /// Postpone all timers by the length of a pause.
-    Postpone(SessionTime),
-    /// Close the recording, at the end of the session.
-    Close,
-}
-
-/// A timer of a session: what happens when it is due.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Timer {
-    /// The order location stops showing `served` after a dish was served.
-    ClearOrder(LocationId),
-    /// A new order appears at this location; the running session draws the ordered dish.
-    NewOrder(LocationId),
-    /// The display time of the shown signal is over.
-    EndSignal,
-    /// The set duration of the trial is over.
-    EndTrial,
-    /// The set number of presses that ends the trial was reached.
-    EndTrialByPresses,
-    /// The set number of served orders that ends the trial was reached.
-    EndTrialByOrders,
-    /// The rules of offers have to be asked whether an offer to the wizard opens or closes.
-    ReviewOffer,
-    /// The human has not pressed for unusually long.
-    HumanWaits,
-}
 
 /// Error: the session cannot accept an event, because the log is damaged or was written by another program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -190,7 +150,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
     Ok(AppliedEvent { effects, change })
 }
 
-/// Checks sequence number, time and precondition of an event.
+/// Checks time and precondition of an event. Whoever reads a log checks the sequence number.
 fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
     if stamped.time < session.time {
         return Err(ApplyError {
@@ -382,7 +342,8 @@ fn press(
     let press = kitchen.try_press(session.state, agent, button);
     let no_effect = kitchen.no_effect(session.state, agent, button);
     session.presses[agent.index()] += 1;
-    session.note(now, TimelineEvent::Press { agent, button, no_effect });
+    let Press { before, after, .. } = press;
+    session.note(now, TimelineEvent::Press { agent, button, before, after, no_effect });
     if agent == Agent::Human && session.spec.notes_silence() {
         effects.push(SessionEffect::Cancel(Timer::HumanWaits));
         let waits = |after| SessionEffect::At { time: now + after, timer: Timer::HumanWaits };
@@ -390,8 +351,8 @@ fn press(
     }
     if press.effective {
         update(session, now, |state| *state = press.after);
-        if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =
-            (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, press.before))
+        if let ButtonAction::Serve(order) = kitchen.button(agent, button).action
+            && let OrderContent::Dish(dish) = press.before.order(order)
         {
             let presses = session.all_presses();
             session.served.push(ServedOrder { time: now, dish, presses });
@@ -408,12 +369,4 @@ fn press(
         effects.push(SessionEffect::At { time: now, timer: Timer::EndTrialByPresses });
     }
     KitchenChange::Press { press, presses: session.presses }
-}
-
-/// The order that a press of a serve button served, given the state before the press.
-fn served_dish(action: &ButtonAction, before: State) -> OrderContent {
-    match action {
-        ButtonAction::Serve(order) => before.order(*order),
-        _ => OrderContent::None,
-    }
 }

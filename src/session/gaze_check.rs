@@ -35,14 +35,14 @@ pub enum GazeCheckEvent {
     },
     /// The wizard accepts the measured gaze accuracy, with or without correction of the offset.
     Accepted {
-        /// Whether the measured offset is subtracted from the gaze from now on.
+        /// Whether the gaze is corrected by the measured offset from now on.
         corrected: bool,
     },
     /// The accepted result of the participant's previous recording is used again.
     Carried {
         /// The gaze accuracy that was measured and accepted in the previous recording.
         found: GazeAccuracy,
-        /// Whether the measured offset is subtracted from the gaze.
+        /// Whether the gaze is corrected by the measured offset.
         corrected: bool,
     },
     /// The accuracy check is cancelled; the result of an earlier accepted check remains valid.

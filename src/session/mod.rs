@@ -11,7 +11,7 @@
 //!   `probe_event`, `preflight_check`, [`wizard_screen`]; [`event`], all of them together.
 //! - State: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state`
 //!   with `probe_schedule`; `session_state`, all of them together.
-//! - Preconditions and effects of events: `trial_clock`, [`silence`], `unseen_changes`, `robot_changes`,
+//! - Preconditions and effects of events: `session_effect`, `trial_clock`, [`silence`], `unseen_changes`, `robot_changes`,
 //!   [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
 //!   `interventions`; [`admit`] and [`mod@apply`], all of them together. These are used by the rules of [`offers`],
 //!   [`proposals`], [`advice_moments`] and [`gaze_awareness`]. Further files: [`preflight_checks`], and the [`timers`]
@@ -57,6 +57,7 @@ mod requirements;
 mod robot_changes;
 mod robot_settings;
 mod robot_status;
+mod session_effect;
 mod session_file;
 mod session_state;
 mod setting_checks;
@@ -75,12 +76,13 @@ mod unseen_changes;
 pub mod wall_display;
 pub mod wizard_screen;
 
-pub use apply::{AppliedEvent, SessionEffect, Timer, apply};
+pub use apply::{AppliedEvent, apply};
 pub use event::{Event, TimestampedEvent};
 pub use gaze_status::GazeStatus;
 pub use header::LogHeader;
 pub use phase::TrialPhase;
 pub use robot_status::{ArmStatus, RobotStatus};
+pub use session_effect::{SessionEffect, Timer};
 pub use session_state::{ServedOrder, Session, ShownSignal};
 pub use settings::SessionSpec;
 pub use timeline_entry::{TimelineEntry, TimelineEvent};

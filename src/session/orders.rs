@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::settings::SessionSpec;
-use crate::base::rng::{Stream, stream};
+use crate::base::rng::{Stream, shuffle, stream};
 use crate::kitchen::DishId;
 
 /// Number of orders in a run: after each run, all matched lists of orders contain the same dishes.
@@ -62,12 +62,5 @@ impl Matched {
             shuffle(&mut self.run, own);
         }
         self.run.pop().unwrap_or(0)
-    }
-}
-
-/// Shuffles a list of dishes (Fisher and Yates).
-fn shuffle(dishes: &mut [u8], random: &mut Stream) {
-    for last in (1..dishes.len()).rev() {
-        dishes.swap(last, random.random_range(0..=last));
     }
 }

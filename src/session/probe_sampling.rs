@@ -14,10 +14,9 @@
 use rand::RngExt;
 
 use super::probe_event::{ProbeQuestion, ProbeSubject};
-use super::probe_schedule::shuffle;
 use super::probe_settings::ProbeSpec;
 use super::session_state::Session;
-use crate::base::rng::{Stream, stream};
+use crate::base::rng::{Stream, shuffle, stream};
 use crate::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
 
 /// Number of strata of aspects from which questions are drawn.

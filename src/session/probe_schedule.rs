@@ -8,7 +8,7 @@ use rand::RngExt;
 
 use super::probe_settings::ProbeSpec;
 use super::settings::SessionSpec;
-use crate::base::rng::{Stream, stream};
+use crate::base::rng::{Stream, shuffle, stream};
 use crate::base::time::SessionTime;
 
 /// A freeze probe of the trial's schedule.
@@ -53,13 +53,6 @@ fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
     let mut blind: Vec<bool> = (0..number).map(|index| index < count).collect();
     shuffle(&mut blind, random);
     blind
-}
-
-/// Shuffles a list (Fisher and Yates).
-pub(super) fn shuffle<T>(list: &mut [T], random: &mut Stream) {
-    for last in (1..list.len()).rev() {
-        list.swap(last, random.random_range(0..=last));
-    }
 }
 
 /// Whether a freeze probe that the wizard requested uses the belief estimate: drawn at random, as for scheduled probes.

@@ -4,6 +4,7 @@
 //! the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which stands
 //! still while the wizard pauses the probe.
 
+use super::event::{Event, TimestampedEvent};
 use super::phase::TrialPhase;
 pub use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use super::probe_sampling;
@@ -195,6 +196,12 @@ fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> 
 }
 
 impl Session {
+    /// Duration of the freeze probe that this event, which was just applied, ended; `None` for every other event.
+    pub fn probe_pause(&self, stamped: &TimestampedEvent) -> Option<SessionTime> {
+        let Event::Probe(ProbeEvent::Ended { .. }) = stamped.event else { return None };
+        self.probes.over.last().map(|over| stamped.time - over.begun)
+    }
+
     /// Whether the task is frozen for a freeze probe: from the probe's beginning until the task continues.
     pub fn is_frozen(&self) -> bool {
         self.probes.open.is_some()

@@ -6,7 +6,7 @@ use super::probe_event::ProbeEvent;
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::no_effect::NoEffectReason;
-use crate::kitchen::{Agent, ButtonId, LocationId};
+use crate::kitchen::{Agent, ButtonId, LocationId, State};
 use crate::robot::safety::SafetyMode;
 
 /// An entry of the session's timeline.
@@ -27,6 +27,10 @@ pub enum TimelineEvent {
         agent: Agent,
         /// The pressed button, as an index into that agent's buttons.
         button: ButtonId,
+        /// The state of the kitchen before the press.
+        before: State,
+        /// The state of the kitchen after the press; the same as before if the press had no effect.
+        after: State,
         /// Why the press had no effect, and the location that the reason is about; `None` if the press had an effect.
         no_effect: Option<(NoEffectReason, LocationId)>,
     },

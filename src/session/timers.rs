@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::apply::Timer;
+use super::session_effect::Timer;
 use crate::base::time::SessionTime;
 
 /// Pending timers in the order in which they are due; timers due at once keep the order in which they were set.

@@ -136,8 +136,8 @@ pub enum TrackerEvent {
         /// The state of the eye tracker's own recording.
         state: TrackerRecording,
     },
-    /// Number of inputs from the tracker that could not be recorded since the session began; reported at most once per
-    /// second.
+    /// Number of inputs from the tracker that could not be recorded since the session began; reported at most four
+    /// times per second, when the number has grown.
     Dropped(DroppedInputCounts),
     /// A finished fixation that the eye tracker detected.
     Fixation {

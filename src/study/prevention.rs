@@ -28,8 +28,8 @@ pub struct TrialGroundTruth {
     /// Presses of the human in the trial, in order, with the ground truth about each press.
     pub presses: Vec<PressGroundTruth>,
     /// Periods in which the participant held a false belief about a state aspect.
-    pub spells: Vec<FalseBeliefGroundTruth>,
-    /// Whether `spells` includes false beliefs that led to no error (harmless ones).
+    pub false_beliefs: Vec<FalseBeliefGroundTruth>,
+    /// Whether `false_beliefs` includes false beliefs that led to no error (harmless ones).
     pub knows_harmless: bool,
 }
 
@@ -197,13 +197,13 @@ impl TrialGroundTruth {
         };
         TrialGroundTruth {
             presses: judged.iter().map(press).collect(),
-            spells: known.episodes.iter().map(false_belief).collect(),
+            false_beliefs: known.episodes.iter().map(false_belief).collect(),
             knows_harmless: known.basis == BeliefSource::Recorded,
         }
     }
 
     fn is_in_episode(&self, time: SessionTime) -> bool {
-        self.spells.iter().any(|false_belief| false_belief.harmful && false_belief.is_open(time))
+        self.false_beliefs.iter().any(|false_belief| false_belief.harmful && false_belief.is_open(time))
     }
 
     fn empty_count(&self, signals: u64) -> PreventionCounts {
@@ -222,11 +222,11 @@ impl TrialGroundTruth {
     pub fn count_signals(&self, sent: &[HypotheticalSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
         let mut is_prevented = vec![false; self.presses.len()];
-        let mut is_told = vec![false; self.spells.len()];
+        let mut is_told = vec![false; self.false_beliefs.len()];
         let mut is_false = vec![false; self.presses.len()];
         for signal in sent {
             let (mut prevents_at, mut about) = (None::<SessionTime>, Vec::new());
-            for (index, false_belief) in self.spells.iter().enumerate() {
+            for (index, false_belief) in self.false_beliefs.iter().enumerate() {
                 if !signal.aspects.contains(&false_belief.aspect) || !false_belief.is_open(signal.time) {
                     continue;
                 }

@@ -71,6 +71,20 @@ async fn a_connection_that_begins_with_no_object_is_closed_and_nothing_of_it_is_
 }
 
 #[tokio::test]
+async fn a_first_line_without_content_is_refused_when_it_is_longer_than_any_line() {
+    let mut listener = open(GazeSenders::First).await;
+    for piece in
+        [&[b' '; 5000][..], &[&b"{"[..], &[b'\t'; 5000][..]].concat(), &[&b"{\"x\": "[..], &[b'1'; 5000][..]].concat()]
+    {
+        let began = Instant::now();
+        send_until_closed(listener.address, &[piece]).await;
+        assert_eq!(next(&mut listener).await, TrackerMessage::Rejected(1));
+        // A sender that is not refused may send for ten seconds.
+        assert!(began.elapsed() < Duration::from_secs(5), "after {:?}", began.elapsed());
+    }
+}
+
+#[tokio::test]
 async fn a_tracker_may_begin_in_pieces_or_with_a_sample_that_is_none() {
     let mut listener = open(GazeSenders::First).await;
     let mut tracker = TcpStream::connect(listener.address).await.expect("connected");

@@ -279,6 +279,37 @@ def has_descriptors_left(tomcom, folder):
     print(f"at {FILES} descriptors with 1,200 silent connections: {used} in use, a page and a tracker got in and stayed", flush=True)
 
 
+def cpu_s(pid):
+    """Processor time that a process has used."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def cannot_stall_with_blanks(tomcom, folder):
+    """A first line that never begins is closed at once, and costs the session nothing."""
+    connections = 50
+    with operate(tomcom, folder, "display", "json") as console:
+        used_s, began = cpu_s(console.process.pid), time.monotonic()
+        for _ in range(connections):
+            stream = socket.create_connection(("127.0.0.1", GAZE))
+            # A sender whose first line may still begin has ten seconds.
+            stream.settimeout(5)
+            try:
+                for _ in range(256):
+                    stream.sendall(b" " * 4096)
+                assert stream.recv(1) == b"", "a sender of blanks got an answer"
+            except ConnectionError:
+                pass
+            stream.close()
+        used_s, took_s = cpu_s(console.process.pid) - used_s, time.monotonic() - began
+        tracker = socket.create_connection(("127.0.0.1", GAZE))
+        send(tracker, 100)
+        console.wait_for(r"conf\w* 0.9")
+        console.quit()
+    assert used_s < 0.5 * took_s + 1, f"{used_s:.1f} s of processor time for blanks, in {took_s:.1f} s"
+    print(f"{connections} connections with up to 1 MiB of blanks: closed at once, {used_s:.2f} s of processor time in {took_s:.1f} s", flush=True)
+
+
 CHECKS = {
     "rebinding": cannot_rebind,
     "gaze": cannot_inject_gaze,
@@ -286,6 +317,7 @@ CHECKS = {
     "hidden": stays_while_nobody_sees_it,
     "guesses": cannot_guess,
     "descriptors": has_descriptors_left,
+    "blanks": cannot_stall_with_blanks,
 }
 
 

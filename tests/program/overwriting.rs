@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use serial_test::serial;
 use tomcom::edge::files::read_session;
@@ -9,6 +10,7 @@ use tomcom::edge::log::LogWriter;
 use tomcom::session::LogHeader;
 
 use crate::forgetting::RecordingsFolder;
+use crate::tmux::TOMCOM;
 
 /// The header of a trial of the default session.
 fn header() -> LogHeader {
@@ -73,6 +75,71 @@ fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
         lab.run(&["simulate", "sessions/default.toml", "--arm", "timed", "--trials", "1", "--out", &out]);
     assert!(code == Some(1) && told.contains("a session.toml that tomcom did not write"), "{told}");
     assert_eq!(lab.text("trials/seed1-S001/session.toml"), "# of somebody else\n");
+}
+
+#[test]
+#[serial]
+fn a_stream_that_is_saved_elsewhere_overwrites_nothing_whatever_its_name_is() {
+    let lab = RecordingsFolder::of_two_people("stream-elsewhere");
+    let recording = lab.at("seed1-P01-1").display().to_string();
+    lab.put("elsewhere/recording.rrd", "of somebody else\n");
+    let save = format!("--save={}", lab.at("elsewhere/recording.rrd").display());
+    let (code, told) = lab.run(&["review", &recording, &save]);
+    assert!(code == Some(1) && told.contains("a file is there that is not a stream"), "{told}");
+    assert_eq!(lab.text("elsewhere/recording.rrd"), "of somebody else\n");
+    // Beside its log a damaged stream is made anew.
+    lab.put("seed1-P01-1/recording.rrd", "damaged\n");
+    let (code, told) = lab.run(&["review", &recording, "--save"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(fs::read(lab.at("seed1-P01-1/recording.rrd")).expect("a stream").len() > 1000);
+}
+
+/// Runs a command that cannot write more than 1024 bytes into a file, as on a full disk; all that it prints.
+#[cfg(unix)]
+fn run_on_a_full_disk(arguments: &[&str]) -> String {
+    // In blocks of 512 or 1024 bytes; the signal that would end the program is ignored.
+    let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
+    let done = Command::new("sh").args(["-c", script, "sh", TOMCOM]).args(arguments).stdin(Stdio::null()).output();
+    let done = done.expect("a shell");
+    let told = String::from_utf8_lossy(&[done.stdout, done.stderr].concat()).into_owned();
+    assert_eq!(done.status.code(), Some(1), "{arguments:?}: {told}");
+    told
+}
+
+#[cfg(unix)]
+#[test]
+#[serial]
+fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
+    let lab = RecordingsFolder::of_two_people("full-disk");
+    let recording = lab.at("seed1-P01-1").display().to_string();
+    let path = |name: &str| lab.at(name).display().to_string();
+    let fit = ["fit", &recording, "--parameters", "lapse", "--tries", "10", "--out", &path("fitted.toml")];
+    assert_eq!(lab.run(&fit).0, Some(0));
+    let before = lab.files();
+    assert!(before["fitted.toml"].len() > 1024);
+    run_on_a_full_disk(&fit);
+    assert!(lab.files() == before, "the earlier file is whole, and nothing stands beside it");
+    let freeze = ["plan", "sessions/study.toml", "--freeze", &path("frozen")];
+    let told = run_on_a_full_disk(&freeze);
+    assert!(told.contains("frozen: cannot be written"), "{told}");
+    assert!(lab.files() == before, "no half of a frozen plan is left");
+    let (code, told) = lab.run(&freeze);
+    assert_eq!(code, Some(0), "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+#[serial]
+fn results_go_where_a_link_leads_and_into_a_pipe() {
+    let lab = RecordingsFolder::of_two_people("links");
+    let recording = lab.at("seed1-P01-1").display().to_string();
+    lab.put("codes.csv", "");
+    std::os::unix::fs::symlink("codes.csv", lab.at("link.csv")).expect("a link");
+    let (code, told) = lab.run(&["codes", &recording, "--export", &lab.at("link.csv").display().to_string()]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(lab.at("link.csv").is_symlink() && lab.text("codes.csv").starts_with("recording,rater,press"));
+    let (code, told) = lab.run(&["codes", &recording, "--export", "/dev/stdout"]);
+    assert!(code == Some(0) && told.contains("recording,rater,press,cause,aspect"), "{told}");
 }
 
 #[test]

@@ -100,6 +100,7 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
         "--condition, with a session file that has a plan",
     );
     refused(&["operate", study, "--code", "P01", "--seed", "2"], "--seed, with a session file that has a plan");
+    refused(&["operate", study, "--code", "P01", "--seed", "2"], "no --seed: the plan of the study decides");
     let root = env!("CARGO_MANIFEST_DIR");
     let wrong = folder("wrong").join("study.toml");
     // The settings of a recording are no session file: its place in the plan is not for people to write.

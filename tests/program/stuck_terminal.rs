@@ -18,27 +18,41 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// Runs a script in Python with this argument; what it prints, or `None` without Python.
+fn python(name: &str, script: &str, asked: &Value) -> Option<Value> {
+    let python = std::env::var("TOMCOM_PYTHON").unwrap_or_else(|_| "python3".to_string());
+    let Ok(output) = Command::new(python).args([script, &asked.to_string()]).output() else {
+        eprintln!("skipped: {name} needs Python");
+        return None;
+    };
+    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    Some(serde_json::from_slice(&output.stdout).expect("JSON"))
+}
+
 /// Runs the program in a terminal until this is on the screen, reads no further, and asks it to end by these keys and
 /// signals. It must end by itself, and leave the terminal as it should be.
 fn check(name: &str, arguments: &[&str], see: &str, ask: &Value) -> Option<()> {
-    let python = std::env::var("TOMCOM_PYTHON").unwrap_or_else(|_| "python3".to_string());
     let command: Vec<&str> = std::iter::once(TOMCOM).chain(arguments.iter().copied()).collect();
     let mut asked = json!({ "command": command, "see": see });
     for (key, value) in ask.as_object().expect("keys or signals") {
         asked[key] = value.clone();
     }
-    let run = Command::new(python).args(["tests/program/unread.py", &asked.to_string()]).output();
-    let Ok(output) = run else {
-        eprintln!("skipped: {name} needs Python");
-        return None;
-    };
-    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-    let end: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let end = python(name, "tests/program/unread.py", &asked)?;
     println!("{name}: ended after {:.2} s", end["seconds"].as_f64().unwrap_or(f64::NAN));
     // 0: on the way out that it takes in every terminal, not because its time was over.
     assert_eq!(end["exit"], 0, "{name}: {end}");
     assert_eq!(end["whole"], true, "{name}: {end}");
     Some(())
+}
+
+/// The only recording in a folder is closed, and verifies.
+fn check_closed(name: &str, out: &Path) {
+    let recordings: Vec<PathBuf> = fs::read_dir(out).expect("recordings").flatten().map(|entry| entry.path()).collect();
+    let [recording] = &recordings[..] else { panic!("{name}: {recordings:?}") };
+    let told = tomcom(&["replay", &recording.display().to_string(), "--verify", "--format", "json"]);
+    let found: Value = serde_json::from_slice(&told.stdout).unwrap_or_else(|_| panic!("{name}: {told:?}"));
+    assert_eq!((&found["verified"], &found["cut"]), (&json!(true), &json!(false)), "{name}: {found}");
+    assert!(!recording.join("lock").exists(), "{name}: the lock is given back");
 }
 
 /// A session at the console; its recording is closed, and verifies.
@@ -49,13 +63,21 @@ fn check_session(name: &str, command: &str, ask: &Value) {
     if check(name, &arguments, "READY", ask).is_none() {
         return;
     }
-    let recordings: Vec<PathBuf> =
-        fs::read_dir(&out).expect("recordings").flatten().map(|entry| entry.path()).collect();
-    let [recording] = &recordings[..] else { panic!("{name}: {recordings:?}") };
-    let told = tomcom(&["replay", &recording.display().to_string(), "--verify", "--format", "json"]);
-    let found: Value = serde_json::from_slice(&told.stdout).unwrap_or_else(|_| panic!("{name}: {told:?}"));
-    assert_eq!((&found["verified"], &found["cut"]), (&json!(true), &json!(false)), "{name}: {found}");
-    assert!(!recording.join("lock").exists(), "{name}: the lock is given back");
+    check_closed(name, &out);
+}
+
+#[test]
+#[serial]
+fn a_session_whose_console_fails_is_closed() {
+    let out = folder("hung-up").join("recordings");
+    let place = out.display().to_string();
+    let command =
+        [TOMCOM, "operate", "sessions/default.toml", "--participant", "keyboard", "--gaze", "none", "--out", &place];
+    let asked = json!({ "command": command, "see": "READY" });
+    let Some(end) = python("hung-up", "tests/program/hung_up.py", &asked) else { return };
+    assert_eq!(end["exit"], 1, "{end}");
+    assert!(end["told"].as_str().is_some_and(|told| told.contains("terminal")), "{end}");
+    check_closed("hung-up", &out);
 }
 
 #[test]

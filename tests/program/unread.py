@@ -89,4 +89,5 @@ def main():
     print(json.dumps({"exit": code, "seconds": seconds, "whole": is_whole, "rest": rest[-600:].decode("utf-8", "replace")}))
 
 
-main()
+if __name__ == "__main__":
+    main()

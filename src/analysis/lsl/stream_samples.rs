@@ -163,7 +163,7 @@ fn press_texts(
     let yes = |is_so: bool| if is_so { "yes" } else { "no" }.to_string();
     let mut entries = session.timeline.iter().rev().take_while(|entry| entry.time >= stamped.time);
     let is_effective = entries.any(|entry| match &entry.what {
-        TimelineEvent::Press { agent: other, button: id, no_effect } => {
+        TimelineEvent::Press { agent: other, button: id, no_effect, .. } => {
             let is_it = *other == agent && session.kitchen.button(agent, *id).name == button;
             is_it && entry.time == stamped.time && no_effect.is_none()
         }

@@ -24,6 +24,17 @@ const PRESSES: usize = 4;
 /// Least share of the belief samples in which the human must choose a press for the planner to prepare for that press.
 const LEAST_SHARE: f64 = 0.05;
 
+/// A change of the trial that may come next.
+#[derive(Clone, Copy)]
+enum NextChange {
+    /// The robot finishes its ongoing press.
+    RobotPress,
+    /// The human presses this button.
+    HumanPress(ButtonId),
+    /// An order for this dish appears at this location.
+    NewOrder(LocationId, DishId),
+}
+
 /// A situation of the trial that may come next.
 struct NextSituation {
     state: State,
@@ -43,12 +54,10 @@ impl Planner {
         moment: &DecisionPoint,
         proceed: &mut dyn FnMut() -> bool,
     ) {
-        let mut nexts: Vec<NextSituation> = self.after_the_robot(moment).into_iter().collect();
-        for button in self.likely_presses(cost, moment, proceed) {
-            nexts.extend(self.after_the_human(moment, button));
-        }
-        nexts.extend(self.with_new_orders(moment));
-        for next in nexts {
+        let presses = self.likely_presses(cost, moment, proceed).into_iter().map(NextChange::HumanPress);
+        let changes = std::iter::once(NextChange::RobotPress).chain(presses).chain(self.new_orders(moment));
+        for change in changes.collect::<Vec<NextChange>>() {
+            let Some(next) = self.after(moment, change) else { continue };
             if !proceed() {
                 return;
             }
@@ -86,6 +95,19 @@ impl Planner {
         buttons.into_iter().take(PRESSES).map(|button| ButtonId(button as u8)).collect()
     }
 
+    /// The situation after a change; `None` if the change cannot come.
+    fn after(&self, moment: &DecisionPoint, change: NextChange) -> Option<NextSituation> {
+        match change {
+            NextChange::RobotPress => self.after_the_robot(moment),
+            NextChange::HumanPress(button) => self.after_the_human(moment, button),
+            NextChange::NewOrder(order, dish) => {
+                let mut state = moment.situation.state;
+                state.set_order(order, OrderContent::Dish(dish));
+                Some(NextSituation { changed: vec![AspectId::of_location(order)], ..unchanged(state, moment) })
+            }
+        }
+    }
+
     /// The situation after the robot's ongoing press, which the human has not seen yet.
     fn after_the_robot(&self, moment: &DecisionPoint) -> Option<NextSituation> {
         let situation = &moment.situation;
@@ -110,22 +132,14 @@ impl Planner {
         Some(next)
     }
 
-    /// The situations with a new order of each dish where there is no order now.
-    fn with_new_orders(&self, moment: &DecisionPoint) -> Vec<NextSituation> {
-        let before = moment.situation.state;
-        let is_empty = |order: &&LocationId| !matches!(before.order(**order), OrderContent::Dish(_));
-        let dishes = 0..self.kitchen.dishes.len();
-        let with = |order: LocationId, dish: usize| {
-            let mut state = before;
-            state.set_order(order, OrderContent::Dish(DishId(dish as u8)));
-            NextSituation { changed: vec![AspectId::of_location(order)], ..unchanged(state, moment) }
-        };
-        self.kitchen
-            .orders
-            .iter()
-            .filter(is_empty)
-            .flat_map(|&order| dishes.clone().map(move |dish| with(order, dish)))
-            .collect()
+    /// New orders of each dish where there is no order now.
+    fn new_orders(&self, moment: &DecisionPoint) -> impl Iterator<Item = NextChange> {
+        let state = moment.situation.state;
+        let is_empty = move |order: &&LocationId| !matches!(state.order(**order), OrderContent::Dish(_));
+        let dishes = self.kitchen.dishes.len() as u8;
+        let of_order =
+            move |&order: &LocationId| (0..dishes).map(move |dish| NextChange::NewOrder(order, DishId(dish)));
+        self.kitchen.orders.iter().filter(is_empty).flat_map(of_order)
     }
 }
 

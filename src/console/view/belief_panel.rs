@@ -9,9 +9,7 @@ use super::theme::TextRole;
 use super::timeline::ticks;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
-use crate::console::beliefs::{
-    BeliefCorrectness, EstimatedBelief, are_by_cost, beliefs, name, percent, value, visibility,
-};
+use crate::console::beliefs::{BeliefCorrectness, EstimatedBelief, are_by_cost, name, percent, value, visibility};
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
@@ -44,17 +42,23 @@ struct Panel<'a> {
     session: &'a Session,
     now: SessionTime,
     moments: &'a [BeliefSnapshot],
-    beliefs: Vec<EstimatedBelief>,
+    beliefs: &'a [EstimatedBelief],
 }
 
 /// Draws the belief panel.
-pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+pub fn draw(
+    brush: &mut Painter,
+    regions: &PanelAreas,
+    session: &Session,
+    model: &ConsoleModel,
+    believed: &[EstimatedBelief],
+) {
     let area = regions.belief;
     if area.area() == 0 || visibility(session, model) < WizardVisibility::Belief {
         return;
     }
     let moments = model.belief.until(model.now);
-    let panel = Panel { session, now: model.now, moments, beliefs: beliefs(session, model) };
+    let panel = Panel { session, now: model.now, moments, beliefs: believed };
     if area.height < FRAMED {
         return panel.lines(brush, area);
     }

@@ -114,12 +114,14 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     } else {
         String::new()
     };
-    let mut facts = vec![
-        fact("participant", place(session), TextRole::Strong),
+    let mut facts = vec![fact("participant", place(session), TextRole::Strong)];
+    facts.extend(session.aborted.iter().map(|reason| fact("aborted because", reason.clone(), TextRole::Strong)));
+    facts.extend(session.excluded.iter().map(|reason| fact("excluded because", reason.clone(), TextRole::Strong)));
+    facts.extend([
         fact("orders", format!("{} served", session.served.len()), TextRole::Text),
         fact("presses", format!("{human} by the human, {robot} by the robot"), TextRole::Text),
         fact("errors", errors, TextRole::Text),
-    ];
+    ]);
     facts.extend(signals(session, model));
     facts.extend(stops(session));
     facts.push(fact("time", format!("{clock}{paused}"), TextRole::Text));
@@ -136,6 +138,8 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
         );
     }
     keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
+    let note = KeyAction::Hand(ManualAction::NoteInWords);
+    keys.extend(model.keys.chord_for(&note).map(|key| (key, "type note".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
 }
 

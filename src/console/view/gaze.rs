@@ -17,6 +17,8 @@ use crate::session::gaze_samples::faults;
 
 /// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;
+/// Longest time since the last gaze sample for which the participant counts as looking there now, in seconds.
+const NOW_S: f64 = 0.2;
 /// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
@@ -57,7 +59,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         }
         None => "on the display".to_string(),
     };
-    let age = if age_s < 0.2 { "now".to_string() } else { format!("{age_s:.1} s ago") };
+    let age = if age_s < NOW_S { "now".to_string() } else { format!("{age_s:.1} s ago") };
     brush.parts(
         x,
         y,
@@ -108,6 +110,7 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
         }
     }
     let mut labels: Vec<Rect> = Vec::new();
+    let latest = session.gaze.last.map(|(at, _)| at);
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());
@@ -118,7 +121,11 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
             None => fit(&location.label(), 6, brush.theme.signs().ellipsis),
         };
         let (age, role) = match seen {
-            Some(age_s) if age_s < 1.0 => ("now".to_string(), TextRole::Gaze),
+            // Only the place of the latest gaze sample is looked at now.
+            Some(age_s) if age_s < NOW_S && session.gaze.looked_at[index] == latest => {
+                ("now".to_string(), TextRole::Gaze)
+            }
+            Some(age_s) if age_s < 1.0 => (format!("{age_s:.1}s"), TextRole::Text),
             Some(age_s) => (format!("{age_s:.0}s"), TextRole::Text),
             None => ("never".to_string(), TextRole::Quiet),
         };

@@ -69,9 +69,16 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
 }
 
 /// Draws the text input of the wizard's note.
-pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
-    let says = "The trial is paused and the robot stands, so the space bar types a space here.";
-    input_line(brush, screen, text, ("Note to be recorded", "the trial is paused: space types a space"), says);
+pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
+    // A trial goes on by itself after a freeze probe.
+    let (remark, says) = match session.is_running() {
+        true => ("the trial runs: space stops the robot", "The trial goes on, so the space bar stops the robot."),
+        false => {
+            let says = "No trial runs and the robot stands, so the space bar types a space here.";
+            ("no trial is running: space types a space", says)
+        }
+    };
+    input_line(brush, screen, text, ("Note to be recorded", remark), says);
 }
 
 /// Draws the text input of a questionnaire answer below its item.

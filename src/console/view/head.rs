@@ -22,9 +22,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
     let gap = if room == ScreenSize::Small { 1 } else { 3 };
     let strong = brush.style(TextRole::Strong);
-    // On small screens, replays and recordings of a study plan omit the program's name.
-    let is_tight = (model.playback.is_some() || session.step().is_some()) && room == ScreenSize::Small;
-    let name = if is_tight { "" } else { "tomcom" };
+    // On small screens, the state of the robot takes the room of the program's name.
+    let is_small = room == ScreenSize::Small;
+    let name = if is_small { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     // A replay does not name the phase; whether it plays is shown beside its position.
     let is_replayed = is_replayed(model);
@@ -52,7 +52,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
         x = clock(brush, x, area.y, session, model) + gap;
         let presses = session.all_presses();
-        let unit = if is_tight && model.playback.is_none() { "" } else { " presses" };
+        let unit = if is_small && session.step().is_some() && model.playback.is_none() { "" } else { " presses" };
         let counts = format!("{presses:>3}/{}{unit}", session.spec.trial.presses);
         let text = brush.style(TextRole::Text);
         x = brush.text(x, area.y, 20, &counts, text) + gap;
@@ -184,7 +184,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
         (false, false) if mode == SafetyMode::Safeguard => (mode.name(), TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
-    if (room > ScreenSize::Small && model.playback.is_none()) || robot.1 != TextRole::Text {
+    if model.playback.is_none() || robot.1 != TextRole::Text {
         healths.push((robot.0.to_string(), robot.1));
     }
     healths

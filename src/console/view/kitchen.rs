@@ -11,11 +11,12 @@ use super::place_buttons;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
-use crate::console::arrange::{KitchenMap, KitchenMapBox, KitchenMapElement};
-use crate::console::beliefs::beliefs;
+use crate::console::arrange::{KitchenMap, KitchenMapBox};
+use crate::console::beliefs::EstimatedBelief;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
+use crate::console::map_items::KitchenMapElement;
 use crate::console::text_columns::{squeeze, width, wrap, wrap_to};
 use crate::history::wording;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
@@ -31,7 +32,13 @@ const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
 
 /// Draws the kitchen panel.
-pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+pub fn draw(
+    brush: &mut Painter,
+    regions: &PanelAreas,
+    session: &Session,
+    model: &ConsoleModel,
+    believed: &[EstimatedBelief],
+) {
     let area = regions.kitchen;
     if area.area() == 0 {
         return;
@@ -51,13 +58,12 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let plan = KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside());
     zones(brush, &plan);
-    let believed = beliefs(session, model);
     let offered = offer_line::shown(session, model).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
             KitchenMapElement::Location(location) => {
                 let place = Place::new(session, model, location);
-                let thinks = offer_line::thinks(session, &believed, location);
+                let thinks = offer_line::thinks(session, believed, location);
                 Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot);
             }
             KitchenMapElement::Storage(index) => storage(brush, session, model, index, spot.cells),

@@ -11,6 +11,7 @@ pub mod gaze;
 mod gaze_targets;
 pub mod hands;
 pub mod head;
+pub mod help;
 pub mod kitchen;
 pub mod lesson;
 pub mod offer_line;
@@ -32,6 +33,7 @@ pub mod timeline;
 
 use ratatui::Frame;
 
+use super::beliefs::beliefs;
 use super::click::ClickTarget;
 use super::console_model::{ConsoleModel, Dialog};
 use super::text_columns::wrap;
@@ -58,9 +60,10 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     }
     let regions = PanelAreas::showing((area.width, area.height), session, model);
     head::draw(brush, &regions, session, model);
-    offer_line::draw(brush, &regions, session, model);
-    kitchen::draw(brush, &regions, session, model);
-    belief_panel::draw(brush, &regions, session, model);
+    let believed = beliefs(session, model);
+    offer_line::draw(brush, &regions, session, model, &believed);
+    kitchen::draw(brush, &regions, session, model, &believed);
+    belief_panel::draw(brush, &regions, session, model, &believed);
     recommendation_panel::draw(brush, &regions, session, model);
     gaze::draw_map(brush, &regions, session, model);
     lesson::draw(brush, &regions, model);
@@ -94,7 +97,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let question = match &model.dialog {
         Some(Dialog::Quit) => "Quit tomcom? y or the same key again: yes; any other key: no",
         Some(Dialog::EndTrial) => "End the trial? y or the same key again: yes; any other key: no",
-        Some(Dialog::Help) => "The terminal is too small for the help; any key closes it",
+        Some(Dialog::Help(_)) => "The terminal is too small for the help; any key closes it",
         Some(Dialog::Pick(_) | Dialog::Palette(_)) => "The terminal is too small for the list; esc closes it",
         Some(Dialog::Send(_)) => "Send the clicked signal? enter sends, esc cancels",
         Some(Dialog::Preflight) => "The terminal is too small for the preflight checks; esc closes them",

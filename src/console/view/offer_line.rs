@@ -11,7 +11,7 @@ use crate::communication::concept::ConceptName;
 use crate::communication::offer::OfferedCommunication;
 use crate::communication::recommendation::SignalReason;
 use crate::communication::{Sender, Signal, unavailable};
-use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, beliefs, percent};
+use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, percent};
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
@@ -94,14 +94,14 @@ impl ShownOffer<'_> {
 
     /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
     /// and for how long, and the wrong press that is expected.
-    fn because(&self, session: &Session, model: &ConsoleModel) -> Vec<String> {
+    fn because(&self, session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
             return Vec::new();
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
-        let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
+        let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect);
         // Each belief has one value and one certainty on the screen, those of the belief panel.
-        let (believes, p) = match &belief {
+        let (believes, p) = match belief {
             Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), f64::from(belief.p)),
             None => (reason.believes.as_str(), reason.p_believes),
         };
@@ -115,7 +115,13 @@ impl ShownOffer<'_> {
 }
 
 /// Draws the line of the offer, or why there is no offer.
-pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+pub fn draw(
+    brush: &mut Painter,
+    regions: &PanelAreas,
+    session: &Session,
+    model: &ConsoleModel,
+    believed: &[EstimatedBelief],
+) {
     let area = regions.offer;
     if area.area() == 0 {
         return;
@@ -127,7 +133,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let Some(offer) = shown(session, model) else {
         let style = brush.style(TextRole::Quiet);
-        let (words, columns) = (silence(session, model), area.width.saturating_sub(2));
+        let (words, columns) = (silence(session, model, believed), area.width.saturating_sub(2));
         // What the best signal would be has a line of its own where there is one.
         let lines: Vec<String> = match area.height {
             1 => vec![words.join("; ")],
@@ -151,7 +157,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         1 => (end + 1, area.y, right.saturating_sub(width(&saves) + 2)),
         _ => (area.x + 1, area.y + 1, right),
     };
-    for (index, words) in offer.because(session, model).iter().enumerate() {
+    for (index, words) in offer.because(session, model, believed).iter().enumerate() {
         let words = if index == 0 { words.clone() } else { format!(" · {words}") };
         let words = if brush.theme.unicode { words } else { words.replace('·', "-") };
         let role = if index == 0 { TextRole::FalseBelief } else { TextRole::Text };
@@ -164,7 +170,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
 
 /// Why no signal is offered to the wizard, in words: the signal on the participant's display; else how many beliefs are
 /// false, and the best signal or, as far as it is known, why none is offered.
-fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
+fn silence(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
     let only = |words: &str| vec![words.to_string()];
     if session.spec.trial.condition == Condition::Assistant {
         return only("The assistant sends the signals, without the wizard");
@@ -177,7 +183,6 @@ fn silence(session: &Session, model: &ConsoleModel) -> Vec<String> {
         TrialPhase::Ready => return only("The assistant advises while the trial runs"),
         TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
     }
-    let believed = beliefs(session, model);
     let wrong = believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False);
     let wrong: Vec<AspectId> = wrong.map(|belief| belief.aspect).collect();
     let first = match wrong.len() {

@@ -66,8 +66,8 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
             counts: is_possible_behind(session, model, &line.action),
         }
     };
-    let rows = palette::actions(&model.keys, model.layer, cursor).iter().map(row).collect();
-    let all = palette::actions(&model.keys, model.layer, &ListCursor::default());
+    let rows = palette::actions(model, cursor).iter().map(row).collect();
+    let all = palette::actions(model, &ListCursor::default());
     let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
     let takes = if has_signals { "run action (signal: show key)" } else { "run the action" };
     let space = if model.playback.is_none() { STOPS } else { "" };

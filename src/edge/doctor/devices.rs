@@ -180,8 +180,9 @@ fn file(tracker: &TrackerSpec) -> PreflightCheck {
 /// The remedy that a file error names for the user.
 fn told(error: &FileError) -> String {
     match error {
-        FileError::Unreadable { remedy, .. } | FileError::Unfit { remedy, .. } | FileError::Wrong { remedy, .. } => {
-            remedy.clone()
-        }
+        FileError::Unreadable { remedy, .. }
+        | FileError::Unwritable { remedy, .. }
+        | FileError::Unfit { remedy, .. }
+        | FileError::Wrong { remedy, .. } => remedy.clone(),
     }
 }

@@ -1,7 +1,7 @@
 //! Deletes the data of a participant that were found (`tomcom forget`). Every step that can fail is tried first in a
 //! way that changes nothing.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,6 +11,7 @@ use super::walk::RetainedFile;
 use crate::analysis::training_record::WizardTrainingRecord;
 use crate::edge::file_error::FileError;
 use crate::edge::log::{LOG_NAME, RecordingLock, RecordingWriteError, SETTINGS_NAME};
+use crate::edge::replace_file::Replacement;
 
 /// Why no data of a participant were deleted.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -61,15 +62,14 @@ pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDele
     };
     let mut replacements = Vec::new();
     for (path, cut) in &found.cuts {
-        replacements.push(Replacement::begin(path, |new| copy_without(path, cut, new)).map_err(unwritable(path))?);
+        replacements.push(written(path, |new| copy_without(path, cut, new)).map_err(unwritable(path))?);
     }
     for path in &found.trainings {
-        let rewrite = |new: &mut File| write_others(path, &found, new);
-        replacements.push(Replacement::begin(path, rewrite).map_err(unwritable(path))?);
+        replacements.push(written(path, |new| write_others(path, &found, new)).map_err(unwritable(path))?);
     }
     for path in &found.files {
         // Whether a folder can be written to is known only after writing a file into the folder.
-        Replacement::begin(path, |_| Ok(())).map_err(unwritable(path))?;
+        written(path, |_| Ok(())).map_err(unwritable(path))?;
     }
     Ok(commit(found, replacements, locks))
 }
@@ -88,8 +88,8 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
         }
     };
     for replacement in replacements {
-        let path = replacement.path.clone();
-        if fails(&path, replacement.put_in_place()) {
+        let path = replacement.path().to_path_buf();
+        if fails(&path, replacement.finish()) {
             done.tables.retain(|(table, _)| *table != path);
             done.trainings.retain(|training| *training != path);
         }
@@ -126,45 +126,16 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
     ParticipantData { left, ..done }
 }
 
-/// A new file beside the file that it is to replace. The new file is removed again unless it is moved into place.
-struct Replacement {
-    new: PathBuf,
-    path: PathBuf,
-    is_put: bool,
-}
-
-impl Replacement {
-    /// Writes the new content of a file to another file beside it.
-    fn begin(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Replacement> {
-        let mut name = path.file_name().unwrap_or_default().to_os_string();
-        name.push(format!(".tomcom-{}.new", std::process::id()));
-        let new = path.with_file_name(name);
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&new)?;
-        let replacement = Replacement { new, path: path.to_path_buf(), is_put: false };
-        write(&mut file)?;
-        file.set_permissions(fs::metadata(path)?.permissions())?;
-        file.sync_all()?;
-        Ok(replacement)
-    }
-
-    fn put_in_place(mut self) -> io::Result<()> {
-        fs::rename(&self.new, &self.path)?;
-        self.is_put = true;
-        Ok(())
-    }
-}
-
-impl Drop for Replacement {
-    fn drop(&mut self) {
-        if !self.is_put {
-            // If removal fails, the file left behind contains nothing of the participant.
-            let _ = fs::remove_file(&self.new);
-        }
-    }
+/// Writes the new content of a file to another file beside it, which is to replace it.
+fn written(path: &Path, write: impl FnOnce(&mut Replacement) -> io::Result<()>) -> io::Result<Replacement> {
+    let mut replacement = Replacement::begin(path)?;
+    write(&mut replacement)?;
+    replacement.complete()?;
+    Ok(replacement)
 }
 
 /// Copies a file without the bytes in these ranges.
-fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<()> {
+fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut Replacement) -> io::Result<()> {
     let mut old = File::open(path)?;
     let mut from = 0;
     for range in cut {
@@ -175,7 +146,7 @@ fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<(
 }
 
 /// Writes a wizard's training record without the forgotten participant's recordings.
-fn write_others(path: &Path, found: &ParticipantData, new: &mut File) -> io::Result<()> {
+fn write_others(path: &Path, found: &ParticipantData, new: &mut Replacement) -> io::Result<()> {
     let record = training(path)?.ok_or_else(|| io::Error::other("the file is no record of training any more"))?;
     let record = WizardTrainingRecord { recordings: others(&record, &found.subject), ..record };
     let text = serde_json::to_string_pretty(&record).map_err(io::Error::other)? + "\n";

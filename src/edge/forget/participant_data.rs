@@ -14,6 +14,7 @@ use crate::base::words::count;
 use crate::edge::export::REPORT_NAME;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::SETTINGS_NAME;
+use crate::edge::replace_file::replaced_name;
 use crate::edge::stream_head;
 use crate::edge::written_tables::table_named;
 use crate::study::report::page_head;
@@ -129,8 +130,10 @@ impl FolderLook<'_> {
     /// Adds a file to the results if the file contains data of the participant. Returns whether the kind of file is
     /// known.
     fn at(&mut self, path: &Path) -> io::Result<bool> {
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        // What a killed program left of a file has the content of that file.
+        let extension = Path::new(replaced_name(&name)).extension().unwrap_or_default();
+        let extension = extension.to_string_lossy().to_lowercase();
         let is_known = match extension.as_str() {
             "csv" => self.at_table(path)?,
             "json" => self.at_training(path)?,

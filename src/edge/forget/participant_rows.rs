@@ -12,6 +12,7 @@ use csv::{ByteRecord, Reader};
 use super::subject::{ForgetSubject, NamedPerson};
 use crate::base::words::count;
 use crate::edge::log::rater_codes::EXPORT_COLUMNS;
+use crate::edge::replace_file::replaced_name;
 use crate::edge::written_tables::{ListedTables, reader, records};
 use crate::study::column::CsvTable;
 
@@ -90,7 +91,8 @@ impl FolderTables {
     /// # Errors
     /// The table cannot be read.
     pub fn look_at(&self, path: &Path, subject: &ForgetSubject) -> io::Result<TableMatch> {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let stem = Path::new(replaced_name(&name)).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut table = reader(File::open(path)?);
         let mut header = ByteRecord::new();
         if !table.read_byte_record(&mut header)? {

@@ -13,6 +13,7 @@ use crate::edge::log::consensus_file::CONSENSUS_NAME;
 use crate::edge::log::{
     CODES_LOCK, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log,
 };
+use crate::edge::replace_file::replaced_name;
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
 use crate::session::settings::is_code;
 
@@ -192,7 +193,7 @@ fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
 /// Whether the program writes a file of this name into the folder of a recording, or leaves it there when it is killed.
 fn is_of_recording(path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else { return false };
-    let name = name.strip_suffix(".new").unwrap_or(name);
+    let name = replaced_name(name);
     let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
     let names = [LOG_NAME, SETTINGS_NAME, RRD_NAME, MCAP_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME];

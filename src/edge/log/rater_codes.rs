@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::{ErrorKind, Read};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::RecordingWriteError;
@@ -91,12 +91,12 @@ pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), Recor
     let path = path(folder, rater);
     let failed = |reason| RecordingWriteError::unwritable(&path, reason);
     let mut table = csv::Writer::from_writer(Vec::new());
-    let mut put = |fields: [&str; 3]| table.write_record(fields).map_err(std::io::Error::from);
+    let mut put = |fields: [&str; 3]| table.write_record(fields).map_err(io::Error::from);
     put(COLUMNS).map_err(failed)?;
     for (press, code) in &codes.0 {
         put([&press.to_string(), code.kind().name(), code.aspect().unwrap_or_default()]).map_err(failed)?;
     }
-    let bytes = table.into_inner().map_err(|error| failed(std::io::Error::other(error.to_string())))?;
+    let bytes = table.into_inner().map_err(|error| failed(io::Error::other(error.to_string())))?;
     replace_file::replace(&path, &bytes).map_err(failed)
 }
 
@@ -125,16 +125,17 @@ pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> Result<(), RecordingW
     let failed = |reason| RecordingWriteError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
     overwrite::check(path, "an export of raters' codes", is_own).map_err(failed)?;
-    let write = || -> csv::Result<()> {
-        let mut table = csv::Writer::from_path(path)?;
+    let write = || -> io::Result<()> {
+        let mut table = csv::Writer::from_writer(Vec::new());
         table.write_record(EXPORT_COLUMNS)?;
         for row in rows {
             let (press, kind) = (row.press.to_string(), row.code.kind().name());
             table.write_record([&row.recording, &row.rater, &press, kind, row.code.aspect().unwrap_or_default()])?;
         }
-        Ok(table.flush()?)
+        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
+        overwrite::write(path, &bytes)
     };
-    write().map_err(|error| failed(error.into()))
+    write().map_err(failed)
 }
 
 /// The text of a table file of raters' codes.

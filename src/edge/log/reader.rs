@@ -11,6 +11,7 @@ use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::files::compile_kitchen;
 use crate::kitchen::{Kitchen, layout_ranges};
+use crate::session::apply::ApplyError;
 use crate::session::header::{FORMAT, PreviousPart, VERSION};
 use crate::session::ranges;
 use crate::session::{Event, LogHeader, Session, TimestampedEvent};
@@ -219,6 +220,11 @@ impl LogReader {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
+    /// The error about a line of this recording whose event the session refused.
+    pub fn refused(&self, line: &LogLine, error: ApplyError) -> FileError {
+        at_line(self.path(), line.number, &line.text, 0, error.found, error.remedy)
+    }
+
     fn wrong(&self, text: &str, column: usize, found: &str) -> FileError {
         let remedy = "one event of a tomcom log, numbered without gaps";
         at_line(&self.path, self.number.max(1), text, column, found.to_string(), remedy.to_string())
@@ -309,7 +315,11 @@ fn json_message(error: &serde_json::Error) -> String {
     message.split(" at line ").next().unwrap_or(&message).to_string()
 }
 
-fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
+/// Parses the header of the log at this path from the log's first line.
+///
+/// # Errors
+/// The line is no header of a log, or of a format version that this program does not read.
+pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
     let wrong = |column: usize, found: String, remedy: String| at_line(path, 1, text, column, found, remedy);
     let is_log = "the folder of a recording, or the events.jsonl in it, as tomcom wrote it".to_string();
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| match text.contains(FORMAT) {

@@ -1,5 +1,6 @@
 //! Carries out requests to Pupil Capture: asks for its time, and executes decisions of [`CaptureRecordingControl`].
 
+use std::collections::VecDeque;
 use std::future::pending;
 use std::io;
 use std::sync::Mutex;
@@ -65,13 +66,18 @@ impl CaptureClient {
         mut told: Receiver<CaptureNotification>,
         recorder: &mut CaptureRecordingControl,
         clock: &Mutex<ClockOffsetEstimator>,
-        mut actions: Vec<CaptureAction>,
+        actions: Vec<CaptureAction>,
     ) -> io::Error {
         let mut asking = interval(ASK_TIME);
+        let mut actions = VecDeque::from(actions);
         loop {
-            for action in actions {
+            while let Some(action) = actions.pop_front() {
+                let is_stop = matches!(action, CaptureAction::Stop);
                 if let Err(reason) = self.act(action, clock).await {
                     return reason;
+                }
+                if is_stop {
+                    actions.extend(recorder.stop_answered(Instant::now()));
                 }
             }
             let due = recorder.due();
@@ -89,7 +95,7 @@ impl CaptureClient {
                 () = is_due => DeskEvent::Due,
             };
             let now = Instant::now();
-            actions = match event {
+            actions.extend(match event {
                 DeskEvent::Time => match self.check_time(clock).await {
                     Ok(()) => Vec::new(),
                     Err(reason) => return reason,
@@ -101,7 +107,7 @@ impl CaptureClient {
                 DeskEvent::Subscription(Ok(_)) => Vec::new(),
                 DeskEvent::Subscription(Err(reason)) => return reason,
                 DeskEvent::Due => recorder.pass(now),
-            };
+            });
         }
     }
 

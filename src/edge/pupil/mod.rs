@@ -28,7 +28,7 @@ use zmtp::{SocketRole, ZmtpConnection};
 
 /// Time between attempts to connect to Pupil Capture.
 const RETRY: Duration = Duration::from_millis(300);
-/// Capacity of the queue of requests to Capture.
+/// Capacity of the channel of requests to Capture, which is emptied at each attempt to connect.
 const ORDERS: usize = 256;
 /// Capacity of the queue of notifications from Capture's recorder.
 const RECORDER_NEWS: usize = 16;
@@ -62,6 +62,7 @@ pub fn follow(capture: CaptureConfiguration) -> (Receiver<TrackerMessage>, Sende
                 follower.tell_lost(&reason).await;
             }
             sleep(RETRY).await;
+            follower.queue_orders();
         }
     });
     (receiver, sender)
@@ -124,9 +125,7 @@ impl Follower {
         is_same_run: bool,
         listens: bool,
     ) -> io::Error {
-        while let Ok(order) = self.orders.try_recv() {
-            self.recorder.queue(order);
-        }
+        self.queue_orders();
         let actions = self.recorder.connected(Instant::now(), is_same_run, listens);
         let (recorder, told) = channel(RECORDER_NEWS);
         let surface = (self.capture.surface.as_str(), self.capture.map);
@@ -137,6 +136,14 @@ impl Follower {
         };
         listener.end();
         reason
+    }
+
+    /// Moves the requests of the session to the recorder's queue. Their channel is bounded, and a session with a full
+    /// channel would lose its newest requests while Capture is missing.
+    fn queue_orders(&mut self) {
+        while let Ok(order) = self.orders.try_recv() {
+            self.recorder.queue(order);
+        }
     }
 
     async fn tell(&mut self, news: TrackerMessage) {

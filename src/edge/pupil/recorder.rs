@@ -81,6 +81,8 @@ enum Hold {
     Beginning(Instant),
     /// Capture's recording will be ended at this instant.
     Ending(Instant),
+    /// Capture was asked to end its recording, and has not answered yet.
+    Stopping,
 }
 
 /// State of Capture's recording, as far as this program knows it, and the requests that wait.
@@ -121,7 +123,21 @@ impl CaptureRecordingControl {
 
     /// Stores a request of the session until Capture is connected.
     pub fn queue(&mut self, request: CaptureRequest) {
+        let is_stop = matches!(request, CaptureRequest::StopRecording);
         self.waiting.push_back(request);
+        if is_stop {
+            self.drop_missed();
+        }
+    }
+
+    /// Drops what waits up to the last stop request: events before a stop request that could not be sent are in no
+    /// recording of Capture.
+    fn drop_missed(&mut self) {
+        if let Some(last) = self.waiting.iter().rposition(|request| matches!(request, CaptureRequest::StopRecording)) {
+            self.waiting.drain(..=last);
+            self.wanted = None;
+            self.state.clear();
+        }
     }
 
     /// Handles a new connection to Capture. `is_same_run` says that Capture was not restarted since the last
@@ -131,12 +147,7 @@ impl CaptureRecordingControl {
         self.listens_by = (!listens).then_some(now + LISTENS_WITHIN);
         let is_ours = is_same_run && self.owner == RecordingOwner::Us;
         self.owner = if is_ours { RecordingOwner::Us } else { RecordingOwner::Nobody };
-        // Events before a stop request that could not be sent are in no recording, so their annotations are dropped.
-        if let Some(last) = self.waiting.iter().rposition(|request| matches!(request, CaptureRequest::StopRecording)) {
-            self.waiting.drain(..=last);
-            self.wanted = None;
-            self.state.clear();
-        }
+        self.drop_missed();
         if is_ours && self.wanted.is_none() {
             self.stop(&mut actions);
         }
@@ -207,8 +218,9 @@ impl CaptureRecordingControl {
 
     /// Next instant at which the control has to act even without further messages.
     pub fn due(&self) -> Option<Instant> {
-        let hold = self.hold.map(|hold| match hold {
-            Hold::Beginning(by) | Hold::Ending(by) => by,
+        let hold = self.hold.and_then(|hold| match hold {
+            Hold::Beginning(by) | Hold::Ending(by) => Some(by),
+            Hold::Stopping => None,
         });
         hold.into_iter().chain(self.listens_by).min()
     }
@@ -261,9 +273,19 @@ impl CaptureRecordingControl {
         actions.push(CaptureAction::Start(name));
     }
 
+    /// Requests the end of Capture's recording, which stays this program's until Capture answers: if the connection is
+    /// lost before, the recording is ended after the next connection.
     fn stop(&mut self, actions: &mut Vec<CaptureAction>) {
-        (self.hold, self.owner, self.since) = (None, RecordingOwner::Nobody, None);
+        self.hold = Some(Hold::Stopping);
         actions.push(CaptureAction::Stop);
+    }
+
+    /// Handles Capture's answer to the request to end its recording.
+    pub fn stop_answered(&mut self, now: Instant) -> Vec<CaptureAction> {
+        (self.hold, self.owner, self.since) = (None, RecordingOwner::Nobody, None);
+        let mut actions = Vec::new();
+        self.go_on(now, &mut actions);
+        actions
     }
 
     /// Carries out waiting requests to Capture until one has to wait.

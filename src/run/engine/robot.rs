@@ -17,15 +17,15 @@ impl SessionEngine {
     pub(super) fn let_robot_act(&mut self, now: SessionTime) {
         let kitchen = self.session().kitchen.clone();
         let state = self.session().state;
-        for deed in self.robot.act(&kitchen, &mut self.follower.cost, now, state) {
-            self.record_deed(now, deed);
+        for event in self.robot.act(&kitchen, &mut self.follower.cost, now, state) {
+            self.record_robot(now, event);
         }
     }
 
-    pub(super) fn record_deed(&mut self, now: SessionTime, deed: RobotEvent) {
+    pub(super) fn record_robot(&mut self, now: SessionTime, event: RobotEvent) {
         let kitchen = self.session().kitchen.clone();
         let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
-        let event = match deed {
+        let event = match event {
             RobotEvent::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
             RobotEvent::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
             RobotEvent::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
@@ -45,7 +45,7 @@ impl SessionEngine {
         if let Some(press) = change.human_press() {
             self.robot.human_pressed(now, kitchen.button(Agent::Human, press.button).at_m);
         }
-        let deed = match &stamped.event {
+        let reaction = match &stamped.event {
             Event::RobotStopped => return self.robot.stop(),
             Event::RobotResumed => self.robot.resume(now),
             Event::RobotHeld { .. } => {
@@ -67,7 +67,7 @@ impl SessionEngine {
             }
             _ => None,
         };
-        deed.into_iter().collect()
+        reaction.into_iter().collect()
     }
 
     /// Starts the hand motion of a simulated participant in time for the participant's next press.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::base::printable::printable;
 use crate::base::time::SessionTime;
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
@@ -17,6 +18,9 @@ use crate::session::settings::GazeSource;
 use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use crate::session::wall_display::{AnswerDevice, DisplayEvent};
 use crate::session::{Event, Session};
+
+/// Number of characters that a message to the wizard shows of a name that the participant's page sent.
+const SHOWN_NAME: usize = 40;
 
 /// The participant's display during one recording.
 pub(super) struct ParticipantDisplay {
@@ -138,7 +142,9 @@ fn answered(reply: ParticipantResponse, session: &Session) -> Option<Event> {
 /// time at which the button went down is recorded in addition.
 fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
-        let text = "the participant's page sent a press of a button that the kitchen does not have".to_string();
+        let named: String = printable(&button).chars().take(SHOWN_NAME).collect();
+        let text =
+            format!("the participant's page sent a press of \"{named}\", a button that the kitchen does not have");
         return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
     }
     // A press that reaches the program after the freeze probe began is ignored.
@@ -204,4 +210,26 @@ fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
 fn session_time(at: Instant, now: SessionTime) -> SessionTime {
     let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
     SessionTime(now.0.saturating_sub(age_ns))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::edge::files::built_in_session;
+
+    #[test]
+    fn a_press_that_is_refused_names_its_button_in_signs_that_can_be_shown() {
+        let files = built_in_session().expect("the program's own session");
+        let session = Session::new(Arc::new(files.kitchen.kitchen), files.spec, 0);
+        let refused = |button: &str| {
+            let PageEvent { event, notice } = press(button.to_string(), Instant::now(), &session, SessionTime::ZERO);
+            assert!(event.is_none(), "{event:?}");
+            notice.expect("a notice").1
+        };
+        assert!(refused("explode").contains("\"explode\""));
+        let text = refused(&format!("\u{1b}[2J{}", "x".repeat(5000)));
+        assert!(text.contains("[2J") && !text.contains('\u{1b}') && text.len() < 200, "{text}");
+    }
 }

@@ -80,12 +80,14 @@ pub(super) struct Live {
 pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
     let mut live = Live::open(begun, desk)?;
     live.greet(&desk.tracker);
-    // If the wizard did not leave by a key, the program was told to end.
-    let leaving = event_loop::run(&mut live, desk).await?.unwrap_or(LeavingReason::Quit);
+    let left = event_loop::run(&mut live, desk).await;
+    // If the wizard did not leave by a key, the program was told to end, or the console failed. The recording is closed
+    // and the robot stops in any case.
+    let leaving = left.as_ref().ok().copied().flatten().unwrap_or(LeavingReason::Quit);
     desk.tracker.keep(live.engine.session().calibrated.clone());
     let end = live.close(leaving);
     desk.tracker.settle().await;
-    end
+    left.and(end)
 }
 
 impl ConsoleShell for Live {

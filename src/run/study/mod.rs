@@ -15,13 +15,14 @@ mod tell;
 mod tutorials;
 mod twin;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
 use super::kept_cost::KeptCost;
-use super::replay::SameKitchenCheck;
+use super::replay::{SameKitchenCheck, log_place};
 use super::{consents, parallel};
 use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
 use crate::edge::file_error::FileError;
@@ -92,10 +93,12 @@ impl NamedRecordings {
     /// A path is neither a recording nor a folder with recordings.
     pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
         let mut found: Vec<(PathBuf, String)> = Vec::new();
+        let mut known = BTreeSet::new();
         for path in paths {
             for recording in recordings::of_folder(path)? {
-                let name = name(&recording);
-                if found.iter().all(|(other, _)| *other != recording) {
+                // Different paths can lead to one recording, which must not be counted twice.
+                if known.insert(log_place(&recording)) {
+                    let name = name(&recording);
                     found.push((recording, name));
                 }
             }

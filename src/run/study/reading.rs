@@ -19,7 +19,7 @@ use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, at_line, rater_codes};
+use crate::edge::log::{LogReader, rater_codes};
 use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
@@ -188,9 +188,7 @@ pub fn read(
         let session = &pass.follower().session;
         let was_running = session.is_running();
         let was_on = was_running || session.phase == TrialPhase::Paused;
-        let change = pass
-            .apply(&line.stamped)
-            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        let change = pass.apply(&line.stamped).map_err(|error| log.refused(&line, error))?;
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
         probes.note(&line.stamped, &change, follower);

@@ -1,11 +1,9 @@
 //! Assignment of participants to starting groups by permuted blocks (Pocock 1983, Clinical Trials, ch. 5): groups are
 //! equal after every block, and the next assignment is unpredictable.
 
-use rand::RngExt;
-
 use super::groups::{StartingGroup, orders};
 use super::plan_spec::PlanSpec;
-use crate::base::rng::stream;
+use crate::base::rng::{shuffle, stream};
 
 impl PlanSpec {
     /// The starting group of the participant with this index: a function of plan and seed alone.
@@ -14,10 +12,7 @@ impl PlanSpec {
         let block = self.block.map_or(2 * orders.len(), |block| block as usize);
         let mut places: Vec<usize> = (0..block).map(|place| place % orders.len()).collect();
         let mut random = stream(seed, "groups", (participant / block) as u64);
-        // Fisher-Yates shuffle: all orders of the block are equally likely.
-        for last in (1..block).rev() {
-            places.swap(last, random.random_range(0..=last));
-        }
+        shuffle(&mut places, &mut random);
         let order = &orders[places[participant % block]];
         StartingGroup {
             name: order.iter().map(|&index| char::from(b'A' + index as u8)).collect(),

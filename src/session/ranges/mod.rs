@@ -2,7 +2,6 @@
 //! questionnaires. Those of layouts are in [`crate::kitchen::layout_ranges`]; `docs/settings.md` shows both.
 //! A file with a number outside of its allowed range is refused. For the header of a recording the program only warns,
 //! if an earlier version of the program accepted the number.
-//! earlier version accepted the number.
 
 mod human;
 mod people;

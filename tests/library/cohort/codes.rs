@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
 use tomcom::edge::log::rater_codes::{read_all, write};
-use tomcom::edge::log::{LOG_NAME, consensus_file};
+use tomcom::edge::log::{LOG_NAME, RecordingLock, consensus_file};
 use tomcom::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use tomcom::measures::consensus::{RaterConsensus, unsettled};
 use tomcom::measures::rater_choice::RaterChoice;
@@ -120,6 +120,26 @@ fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path
         assert!(told.contains("codes.csv:3:") && told.contains(found) && help.contains(remedy), "{told}; {help}");
     }
     assert!(!recording.join("codes-R3.csv").exists(), "nothing of a table with a wrong row is taken over");
+}
+
+/// A rater who codes at the console and an import do not overwrite each other's codes.
+fn check_import_beside_a_console(coded: &mut [CodedRecording], recording: &Path, table: &Path) {
+    let (name, first) = (coded[0].name(), coded[0].codable.errors[0]);
+    fs::write(table, format!("recording,rater,press,cause,aspect\n{name},R1,{first},race,\n")).expect("written");
+    let before = fs::read(recording.join("codes-R1.csv")).expect("codes");
+    let console = RecordingLock::take_for_codes(recording, &["R1"]).expect("the console's lock");
+    let told = import(coded, table).expect_err("R1 is coding").to_string();
+    assert!(told.contains("codes its errors as R1"), "{told}");
+    assert!(fs::read(recording.join("codes-R1.csv")).expect("codes") == before);
+    // At the console the rater coded every error after this program had read the codes.
+    let slips = RaterCodes(coded[0].codable.errors.iter().map(|press| (*press, ErrorCauseCode::Slip)).collect());
+    write(recording, "R1", &slips).expect("written");
+    drop(console);
+    import(coded, table).expect("R1 is not coding any more");
+    let mut expected = slips;
+    expected.0.insert(first, ErrorCauseCode::Race);
+    assert_eq!(read_all(recording, &coded[0].codable).expect("readable")["R1"], expected);
+    assert!(!recording.join("lock-codes-R1").exists(), "the lock is given back");
 }
 
 /// Two raters of one recording: the second takes every other belief for a slip, and leaves the last error out.
@@ -237,6 +257,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     );
     assert!(fs::read(recording.join(LOG_NAME)).expect("a log") == log, "the log stays as it is");
 
+    check_import_beside_a_console(&mut coded, &recording, &table);
     check_wrong_rows(&mut coded, &recording, &table);
 
     // The same beside the log, which somebody may have written by hand.

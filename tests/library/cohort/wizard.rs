@@ -131,14 +131,14 @@ fn reader(offers: OfferReading, rest_s: f64) -> ScriptedWizard {
 }
 
 /// What a wizard does until it has nothing to do.
-fn deeds(wizard: &mut ScriptedWizard) -> Vec<(f64, WizardAction)> {
+fn actions(wizard: &mut ScriptedWizard) -> Vec<(f64, WizardAction)> {
     let kitchen = Arc::new(paper(1).kitchen.kitchen);
     let (state, mut cost) = (kitchen.empty_state(), CostToGo::new(kitchen));
-    let mut deeds = Vec::new();
+    let mut actions = Vec::new();
     while let Some(due) = wizard.next_due() {
-        deeds.extend(wizard.act(due, state, &mut cost).map(|deed| (due.as_secs_f64(), deed)));
+        actions.extend(wizard.act(due, state, &mut cost).map(|action| (due.as_secs_f64(), action)));
     }
-    deeds
+    actions
 }
 
 #[test]
@@ -148,24 +148,24 @@ fn an_offer_is_taken_after_the_time_of_reading_or_left() {
     let mut wizard = reader(takes(1.0, 2.0), 5.0);
     wizard.on_offer(second(10.0), 7);
     wizard.postpone(second(30.0));
-    assert_eq!(deeds(&mut wizard), [(42.0, WizardAction::TakeOffer(7))]);
+    assert_eq!(actions(&mut wizard), [(42.0, WizardAction::TakeOffer(7))]);
     // The next offer takes the place of the one before.
     wizard.on_offer(second(50.0), 8);
     wizard.on_offer(second(51.0), 9);
-    assert_eq!(deeds(&mut wizard), [(53.0, WizardAction::TakeOffer(9))]);
+    assert_eq!(actions(&mut wizard), [(53.0, WizardAction::TakeOffer(9))]);
     // Nobody reads within the time in which a key means the offer before.
     wizard.on_offer(second(60.0), 10);
     let mut quick = reader(takes(1.0, 0.0), 5.0);
     quick.on_offer(second(60.0), 10);
-    assert_eq!(deeds(&mut quick), [(60.3, WizardAction::TakeOffer(10))]);
+    assert_eq!(actions(&mut quick), [(60.3, WizardAction::TakeOffer(10))]);
     let mut stubborn = reader(takes(0.0, 2.0), 5.0);
     stubborn.on_offer(second(10.0), 7);
-    assert_eq!(deeds(&mut stubborn), []);
+    assert_eq!(actions(&mut stubborn), []);
     // After a signal it rests.
     let mut tired = reader(takes(1.0, 2.0), 5.0);
     tired.on_signal(second(9.0), LocationId(0), paper(1).kitchen.kitchen.empty_state());
     tired.on_offer(second(10.0), 7);
-    assert_eq!(deeds(&mut tired), [(14.0, WizardAction::TakeOffer(7))]);
+    assert_eq!(actions(&mut tired), [(14.0, WizardAction::TakeOffer(7))]);
 }
 
 /// The plan of arms with a scripted wizard: the same script with and without advice.

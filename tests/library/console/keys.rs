@@ -128,7 +128,7 @@ fn a_signal_is_not_sent_again_while_it_is_shown() {
 fn the_space_bar_stops_the_robot_in_every_view() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
     let list = Some(Dialog::Pick(Picker::new(PickerQuestion::Place)));
-    for dialog in [None, Some(Dialog::Help), Some(Dialog::Quit), Some(Dialog::EndTrial), list] {
+    for dialog in [None, Some(Dialog::Help(Vec::new())), Some(Dialog::Quit), Some(Dialog::EndTrial), list] {
         for layer in [KeyLayer::Wizard, KeyLayer::Participant] {
             stage.model.dialog = dialog.clone();
             stage.model.layer = layer;
@@ -144,7 +144,7 @@ fn the_space_bar_stops_the_robot_in_every_view() {
 #[test]
 fn whoever_wants_to_quit_is_asked_in_whatever_list_they_are() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    for dialog in [Dialog::Help, Dialog::Preflight, Dialog::Pick(Picker::new(PickerQuestion::Place))] {
+    for dialog in [Dialog::Help(Vec::new()), Dialog::Preflight, Dialog::Pick(Picker::new(PickerQuestion::Place))] {
         stage.model.dialog = Some(dialog);
         stage.wait(1.0);
         assert_eq!(stage.control('c'), None);

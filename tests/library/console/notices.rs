@@ -8,12 +8,13 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::robot::safety::SafetyMode;
+use tomcom::session::TimelineEvent;
 use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom::session::tracker::TrackerEvent;
 
-use super::{SIZES, Stage, input};
+use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;
 
 #[test]
@@ -97,10 +98,10 @@ fn the_notes_are_those_of_the_session() {
 }
 
 #[test]
-fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
+fn notes_in_words_are_written_while_no_trial_runs_and_only_there_the_space_bar_types() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     assert_eq!(stage.key(KeyCode::Char('0')), None);
-    assert!(stage.notice().contains("only in a pause"), "{}", stage.notice());
+    assert!(stage.notice().contains("only while no trial runs"), "{}", stage.notice());
     stage.at(23.0, Event::TrialPaused);
     stage.wait(1.0);
     stage.key(KeyCode::Char('0'));
@@ -124,6 +125,40 @@ fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
     stage.key(KeyCode::Char('0'));
     assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn notes_in_words_are_written_after_the_trial_too_until_the_session_is_closed() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(23.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    stage.wait(1.0);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert_eq!(screen.matches("0 type note").count(), 2, "on the card and in the last line at {size:?}:\n{screen}");
+    }
+    stage.key(KeyCode::Char('0'));
+    type_in(&mut stage, "was tired");
+    let note = Event::Marker { note: "was tired".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(note.clone()));
+    stage.at(25.0, note);
+    assert!(stage.session.timeline.iter().any(|entry| entry.what == TimelineEvent::Marker("was tired".to_string())));
+    stage.at(26.0, Event::SessionEnded);
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('0'));
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn the_space_bar_stops_the_robot_where_a_trial_goes_on_while_a_note_is_typed() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(23.0, Event::TrialPaused);
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('0'));
+    type_in(&mut stage, "late");
+    stage.at(25.0, Event::TrialResumed);
+    assert!(stage.screen((80, 24)).contains("space STOP ROBOT"), "{}", stage.screen((80, 24)));
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "late".to_string() }));
 }
 
 #[test]

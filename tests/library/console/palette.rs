@@ -2,12 +2,12 @@
 
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::console::console_model::Dialog;
-use tomcom::console::key_action::KeyLayer;
+use tomcom::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use tomcom::console::list_cursor::ListCursor;
 use tomcom::console::palette::actions;
 use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom::session::event::Event;
+use tomcom::session::event::{Event, SignalEndReason};
 use tomcom::session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input, type_in};
@@ -26,9 +26,54 @@ fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
         check_snapshot("console", format!("palette_{}x{}", size.0, size.1), screen);
     }
     let layer = KeyLayer::Wizard;
-    let listed = actions(&stage.model.keys, layer, &ListCursor::default()).len();
+    let listed = actions(&stage.model, &ListCursor::default()).len();
     let active = stage.model.keys.bindings.iter().filter(|line| line.layer.is_none_or(|only| only == layer));
     assert_eq!(listed, active.count() - 1, "all but the palette itself");
+}
+
+/// The action under the cursor of the open palette.
+fn first(stage: &Stage) -> KeyAction {
+    let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("the palette is open") };
+    actions(&stage.model, cursor)[cursor.at].action.clone()
+}
+
+#[test]
+fn the_first_action_of_the_palette_is_likely_and_never_stops_or_ends_anything() {
+    let ends = |action: &KeyAction| {
+        let abort = KeyAction::Hand(ManualAction::Abort);
+        [KeyAction::StopRobot, KeyAction::EndTrial, KeyAction::Quit, abort].contains(action)
+    };
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.control('k');
+    assert_eq!(first(&stage), KeyAction::Hand(ManualAction::Preflight), "before the trial");
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    assert_eq!(first(&stage), KeyAction::Help, "without an offer");
+    let listed = actions(&stage.model, &ListCursor::default());
+    assert!(listed.iter().rev().take(4).all(|line| ends(&line.action)), "what ends something is last");
+    assert_eq!(listed.iter().filter(|line| ends(&line.action)).count(), 4);
+    // What was chosen last is first the next time; what stops the robot is not.
+    type_in(&mut stage, "hold");
+    stage.wait(0.1);
+    stage.key(KeyCode::Enter);
+    for typed in ["", "stoprobot"] {
+        stage.wait(1.0);
+        stage.control('k');
+        assert_eq!(first(&stage), KeyAction::Hand(ManualAction::HoldRobot));
+        type_in(&mut stage, typed);
+        stage.wait(0.1);
+        stage.key(KeyCode::Enter);
+    }
+    stage.wait(1.0);
+    stage.control('k');
+    assert_eq!(first(&stage), KeyAction::Hand(ManualAction::HoldRobot));
+    stage.model.dialog = None;
+    // It is not, where it would do nothing.
+    stage.at(30.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
+    stage.at(30.0, Event::TrialPaused);
+    stage.at(30.0, Event::SessionEnded);
+    stage.control('k');
+    assert_eq!(first(&stage), KeyAction::Help);
 }
 
 #[test]

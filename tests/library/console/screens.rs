@@ -6,12 +6,14 @@ use tomcom::communication::{Sender, Signal};
 use tomcom::console::console_model::{Dialog, RecordingStatus};
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::notice::NoticeLevel;
+use tomcom::console::panel::Panel;
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
 use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::gaze::GazeSample;
+use tomcom::kitchen::Agent;
 use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
@@ -93,12 +95,65 @@ fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
 }
 
 #[test]
+fn only_the_place_of_the_latest_gaze_sample_is_looked_at_now() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = WizardVisibility::State;
+    let kitchen = stage.session.kitchen.clone();
+    // A quarter of a second at one place, then at the next one.
+    for (index, location) in kitchen.locations.iter().take(4).enumerate() {
+        let [x, y] = location.display.centre();
+        stage.look(23.0 + 0.25 * index as f64, x, y);
+    }
+    let screen = stage.screen((120, 40));
+    let map = screen.lines().skip_while(|line| !line.contains("Gaze map")).collect::<Vec<_>>().join("\n");
+    assert_eq!(map.matches(" now").count(), 2, "on the map, and in the line of the gaze:\n{map}");
+    for age in ["0.2s", "0.5s", "0.8s"] {
+        assert!(map.contains(age), "{age}:\n{map}");
+    }
+    stage.wait(0.3);
+    assert!(!stage.screen((120, 40)).contains(" now"), "a gap in the gaze: {}", stage.screen((120, 40)));
+}
+
+#[test]
+fn a_row_of_the_events_says_what_a_press_took_put_down_or_made() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.press(22.7, Agent::Human, "counter");
+    stage.model.alone = Some(Panel::Events);
+    let screen = stage.screen((120, 40));
+    for row in [
+        "human     take rice ",
+        "human     cooking pot: puts down rice",
+        "human     cook: makes cooked rice",
+        "human     cooking pot: takes cooked rice",
+        "human     assembly board: stacks cooked rice",
+        "robot     cut: makes cut tuna",
+    ] {
+        assert!(screen.contains(row), "{row:?} in\n{screen}");
+    }
+}
+
+#[test]
+fn the_head_of_the_smallest_screen_tells_the_state_of_the_robot() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let head = |stage: &Stage| stage.screen((80, 24)).lines().next().unwrap_or_default().to_string();
+    for step in 0..120 {
+        stage.look(23.0 + f64::from(step) / 120.0, 0.4, 0.4);
+    }
+    assert!(head(&stage).contains("120 Hz robot ok"), "{}", head(&stage));
+    stage.at(24.1, Event::RobotStopped);
+    assert!(head(&stage).contains("EMERGENCY STOP"), "{}", head(&stage));
+}
+
+#[test]
 fn help_and_questions_and_the_ascii_fallback() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.key(KeyCode::Char('?'));
-    assert_eq!(stage.model.dialog, Some(Dialog::Help));
+    assert!(matches!(&stage.model.dialog, Some(Dialog::Help(_))));
+    stage.model.size = (80, 24);
     check_snapshot("console", "help_80x24", stage.screen((80, 24)));
+    stage.model.size = (120, 40);
     check_snapshot("console", "help_120x40", stage.screen((120, 40)));
+    stage.model.size = (200, 60);
     assert!(stage.screen((200, 60)).contains("shift-tab show the previous panel"), "keys with long names are whole");
     stage.wait(1.0);
     stage.key(KeyCode::Down);
@@ -109,6 +164,31 @@ fn help_and_questions_and_the_ascii_fallback() {
     stage.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Dark };
     let screen = stage.screen((120, 40));
     assert!(screen.is_ascii(), "only ASCII");
+}
+
+#[test]
+fn the_help_has_first_the_keys_that_do_something_now_and_keeps_its_order_while_it_is_read() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.size = (200, 60);
+    stage.key(KeyCode::Char('?'));
+    // The column of the help below the heading of the keys without an effect.
+    let heading = "Keys without an effect now";
+    let without = |screen: &str| {
+        let below: Vec<&str> = screen.lines().skip_while(|line| !line.contains(heading)).collect();
+        let (before, _) = below.first().and_then(|line| line.split_once(heading)).expect("such keys");
+        let column = before.chars().count();
+        let text = |line: &&str| line.chars().skip(column).take(39).collect::<String>();
+        below.iter().map(text).collect::<Vec<String>>().join("\n")
+    };
+    let idle = without(&stage.screen((200, 60)));
+    for text in ["resume the robot after a stop", "type a note", "show the preflight checks"] {
+        assert!(idle.contains(text), "{text:?} does nothing while the trial runs:\n{idle}");
+    }
+    for text in ["stop the robot, at once", "start, pause or resume the trial", "quit tomcom"] {
+        assert!(!idle.contains(text), "{text:?} does something while the trial runs:\n{idle}");
+    }
+    stage.at(23.0, Event::RobotStopped);
+    assert_eq!(without(&stage.screen((200, 60))), idle, "no line moves while it is read");
 }
 
 /// Every state that a wizard has to recognise at a glance, at each size.

@@ -53,6 +53,7 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     for size in SIZES {
         let screen = stage.screen(size);
         assert!(screen.contains("ABORTED") && screen.contains("^n repeat the trial"), "{screen}");
+        assert!(screen.contains("aborted by the wizard") && screen.contains("technical failure"), "{screen}");
     }
     assert_eq!(stage.control('n'), Some(ConsoleCommand::Redo));
 }

@@ -7,6 +7,8 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
+use tomcom::edge::pupil::{CaptureConfiguration, follow};
+use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::session::settings::GazeSource;
 use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::{Event, preflight_checks};
@@ -176,6 +178,10 @@ impl Desk {
         words(self.recorder.order(CaptureRequest::StopRecording, self.at(ms)))
     }
 
+    fn stop_answered(&mut self, ms: u64) -> Vec<String> {
+        words(self.recorder.stop_answered(self.at(ms)))
+    }
+
     fn started(&mut self, ms: u64, name: &str) -> Vec<String> {
         words(self.recorder.heard(CaptureNotification::Started(name.to_string()), self.at(ms)))
     }
@@ -211,7 +217,9 @@ fn the_start_of_the_trial_is_annotated_once_capture_records_and_its_end_before_t
     // The next trial begins when this recording is over.
     assert!(desk.record(1000).is_empty());
     assert_eq!(desk.recorder.due(), Some(desk.at(1400)));
-    assert_eq!(desk.pass(1400), ["r", "R P07"]);
+    assert_eq!(desk.pass(1400), ["r"]);
+    assert!(desk.recorder.due().is_none(), "Capture answers, or the connection is lost");
+    assert_eq!(desk.stop_answered(1410), ["R P07"]);
     assert!(desk.stopped(1420).is_empty());
     assert_eq!(desk.started(1440, "P07"), ["Begun"]);
 }
@@ -292,6 +300,41 @@ fn a_recording_goes_on_through_a_loss_of_the_network() {
     desk.recorder.disconnected();
     desk.recorder.queue(CaptureRequest::StopRecording);
     assert_eq!(desk.connected(9000, true), ["r"]);
+}
+
+#[test]
+fn a_recording_whose_end_capture_did_not_answer_is_ended_after_the_next_connection() {
+    let mut desk = Desk::running();
+    assert!(desk.stop(900).is_empty());
+    assert_eq!(desk.pass(1400), ["r"]);
+    assert!(desk.record(1500).is_empty(), "Capture has not answered yet");
+    // The request failed: the connection is lost, and Capture records on.
+    desk.recorder.disconnected();
+    assert_eq!(desk.connected(9000, true), ["r"]);
+    assert_eq!(desk.stop_answered(9010), ["R P07"], "the next recording begins after the end of the last");
+    // A restarted Capture does not record.
+    let mut desk = Desk::running();
+    desk.stop(900);
+    assert_eq!(desk.pass(1400), ["r"]);
+    desk.recorder.disconnected();
+    assert!(desk.connected(9000, false).is_empty());
+}
+
+#[tokio::test]
+async fn requests_wait_for_a_capture_that_is_not_there_without_filling_their_channel() {
+    let free = std::net::TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port");
+    let map = SurfaceHomography::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("a map");
+    let (address, surface) = ("127.0.0.1".to_string(), "wall".to_string());
+    let (_news, orders) = follow(CaptureConfiguration { address, port: free.port(), surface, map, records: true });
+    let room = orders.capacity();
+    for _ in 0..room {
+        orders.try_send(CaptureRequest::Record("P07".to_string())).expect("room");
+    }
+    let until = Instant::now() + Duration::from_secs(30);
+    while orders.capacity() < room {
+        assert!(Instant::now() < until, "nobody takes the requests: {} of {room} places are free", orders.capacity());
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
 }
 
 #[test]

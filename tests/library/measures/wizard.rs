@@ -2,7 +2,7 @@
 
 use tomcom::kitchen::AspectId;
 use tomcom::measures::wizard_performance::{
-    FalseBeliefPeriod, SignalVerdict, TimeSummary, TrainingCriterion, WizardMeasures, WizardSignal, worths,
+    FalseBeliefPeriod, SignalVerdict, TimeSummary, TrainingCriterion, WizardMeasures, WizardSignal, verdicts,
 };
 
 use super::at;
@@ -15,17 +15,17 @@ fn sent(seconds: f64, aspects: &[u8]) -> WizardSignal {
 
 #[test]
 fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
-    let spell = |aspect: u8, from: f64, until: f64, errors: u32| FalseBeliefPeriod {
+    let period = |aspect: u8, from: f64, until: f64, errors: u32| FalseBeliefPeriod {
         aspect: AspectId(aspect),
         began: at(from),
         corrected: Some((at(until), (until / 2.0) as u32)),
         errors,
     };
-    let mut spells = vec![spell(1, 10.0, 30.0, 2), spell(2, 20.0, 26.0, 0), spell(3, 50.0, 60.0, 1)];
-    spells.push(FalseBeliefPeriod { aspect: AspectId(4), began: at(80.0), corrected: None, errors: 1 });
+    let mut periods = vec![period(1, 10.0, 30.0, 2), period(2, 20.0, 26.0, 0), period(3, 50.0, 60.0, 1)];
+    periods.push(FalseBeliefPeriod { aspect: AspectId(4), began: at(80.0), corrected: None, errors: 1 });
     let signals = [
         (4.0, vec![1], SignalVerdict::Needless),
-        (12.5, vec![1], SignalVerdict::Hit { latency_s: 2.5, spell: 0 }),
+        (12.5, vec![1], SignalVerdict::Hit { latency_s: 2.5, period: 0 }),
         (14.0, vec![1], SignalVerdict::Again),
         (21.0, vec![2], SignalVerdict::Harmless),
         // An order with its recipe: the one that led to an error counts.
@@ -34,12 +34,12 @@ fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
         // Right again since two presses; and since too long.
         (34.0, vec![1], SignalVerdict::Late),
         (40.0, vec![1], SignalVerdict::Needless),
-        (90.0, vec![4], SignalVerdict::Hit { latency_s: 10.0, spell: 3 }),
+        (90.0, vec![4], SignalVerdict::Hit { latency_s: 10.0, period: 3 }),
     ];
     let all: Vec<WizardSignal> = signals.iter().map(|(seconds, aspects, _)| sent(*seconds, aspects)).collect();
-    let wanted: Vec<SignalVerdict> = signals.iter().map(|(.., worth)| *worth).collect();
-    assert_eq!(worths(&all, &spells), wanted);
-    let found = WizardMeasures::from_signals(&all, Some(&spells));
+    let wanted: Vec<SignalVerdict> = signals.iter().map(|(.., verdict)| *verdict).collect();
+    assert_eq!(verdicts(&all, &periods), wanted);
+    let found = WizardMeasures::from_signals(&all, Some(&periods));
     assert_eq!(
         (found.episodes, found.hits, found.omissions),
         (Some(3), Some(2), Some(1)),
@@ -66,6 +66,6 @@ fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
     assert_eq!(WizardMeasures::sum([&found, &unknown]).hits, None);
     // A signal more or less changes nothing about the others before it.
     for end in 0..all.len() {
-        assert_eq!(worths(&all[..end], &spells), wanted[..end]);
+        assert_eq!(verdicts(&all[..end], &periods), wanted[..end]);
     }
 }

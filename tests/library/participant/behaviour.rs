@@ -107,14 +107,14 @@ pub fn unmoved() -> Population {
 
 #[test]
 fn the_same_seed_does_the_same_and_another_one_something_else() {
-    let deeds = |seed| {
+    let actions = |seed| {
         let mut bench = Bench::new(&Population::default(), seed);
         bench.order("order_1", "crab maki");
         bench.pass(60.0);
         (bench.samples, bench.presses, bench.one.person().clone())
     };
-    assert_eq!(deeds(3), deeds(3));
-    let (ours, theirs) = (deeds(3), deeds(4));
+    assert_eq!(actions(3), actions(3));
+    let (ours, theirs) = (actions(3), actions(4));
     assert_ne!(ours.1, theirs.1);
     assert_ne!(ours.2, theirs.2, "individuals differ");
 }

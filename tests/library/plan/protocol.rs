@@ -263,6 +263,37 @@ fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
     assert_eq!(recordings::of_plan(whole.parent().expect("a folder"), "other").expect("readable"), Vec::new());
     let progress = ParticipantProgress::from_recordings(&study, 0, &[]).expect("nothing recorded");
     assert_eq!(progress.next, NextRecording::Begin { slot: 0, attempt: 1 });
+    check_damaged_headers(&text, &cuts);
+}
+
+/// A recording that cannot be read is told: otherwise its trial would be offered again.
+fn check_damaged_headers(log: &[u8], out: &Path) {
+    let log = String::from_utf8_lossy(log).into_owned();
+    let told = |text: &str| {
+        let damaged = out.join("damaged");
+        fs::create_dir_all(&damaged).expect("a folder");
+        fs::write(damaged.join(LOG_NAME), text).expect("written");
+        let found = recordings::of_plan(out, "study").map(|made| made.len());
+        fs::remove_dir_all(damaged).expect("removed");
+        found.map_err(|error| error.to_string())
+    };
+    let ours = "{\"format\":\"tomcom-session\",";
+    assert!(log.starts_with(ours));
+    assert_eq!(told(&log), Ok(1));
+    for damage in ["\"version\":99,", "\"trial\":\"first\",", "\u{0}\u{0}"] {
+        let found = told(&log.replacen(ours, &format!("{ours}{damage}"), 1)).expect_err(damage);
+        assert!(found.contains("damaged/events.jsonl:1:"), "{damage}: {found}");
+    }
+    // A file of another program, and a folder without a recording.
+    assert_eq!(told("{\"format\":\"of another program\"}\n"), Ok(0));
+    fs::create_dir_all(out.join("notes")).expect("a folder");
+    fs::write(out.join("notes.txt"), "notes").expect("written");
+    assert_eq!(told(&log), Ok(1));
+    // The log cannot be opened.
+    fs::create_dir_all(out.join("odd").join(LOG_NAME)).expect("a folder");
+    let found = told(&log).expect_err("a folder instead of a log");
+    assert!(found.contains("odd/events.jsonl: cannot be read"), "{found}");
+    fs::remove_dir_all(out.join("odd")).expect("removed");
 }
 
 #[test]

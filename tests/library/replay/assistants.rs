@@ -28,24 +28,28 @@ use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::verify::verify;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Session, TimestampedEvent};
+use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use super::{SESSIONS, folder, same, session, simulated};
 
-/// Two trials in which the assistant acts by this concept, quickly and for little reason.
-fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
+/// Simulates trials of `seconds` in which the assistant acts, quickly, with these further settings; returns the folder.
+fn with_assistant(name: &str, out: &str, (trials, seconds): (u64, f64), further: impl Fn(&mut SessionSpec)) -> PathBuf {
     let mut files = session(name);
     files.spec.robot.arm = ArmKind::Timed;
-    files.spec.trial.condition = Condition::Assistant;
-    files.spec.assistant.concept = by;
-    files.spec.trial.seconds = 45.0;
-    files.spec.assistant.cost_of_communication = 0.3;
-    files.spec.assistant.rollout.rollouts = 8;
-    files.spec.assistant.rollout.states = 8;
+    (files.spec.trial.condition, files.spec.trial.seconds) = (Condition::Assistant, seconds);
+    (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
+    further(&mut files.spec);
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials: 2, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     out
+}
+
+/// Two trials in which the assistant acts by this concept, for little reason.
+fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
+    with_assistant(name, out, (2, 45.0), |spec| {
+        (spec.assistant.concept, spec.assistant.cost_of_communication) = (by, 0.3);
+    })
 }
 
 #[test]
@@ -118,16 +122,10 @@ fn an_advisor_that_works_ahead_computes_less_in_its_answers_and_answers_the_same
 #[test]
 fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
     for name in SESSIONS {
-        let mut files = session(name);
-        files.spec.robot.arm = ArmKind::Timed;
-        files.spec.trial.condition = Condition::Assistant;
-        files.spec.trial.seconds = 90.0;
-        (files.spec.assistant.asks_in_silence, files.spec.assistant.asks_by_gaze) = (true, true);
-        files.spec.human.inference.waiting = true;
-        (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
-        let out = folder("other-moments");
-        simulate(&SimulationRequest { files, trials: 2, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-            .expect("the folder can be written");
+        let out = with_assistant(name, "other-moments", (2, 90.0), |spec| {
+            (spec.assistant.asks_in_silence, spec.assistant.asks_by_gaze) = (true, true);
+            spec.human.inference.waiting = true;
+        });
         let mut counts = [0; 3];
         for trial in ["seed1-S001", "seed1-S002"] {
             let log = out.join(trial).join(LOG_NAME);
@@ -153,17 +151,11 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
 #[test]
 fn an_assistant_that_learns_lapse_and_attention_comes_out_the_same_again() {
     for name in SESSIONS {
-        let mut files = session(name);
-        files.spec.robot.arm = ArmKind::Timed;
-        files.spec.trial.condition = Condition::Assistant;
-        files.spec.trial.seconds = 60.0;
-        (files.spec.assistant.asks_by_gaze, files.spec.human.inference.waiting) = (true, true);
-        (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
-        files.spec.human.adapt = AdaptationSettings::ALL;
         let out = ["adapting", "adapting-again"].map(|out| {
-            let (files, out) = (files.clone(), folder(out));
-            simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-                .expect("the folder can be written");
+            let out = with_assistant(name, out, (1, 60.0), |spec| {
+                (spec.assistant.asks_by_gaze, spec.human.inference.waiting) = (true, true);
+                spec.human.adapt = AdaptationSettings::ALL;
+            });
             out.join("seed1-S001").join(LOG_NAME)
         });
         same(&out[0], &out[1]);

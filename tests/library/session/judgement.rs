@@ -1,10 +1,21 @@
 //! Which presses are errors.
 
+use std::fs;
+use std::path::Path;
+
+use tomcom::analysis::follower::SessionFollower;
+use tomcom::edge::files::read_session;
+use tomcom::edge::log::LogWriter;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, OrderContent};
 use tomcom::measures::errors::{PressJudge, PressVerdict};
+use tomcom::run::engine::{InputResult, SessionEngine};
+use tomcom::run::recording_list::{RecordingListDetail, list};
+use tomcom::session::probes::ProbeEvent;
+use tomcom::session::{Event, LogHeader, Session, TimestampedEvent};
 
-use super::{at, kitchen};
+use super::probes::on_request;
+use super::{at, kitchen, press};
 
 /// The verdict on the human's last press of a list by both agents, one second apart but for the last one, that comes
 /// `after_s` after the one before it; orders of these dishes are present.
@@ -48,4 +59,47 @@ fn errors_are_presses_that_lose_more_than_the_best_one() {
     let both = [(Human, "take nori"), (Robot, "take nori"), (Robot, "assembly_board"), (Human, "assembly_board")];
     let (race, late) = (verdict(&["crab maki"], &both, 0.25), verdict(&["crab maki"], &both, 2.0));
     assert_eq!((race.race, race.error, late.race, late.error), (true, false, false, true));
+}
+
+/// The events of a session in which a freeze probe stands between a correction of the wizard and a press at its place.
+fn press_after_a_probe() -> (SessionEngine, Vec<TimestampedEvent>) {
+    let mut engine = on_request(|_| ());
+    let corrected = Event::KitchenCorrected { location: "assembly_board".to_string(), content: "nori".to_string() };
+    let skipped = ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() };
+    let inputs = [
+        (0.0, Event::TrialStarted),
+        (0.2, press("take nori")),
+        (0.4, corrected),
+        (0.5, Event::Probe(ProbeEvent::Requested)),
+        (1.0, Event::Probe(skipped)),
+        // The probe ends at 4 s, after its count down.
+        (4.1, press("assembly_board")),
+    ];
+    let mut events = Vec::new();
+    for (seconds, event) in inputs {
+        let InputResult { events: new, refused } = engine.input(at(seconds), event.clone());
+        assert_eq!(refused, None, "{event:?}");
+        events.extend(new);
+    }
+    (engine, events)
+}
+
+#[test]
+fn a_freeze_probe_is_no_time_for_the_next_press_wherever_presses_are_judged() {
+    let (engine, events) = press_after_a_probe();
+    let spec = &engine.session().spec;
+    let mut follower = SessionFollower::new(Session::new(kitchen(), spec.clone(), 0), CostToGo::new(kitchen()));
+    events.iter().for_each(|stamped| drop(follower.apply(stamped).expect("its own events")));
+    let verdict = follower.judged.last().expect("a press").verdict;
+    assert!(verdict.excess >= 1 && verdict.race && !verdict.error, "{verdict:?}");
+    // The list of recordings judges by itself.
+    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("judged-after-a-probe");
+    let _ = fs::remove_dir_all(&out);
+    let header = LogHeader::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("a recording");
+    events.iter().for_each(|stamped| log.append(stamped).expect("written"));
+    drop(log);
+    let (listed, _) = list(&out, RecordingListDetail::WithErrors, |_| (), || ()).expect("a recording");
+    assert_eq!(listed.recordings[0].errors, Some(0));
 }

@@ -15,7 +15,7 @@ use tomcom::session::{Event, TimestampedEvent, TrialPhase};
 use super::{at, check, engine, kitchen, press, refused};
 
 /// A session in which nothing is scheduled in the first minutes, so that the wizard asks for probes.
-fn on_request(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
+pub fn on_request(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     engine(|spec| {
         spec.trial.condition = Condition::Wizard;
         spec.probes = Some(ProbeSpec { per_trial: 0, ..ProbeSpec::default() });

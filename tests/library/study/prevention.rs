@@ -22,7 +22,7 @@ fn truth() -> TrialGroundTruth {
         let aspects = about(index);
         PressGroundTruth { time: at(index as f64), error: index == 9 || !aspects.is_empty(), aspects }
     };
-    let spell = |aspect: u8, began: f64, ended: Option<f64>| FalseBeliefGroundTruth {
+    let false_belief = |aspect: u8, began: f64, ended: Option<f64>| FalseBeliefGroundTruth {
         aspect: AspectId(aspect),
         began: at(began),
         ended: ended.map(at),
@@ -30,7 +30,11 @@ fn truth() -> TrialGroundTruth {
     };
     TrialGroundTruth {
         presses: (0..10).map(press).collect(),
-        spells: vec![spell(0, 2.5, Some(7.5)), spell(1, 3.5, Some(5.5)), spell(2, 8.5, None)],
+        false_beliefs: vec![
+            false_belief(0, 2.5, Some(7.5)),
+            false_belief(1, 3.5, Some(5.5)),
+            false_belief(2, 8.5, None),
+        ],
         knows_harmless: true,
     }
 }
@@ -116,7 +120,7 @@ fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_e
         presses: [true, true, false]
             .map(|error| PressGroundTruth { time: at(0.0), error, aspects: Vec::new() })
             .to_vec(),
-        spells: Vec::new(),
+        false_beliefs: Vec::new(),
         knows_harmless: true,
     };
     let count = slips.count_proposals(1);

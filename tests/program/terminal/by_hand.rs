@@ -4,7 +4,8 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use serial_test::serial;
-use tomcom::console::arrange::{KitchenMap, KitchenMapElement};
+use tomcom::console::arrange::KitchenMap;
+use tomcom::console::map_items::KitchenMapElement;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonAction, ButtonId};

@@ -307,8 +307,7 @@ impl ResidualProjection<'_> {
         let all = self.weighted.transpose() * self.weighted;
         let grouped = by_participant.transpose() * &by_participant;
         let (c_all, c_grouped) = (self.covariance * &all, self.covariance * &grouped);
-        let mut traces =
-            [(&c_grouped * &c_grouped).trace(), (&c_grouped * &c_all).trace(), (&c_all * &c_all).trace()];
+        let mut traces = [(&c_grouped * &c_grouped).trace(), (&c_grouped * &c_all).trace(), (&c_all * &c_all).trace()];
         traces[2] -= 2.0 * c_all.trace() / v;
         for ((n, ..), sum) in self.sums.groups.iter().zip(by_participant.row_iter()) {
             let shrink = self.ratio / (1.0 + n * self.ratio);
@@ -332,8 +331,7 @@ fn covariance_of_variances(p: &ResidualProjection, y: &DVector<f64>) -> Option<[
     let of_sums = DVector::from_iterator(r.len(), p.participants.iter().map(|&participant| sums[participant]));
     let [both, one, neither] = p.traces();
     let (p_sums, p_r) = (p.times(&of_sums), p.times(&r));
-    let [a, b, d] =
-        [of_sums.dot(&p_sums) - both / 2.0, of_sums.dot(&p_r) - one / 2.0, r.dot(&p_r) - neither / 2.0];
+    let [a, b, d] = [of_sums.dot(&p_sums) - both / 2.0, of_sums.dot(&p_r) - one / 2.0, r.dot(&p_r) - neither / 2.0];
     let determinant = a * d - b * b;
     (determinant > 0.0 && a > 0.0).then(|| [[d / determinant, -b / determinant], [-b / determinant, a / determinant]])
 }

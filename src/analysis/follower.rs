@@ -54,6 +54,8 @@ pub struct SessionFollower {
     told_cause: Option<ErrorCause>,
     /// Whether the follower attributes errors to their causes.
     finds_causes: bool,
+    /// Whether the follower updates the belief estimate.
+    estimates: bool,
     /// The belief estimate before the last counted press of the human.
     pub estimated: Option<PressBeliefEstimate>,
     /// The belief estimate at the beginning of the last freeze probe.
@@ -134,6 +136,7 @@ impl SessionFollower {
             belief,
             told_cause,
             finds_causes,
+            estimates: true,
             estimated,
             probed: None,
         }
@@ -223,7 +226,7 @@ impl SessionFollower {
 
     /// Updates the belief estimate by an event that has just been applied.
     fn estimate(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
-        let Some(what) = self.observed(stamped, change) else { return };
+        let Some(what) = self.observed(stamped, change).filter(|_| self.estimates) else { return };
         let observation = Observation { time: stamped.time, what };
         let human_press = change.human_press();
         if human_press.is_some() {
@@ -330,6 +333,12 @@ impl SessionFollower {
     /// This follower without attribution of errors to causes, because attribution takes too long in a running session.
     pub fn without_causes(self) -> SessionFollower {
         SessionFollower { finds_causes: false, ..self }
+    }
+
+    /// This follower with the belief estimate as it is now, because updates take most of the time of a session of which
+    /// only presses and errors count.
+    pub fn without_estimate(self) -> SessionFollower {
+        SessionFollower { estimates: false, ..self }
     }
 
     /// Judges a press of the human that has just been applied, and attributes an error to its cause.

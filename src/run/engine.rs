@@ -193,9 +193,12 @@ impl SessionEngine {
         &self.follower
     }
 
-    /// This engine without its scripted wizard, who sends no further signals.
-    pub fn without_wizard(self) -> SessionEngine {
-        SessionEngine { wizard: None, ..self }
+    /// This engine without its scripted wizard and, unless freeze probes draw questions by it, without the belief
+    /// estimate: no further signals are sent.
+    pub fn unassisted(self) -> SessionEngine {
+        let needs_estimate = self.session().spec.probes.is_some();
+        let follower = if needs_estimate { self.follower } else { self.follower.without_estimate() };
+        SessionEngine { follower, wizard: None, ..self }
     }
 
     /// The engine for the session of a recording's header, without features that the recording's format lacks.

@@ -193,13 +193,18 @@ impl LinearMixedModel {
         let participants: Vec<usize> = measurements.iter().map(|one| one.participant).collect();
         let rows: Vec<f64> = measurements.iter().flat_map(|one| one.effects.iter().copied()).collect();
         let x = DMatrix::from_row_slice(measurements.len(), effects, &rows);
-        let inverse_v = |column: &DMatrix<f64>| weigh(column, &participants, &sums, ratio) / within;
-        let weighted = inverse_v(&x);
+        let weighted = weigh(&x, &participants, &sums, ratio) / within;
         let variances = (ratio > 0.0).then(|| {
-            let n = measurements.len();
-            let p = inverse_v(&DMatrix::identity(n, n)) - &weighted * &covariance * weighted.transpose();
-            let y = DVector::from_iterator(n, measurements.iter().map(|one| one.value));
-            covariance_of_variances(&p, &y, &participants)
+            let projection = ResidualProjection {
+                sums: &sums,
+                participants: &participants,
+                ratio,
+                within,
+                weighted: &weighted,
+                covariance: &covariance,
+            };
+            let y = DVector::from_iterator(measurements.len(), measurements.iter().map(|one| one.value));
+            covariance_of_variances(&projection, &y)
         });
         let variances = match variances {
             Some(found) => Some(found?),
@@ -266,26 +271,67 @@ fn sums_by_participant(values: &DVector<f64>, participants: &[usize]) -> DVector
     sums
 }
 
-/// The inverse of the observed information of (v_b, v): I_kl = y'P G_k P G_l P y - tr(P G_k P G_l) / 2.
-fn covariance_of_variances(p: &DMatrix<f64>, y: &DVector<f64>, participants: &[usize]) -> Option<[[f64; 2]; 2]> {
-    let r = p * y;
-    let sums = sums_by_participant(&r, participants);
+/// The matrix P = V^-1 - V^-1 X C X' V^-1, with C the covariance of the fixed effects. P has a row and a column for
+/// each measurement, so it is not stored: V^-1 is the same within a participant's block, and the rest has low rank.
+struct ResidualProjection<'a> {
+    sums: &'a Sums,
+    /// Index of the participant, for each measurement.
+    participants: &'a [usize],
+    /// Ratio of the variance between participants to that of the residuals.
+    ratio: f64,
+    /// Variance of the residuals within participants.
+    within: f64,
+    /// The product V^-1 X, with one row per measurement.
+    weighted: &'a DMatrix<f64>,
+    /// Covariance of the estimates of the fixed effects.
+    covariance: &'a DMatrix<f64>,
+}
+
+impl ResidualProjection<'_> {
+    /// P y.
+    fn times(&self, y: &DVector<f64>) -> DVector<f64> {
+        let column = DMatrix::from_column_slice(y.len(), 1, y.as_slice());
+        let weighed = weigh(&column, self.participants, self.sums, self.ratio) / self.within;
+        weighed.column(0) - self.weighted * (self.covariance * (self.weighted.transpose() * y))
+    }
+
+    /// tr(P ZZ' P ZZ'), tr(P ZZ' P) and tr(P P).
+    fn traces(&self) -> [f64; 3] {
+        let (effects, v) = (self.covariance.nrows(), self.within);
+        let mut by_participant = DMatrix::<f64>::zeros(self.sums.groups.len(), effects);
+        for (row, &participant) in self.participants.iter().enumerate() {
+            let sum = by_participant.row(participant) + self.weighted.row(row);
+            by_participant.set_row(participant, &sum);
+        }
+        // X' V^-1 V^-1 X, and the same of the participants' sums.
+        let all = self.weighted.transpose() * self.weighted;
+        let grouped = by_participant.transpose() * &by_participant;
+        let (c_all, c_grouped) = (self.covariance * &all, self.covariance * &grouped);
+        let mut traces = [(&c_grouped * &c_grouped).trace(), (&c_grouped * &c_all).trace(), (&c_all * &c_all).trace()];
+        traces[2] -= 2.0 * c_all.trace() / v;
+        for ((n, ..), sum) in self.sums.groups.iter().zip(by_participant.row_iter()) {
+            let shrink = self.ratio / (1.0 + n * self.ratio);
+            // The sum of each row of the participant's block of V^-1.
+            let weight = (1.0 - n * shrink) / v;
+            let explained = (sum * self.covariance * sum.transpose())[(0, 0)];
+            traces[0] += n * weight * (n * weight - 2.0 * explained);
+            traces[1] += weight * (n * weight - 2.0 * explained);
+            traces[2] += (n - 1.0) / (v * v) + weight * weight + 2.0 * shrink * explained / v;
+        }
+        traces
+    }
+}
+
+/// The inverse of the observed information of (v_b, v): I_kl = y'P G_k P G_l P y - tr(P G_k P G_l) / 2, with G = ZZ' for
+/// the participants, and the identity for the residuals.
+fn covariance_of_variances(p: &ResidualProjection, y: &DVector<f64>) -> Option<[[f64; 2]; 2]> {
+    let r = p.times(y);
+    let sums = sums_by_participant(&r, p.participants);
     // G_k P y: each participant's sum at each of its measurements, and P y itself.
-    let g = [DVector::from_iterator(r.len(), participants.iter().map(|&participant| sums[participant])), r.clone()];
-    let count = sums.len();
-    let mut by_row = DMatrix::<f64>::zeros(count, r.len());
-    for (row, &participant) in participants.iter().enumerate() {
-        let sum = by_row.row(participant) + p.row(row);
-        by_row.set_row(participant, &sum);
-    }
-    let mut both = DMatrix::<f64>::zeros(count, count);
-    for (column, &participant) in participants.iter().enumerate() {
-        let sum = both.column(participant) + by_row.column(column);
-        both.set_column(participant, &sum);
-    }
-    let traces = [[both.norm_squared(), by_row.norm_squared()], [by_row.norm_squared(), p.norm_squared()]];
-    let information = |k: usize, l: usize| g[k].dot(&(p * &g[l])) - traces[k][l] / 2.0;
-    let [a, b, d] = [information(0, 0), information(0, 1), information(1, 1)];
+    let of_sums = DVector::from_iterator(r.len(), p.participants.iter().map(|&participant| sums[participant]));
+    let [both, one, neither] = p.traces();
+    let (p_sums, p_r) = (p.times(&of_sums), p.times(&r));
+    let [a, b, d] = [of_sums.dot(&p_sums) - both / 2.0, of_sums.dot(&p_r) - one / 2.0, r.dot(&p_r) - neither / 2.0];
     let determinant = a * d - b * b;
     (determinant > 0.0 && a > 0.0).then(|| [[d / determinant, -b / determinant], [-b / determinant, a / determinant]])
 }

@@ -107,6 +107,9 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
 const MAX_ENUMERATED: f64 = 200_000.0;
 /// Number of permutations that are sampled at random.
 const SAMPLED_PERMUTATIONS: u32 = 100_000;
+/// Largest number of pairs of values of two samples for which the distribution of U is exact (two samples of 250). Above,
+/// the normal approximation leaves out at most one difference more or less, and rounding would spoil the exact numbers.
+const MAX_EXACT_PAIRS: usize = 62_500;
 /// Relative tolerance within which differences count as equal.
 const EQUALITY_TOLERANCE: f64 = 1e-12;
 
@@ -173,54 +176,53 @@ pub struct ConfidenceInterval {
 }
 
 /// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's
-/// confidence interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` if a group
-/// is empty.
+/// confidence interval (distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` if a group is
+/// empty.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<ConfidenceInterval> {
     let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
     differences.sort_by(f64::total_cmp);
-    let estimate = crate::measures::median(differences.clone())?;
+    let last = differences.len().checked_sub(1)?;
     let below = mann_whitney_cdf(a.len(), b.len());
     // Number of differences that are omitted on each side of the interval.
     let left_out = below.iter().take_while(|p| **p <= (1.0 - level) / 2.0).count();
     let covered = if left_out == 0 { 1.0 } else { 1.0 - 2.0 * below[left_out - 1] };
-    let last = differences.len() - 1;
     let low = if left_out == 0 { f64::NEG_INFINITY } else { differences[left_out - 1] };
     let high = if left_out == 0 { f64::INFINITY } else { differences[last + 1 - left_out] };
-    Some(ConfidenceInterval { estimate, low, high, level: covered })
+    Some(ConfidenceInterval { estimate: crate::measures::median(differences)?, low, high, level: covered })
 }
 
-/// P(U <= u) for u = 0, 1, …, m n: U of two samples of these sizes from the same distribution, without ties.
+/// P(U <= u) for u = 0, 1, …, m n / 2: U of two samples of these sizes from the same distribution, without ties. Exact
+/// up to [`MAX_EXACT_PAIRS`], else by the normal approximation with continuity correction.
+///
+/// The numbers of ways to get U = u are the coefficients of the Gaussian binomial, the product over i = 1 to m of
+/// (1 - q^(n + i)) / (1 - q^i), so that one row of numbers suffices.
 fn mann_whitney_cdf(m: usize, n: usize) -> Vec<f64> {
-    // counts[k][u]: number of ways in which k values of the first sample among those placed so far give U = u.
-    let top = m * n;
-    let mut counts = vec![vec![0.0; top + 1]; m + 1];
-    counts[0][0] = 1.0;
-    for placed in 0..m + n {
-        for k in (0..=m.min(placed)).rev() {
-            let others = placed - k;
-            if others > n {
-                continue;
-            }
-            let row = std::mem::take(&mut counts[k]);
-            if k < m {
-                for (u, ways) in row.iter().enumerate().filter(|(_, ways)| **ways > 0.0) {
-                    if u + others <= top {
-                        counts[k + 1][u + others] += ways;
-                    }
-                }
-            }
-            counts[k] = row;
-        }
+    let (m, n, half) = (m.min(n), m.max(n), m * n / 2);
+    if m * n > MAX_EXACT_PAIRS {
+        let (pairs, values) = ((m * n) as f64, (m + n) as f64);
+        let (mean, deviation) = (pairs / 2.0, (pairs * (values + 1.0) / 12.0).sqrt());
+        let normal = Normal::standard();
+        return (0..=half).map(|u| normal.cdf((u as f64 + 0.5 - mean) / deviation)).collect();
     }
-    let total: f64 = counts[m].iter().sum();
+    let (mut ways, mut total) = (vec![0.0; half + 1], 1.0);
+    ways[0] = 1.0;
+    for i in 1..=m {
+        // With i values of the smaller sample, U is at most i n.
+        let top = half.min(i * n);
+        for u in (n + i..=top).rev() {
+            ways[u] -= ways[u - n - i];
+        }
+        for u in i..=top {
+            ways[u] += ways[u - i];
+        }
+        total = total * (n + i) as f64 / i as f64;
+    }
     let mut sum = 0.0;
-    counts[m]
-        .iter()
-        .map(|ways| {
-            sum += ways;
-            sum / total
-        })
-        .collect()
+    let cumulate = |ways: f64| {
+        sum += ways;
+        sum / total
+    };
+    ways.into_iter().map(cumulate).collect()
 }
 
 /// Hedges' g of two groups: difference of the means in pooled standard deviations, with the small-sample correction.

@@ -12,7 +12,7 @@ use tomcom::communication::concept::{Concept, ConceptName, DecisionPoint};
 use tomcom::communication::concepts::{SilentConcept, concept};
 use tomcom::communication::dev::DevConcept;
 use tomcom::communication::planner::Planner;
-use tomcom::communication::recommendation::Recommendation;
+use tomcom::communication::recommendation::{Recommendation, SignalOption};
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::{RobotIntent, Situation};
 use tomcom::communication::tom::TomConcept;
@@ -255,6 +255,29 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
             );
         }
     }
+}
+
+#[test]
+fn benefits_of_signals_that_would_not_be_sent_take_fewer_rollouts_and_the_others_are_those_of_the_advice() {
+    let scenario = named("finished_rice_unseen");
+    let (kitchen, spec) = (scenario.kitchen(), AssistantSpec::default());
+    let state = scenario.state(&kitchen);
+    let belief = scenario.belief(&kitchen, state);
+    let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
+    let situation = Situation { robot: scenario.outlook(&kitchen), ..Situation::new(state, &belief) };
+    let moment = moment(situation, &signals);
+    let mut cost = CostToGo::new(kitchen.clone());
+    let mut planner = Planner::new(kitchen, &HumanModel::default(), spec, 1);
+    let advice = planner.advise(&mut cost, &moment).options;
+    let mut above = |least: f64| {
+        let matters_above = |signal: &Signal| if *signal == advice[0].signal { least } else { f64::NEG_INFINITY };
+        planner.benefits(&mut cost, &moment, matters_above)
+    };
+    assert_eq!(above(f64::NEG_INFINITY), advice);
+    let is_told = |one: &SignalOption| one.signal == advice[0].signal;
+    let (told, others): (Vec<_>, Vec<_>) = above(9.0).into_iter().partition(is_told);
+    assert_eq!(others, advice[1..]);
+    assert!(told[0].rollouts < advice[0].rollouts && told[0].benefit < 9.0, "{told:?} instead of {:?}", advice[0]);
 }
 
 #[test]

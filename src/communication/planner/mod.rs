@@ -68,6 +68,8 @@ struct Candidate {
     aspects: Vec<AspectId>,
     /// Probability that the signal is read and understood.
     probability: f64,
+    /// A benefit below this, in presses, is as good as none, so it need not be known more accurately.
+    matters_above: f64,
     tally: PairedDifferences,
     is_decided: bool,
 }
@@ -96,18 +98,22 @@ impl Planner {
         }
     }
 
-    fn candidates(&self, situation: &Situation, signals: &[Signal]) -> Vec<Candidate> {
-        let possible = signals.iter().filter(|signal| unavailable(&self.kitchen, situation.state, signal).is_none());
+    /// The signals of this moment that can be sent; `matters_above` is the benefit below which a signal is as good as
+    /// none.
+    fn candidates(&self, moment: &DecisionPoint, matters_above: impl Fn(&Signal) -> f64) -> Vec<Candidate> {
+        let situation = &moment.situation;
+        let is_possible = |signal: &&Signal| unavailable(&self.kitchen, situation.state, signal).is_none();
         let candidate = |signal: &Signal| Candidate {
             signal: signal.clone(),
             aspects: aspects_told(&self.kitchen, situation.state, signal),
             probability: signal
                 .location(&self.kitchen)
                 .map_or(1.0, |location| situation.forecast.probability(self.kitchen.location(location).kind)),
+            matters_above: matters_above(signal),
             tally: PairedDifferences::default(),
             is_decided: false,
         };
-        possible.map(candidate).collect()
+        moment.signals.iter().filter(is_possible).map(candidate).collect()
     }
 
     /// Runs one baseline rollout, and a paired rollout for each signal that changes a world of the sample.
@@ -166,31 +172,32 @@ impl Planner {
         }
     }
 
-    /// Whether the net benefit of every signal is known with enough certainty.
+    /// Whether the net benefit of every signal is known with enough certainty, or surely too small to matter.
     fn is_decided(&self, candidates: &mut [Candidate], rollouts: usize) -> bool {
         let model = &self.spec.rollout;
         if rollouts < model.least_rollouts {
             return false;
         }
         for candidate in candidates.iter_mut() {
-            let error = candidate.tally.cautious_error();
-            let is_clear = (candidate.tally.mean() - self.spec.cost_of_communication).abs() > 3.0 * error;
+            let (mean, error) = (candidate.tally.mean(), candidate.tally.cautious_error());
+            let is_clear = (mean - self.spec.cost_of_communication).abs() > 3.0 * error;
             candidate.is_decided |= error <= model.enough_error || is_clear && error <= 2.0 * model.enough_error;
+            candidate.is_decided |= mean + 3.0 * error < candidate.matters_above;
         }
         candidates.iter().all(|candidate| candidate.is_decided)
     }
 
-    /// The signals with their estimated savings, from as many rollouts as `proceed` allowed, which is asked before
+    /// The candidates with their estimated savings, from as many rollouts as `proceed` allowed, which is asked before
     /// each.
     fn compared(
         &mut self,
         cost: &mut CostToGo,
         moment: &DecisionPoint,
+        mut candidates: Vec<Candidate>,
         proceed: &mut dyn FnMut() -> bool,
     ) -> Vec<Candidate> {
         let situation = &moment.situation;
         let mut random = stream(self.seed, "communication", u64::from(moment.presses));
-        let mut candidates = self.candidates(situation, moment.signals);
         let rollouts = self.spec.rollout.rollouts;
         self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
         let lattice = QuasiRandomLattice::shifted(&mut random);
@@ -212,17 +219,7 @@ impl Planner {
         candidates: Vec<Candidate>,
         silent: Recommendation,
     ) -> Recommendation {
-        let price = self.spec.cost_of_communication;
-        let mut candidates = candidates;
-        // Signals with equal savings keep the layout's order.
-        candidates.sort_by(|a, b| b.tally.mean().total_cmp(&a.tally.mean()));
-        let option = |candidate: &Candidate| SignalOption {
-            signal: candidate.signal.clone(),
-            benefit: rounded(candidate.tally.mean()),
-            standard_error: rounded(candidate.tally.standard_error()),
-            net: rounded(candidate.tally.mean() - price),
-            rollouts: candidate.tally.count(),
-        };
+        let candidates = ranked(candidates);
         let reason = candidates.first().filter(|candidate| candidate.tally.mean() > 0.0).and_then(|candidate| {
             let mut reason =
                 SignalReason::for_signal(&self.kitchen, situation.state, situation.belief, &candidate.signal)?;
@@ -233,16 +230,48 @@ impl Planner {
             }
             Some(reason)
         });
-        let options: Vec<SignalOption> = candidates.iter().map(option).collect();
+        let options = self.options(&candidates);
         let best = options.first().filter(|option| option.net > 0.0).map(|option| option.signal.clone());
         Recommendation { options, best, reason, ..silent }
     }
+
+    fn options(&self, candidates: &[Candidate]) -> Vec<SignalOption> {
+        let price = self.spec.cost_of_communication;
+        let option = |candidate: &Candidate| SignalOption {
+            signal: candidate.signal.clone(),
+            benefit: rounded(candidate.tally.mean()),
+            standard_error: rounded(candidate.tally.standard_error()),
+            net: rounded(candidate.tally.mean() - price),
+            rollouts: candidate.tally.count(),
+        };
+        candidates.iter().map(option).collect()
+    }
+
+    /// The benefits of the available signals, the largest first, for a caller who knows below which benefit a signal
+    /// would not be sent: such a benefit is not estimated more accurately than needed to see that.
+    pub fn benefits(
+        &mut self,
+        cost: &mut CostToGo,
+        moment: &DecisionPoint,
+        matters_above: impl Fn(&Signal) -> f64,
+    ) -> Vec<SignalOption> {
+        let candidates = self.candidates(moment, matters_above);
+        let compared = self.compared(cost, moment, candidates, &mut || true);
+        self.options(&ranked(compared))
+    }
+}
+
+/// The candidates with the largest saving first; those with equal savings keep the layout's order.
+fn ranked(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+    candidates.sort_by(|a, b| b.tally.mean().total_cmp(&a.tally.mean()));
+    candidates
 }
 
 impl Concept for Planner {
     /// Estimates the net benefit of the available signals and ranks the signals by their net benefit.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
-        let candidates = self.compared(cost, moment, &mut || true);
+        let candidates = self.candidates(moment, |_| f64::NEG_INFINITY);
+        let candidates = self.compared(cost, moment, candidates, &mut || true);
         self.recommendation(&moment.situation, candidates, Recommendation::silent(moment.seq, moment.time))
     }
 

@@ -63,7 +63,9 @@ impl Planner {
             }
             let NextSituation { state, ref belief, ref changed, robot, presses } = next;
             let situation = Situation { state, belief, changed, robot, ..moment.situation };
-            self.compared(cost, &DecisionPoint { situation, presses, ..*moment }, proceed);
+            let next = DecisionPoint { situation, presses, ..*moment };
+            let candidates = self.candidates(&next, |_| f64::NEG_INFINITY);
+            self.compared(cost, &next, candidates, proceed);
         }
     }
 

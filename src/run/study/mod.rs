@@ -17,7 +17,7 @@ mod twin;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
@@ -36,6 +36,7 @@ use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 use crate::study::frozen_plan::FrozenPlan;
 use crate::study::preregistration::{PreregistrationCheck, RecordedPlan};
+use crate::study::recorded_consent::RecordedConsent;
 use crate::study::report;
 use crate::study::study_part::AnalysedRecording;
 use crate::study::tables::concept_table::{ConceptRow, concepts};
@@ -141,17 +142,18 @@ pub fn study(
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
+    let collected = Mutex::new(CollectedRecordings::default());
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
         let (analysed, rows) = analyse(recording, analysis, (first, &kitchen), kept)?;
         if analysis.extent.events {
             keep(&export, index, &analysed, &rows)?;
         }
-        Ok((index, analysed))
+        collected.lock().unwrap_or_else(PoisonError::into_inner).add(index, analysed);
+        Ok(())
     };
-    let analysed = parallel::each_with(&numbered, KeptCost::default, work, done)
-        .into_iter()
-        .collect::<Result<Vec<_>, StudyError>>()?;
-    conclude(analysed, &export, analysis.extent, frozen)
+    parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
+    let collected = collected.into_inner().unwrap_or_else(PoisonError::into_inner);
+    conclude(collected, &export, analysis.extent, frozen)
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -194,29 +196,47 @@ fn keep(
     if analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
-/// Computes the summary, the tables and the report from all recordings of a study, which are ordered by name; each is
-/// given with the number under which its rows are kept.
+/// What all analysed recordings of a study so far hand to its summary. Recordings can be added in any order.
+#[derive(Debug, Default)]
+struct CollectedRecordings {
+    trials: Vec<TrialStatistics>,
+    /// Settings and circumstances of all trials together. Those of single trials would take most of the memory.
+    facts: RecordingFacts,
+    /// For each trial, the recording's name and the number under which its rows are kept.
+    kept: Vec<(String, usize)>,
+    plans: Vec<RecordedPlan>,
+    /// Consents, each with its recording's name.
+    consents: Vec<(String, RecordedConsent)>,
+    tutorials: Vec<TutorialQuestionRow>,
+}
+
+impl CollectedRecordings {
+    /// Adds a recording whose rows are kept under this number.
+    fn add(&mut self, index: usize, recording: AnalysedRecording) {
+        self.plans.push(recording.plan);
+        self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
+        self.tutorials.extend(recording.tutorial);
+        if let Some((trial, facts)) = recording.trial {
+            self.kept.push((recording.recording, index));
+            self.trials.push(trial);
+            self.facts.add(facts);
+        }
+    }
+}
+
+/// Computes the summary, the tables and the report from all recordings of a study.
 fn conclude(
-    analysed: Vec<(usize, AnalysedRecording)>,
+    collected: CollectedRecordings,
     export: &AnalysisFolder,
     extent: AnalysisScope,
     frozen: Option<(String, FrozenPlan)>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let (mut trials, mut facts, mut kept) = (Vec::new(), RecordingFacts::default(), Vec::new());
-    let (mut plans, mut consents, mut tutorials) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, recording) in analysed {
-        plans.push(recording.plan);
-        consents.extend(recording.consent);
-        tutorials.extend(recording.tutorial);
-        if let Some((trial, own)) = recording.trial {
-            kept.push(index);
-            trials.push(trial);
-            facts.add(own);
-        }
-    }
+    let CollectedRecordings { mut trials, facts, mut kept, plans, mut consents, mut tutorials } = collected;
     arrange(&mut trials);
+    kept.sort_unstable();
     let practice = (plans.len() - trials.len()) as u64;
-    consents.sort_by(|a, b| a.started.cmp(&b.started));
+    consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
+    let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
@@ -225,6 +245,7 @@ fn conclude(
     if !extent.events {
         kept.clear();
     }
+    let kept: Vec<usize> = kept.into_iter().map(|(_, index)| index).collect();
     let mut filled = export.tables_of_events(&kept)?;
     filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents))?);
     filled.extend(export.table::<TrialStatistics>(&trials)?);

@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::reading::AnalysisScope;
-use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan};
+use super::{
+    AnalysisRequest, CollectedRecordings, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan,
+};
 use crate::edge::export::AnalysisFolder;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
@@ -117,7 +119,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     }
     let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
     let export = AnalysisFolder::create(&analysis.out)?;
-    let (mut analysed, mut names) = (Vec::new(), BTreeSet::new());
+    let (mut collected, mut names) = (CollectedRecordings::default(), BTreeSet::new());
     for part in &mut parts {
         while let Some((recording, rows)) = part.next_recording()? {
             if !names.insert(recording.recording.clone()) {
@@ -125,11 +127,10 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
                 return Err(FileError::from_finding(part.path(), found, "each recording once".to_string()).into());
             }
             if events {
-                keep(&export, analysed.len(), &recording, &rows)?;
+                keep(&export, names.len(), &recording, &rows)?;
             }
-            analysed.push((analysed.len(), recording));
+            collected.add(names.len(), recording);
         }
     }
-    analysed.sort_by(|(_, one), (_, other)| one.recording.cmp(&other.recording));
-    conclude(analysed, &export, AnalysisScope { concepts, events }, frozen)
+    conclude(collected, &export, AnalysisScope { concepts, events }, frozen)
 }

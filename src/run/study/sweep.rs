@@ -1,11 +1,12 @@
 //! Signals that communication concepts would have sent in an unassisted trial, for all values of the concepts'
 //! parameters in one replay. The planner runs once per decision; all costs of communication are then applied to the
-//! same benefits.
+//! same benefits. A benefit has to be known only where it can exceed a cost at which its signal may be sent.
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::watcher::follows_at_once;
 use crate::base::time::SessionTime;
+use crate::communication::Signal;
 use crate::communication::concept::{Concept, ConceptName};
 use crate::communication::planner::Planner;
 use crate::communication::recommendation::{SignalOption, aspects_told};
@@ -101,15 +102,17 @@ impl ConceptSweep {
         let (kitchen, state) = (&session.kitchen, session.state);
         let own_hand = session.spec.signals.own_hand;
         let moment = question.moment();
-        let benefits = self.planner.advise(&mut self.cost, &moment).options;
+        let allowed: Vec<Vec<Signal>> =
+            self.swept_concepts.iter().map(|swept| swept.repeats.allowed(kitchen, own_hand)).collect();
+        let least_cost = |signal: &Signal| least_cost(&self.swept_concepts, &allowed, signal);
+        let benefits = self.planner.benefits(&mut self.cost, &moment, least_cost);
         let deviations = self.tom.advise(&mut self.cost, &moment).options;
         let press = session.presses[Agent::Human.index()] as usize;
-        for swept in &mut self.swept_concepts {
+        for (swept, allowed) in self.swept_concepts.iter_mut().zip(&allowed) {
             let options: &[SignalOption] = match swept.concept {
                 ConceptName::TomCom => &benefits,
                 _ => &deviations,
             };
-            let allowed = swept.repeats.allowed(kitchen, own_hand);
             let best = options.iter().find(|option| allowed.contains(&option.signal));
             if let Some(option) = best.filter(|option| option.benefit > swept.parameter) {
                 swept.repeats.shown(kitchen, state, &option.signal);
@@ -137,4 +140,12 @@ impl ConceptSweep {
         });
         signalled.chain(proposed).collect()
     }
+}
+
+/// Smallest swept cost of communication at which ToM-Com may send this signal now, in presses; infinite if none may. A
+/// false belief lasts for many presses, and each cost below its signal's benefit sends the signal once.
+fn least_cost(swept_concepts: &[SweptConcept], allowed: &[Vec<Signal>], signal: &Signal) -> f64 {
+    let of_planner = swept_concepts.iter().zip(allowed).filter(|(swept, _)| swept.concept == ConceptName::TomCom);
+    let may_send = of_planner.filter(|(_, allowed)| allowed.contains(signal));
+    may_send.map(|(swept, _)| swept.parameter).fold(f64::INFINITY, f64::min)
 }

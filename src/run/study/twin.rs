@@ -110,7 +110,7 @@ fn run_to(
         _ => None,
     });
     if let (Some(before), Some((time, signal))) = (before, shown) {
-        twins.push(twin(before.without_wizard(), time, signal));
+        twins.push(twin(before.unassisted(), time, signal));
     }
     events
 }

@@ -54,3 +54,31 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     assert!(nobody.totals.error_rate.is_none() && nobody.totals.belief_related_share.is_none());
     assert_eq!((permutation_p(&[], &[1.0], 1), hodges_lehmann(&[], &[1.0], 0.95)), (None, None));
 }
+
+/// The interval leaves out as many differences as P(U <= u) allows: of groups of 5 and 4, U is 0 or 1 in 2 of 126 orders,
+/// and at most 2 in 4 of them.
+#[test]
+fn the_interval_of_the_shift_follows_from_the_distribution_of_u() {
+    let (a, b) = ([1.0, 2.0, 4.0, 8.0, 16.0], [0.0, 0.5, 0.25, 0.125]);
+    let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
+    differences.sort_by(f64::total_cmp);
+    let found = hodges_lehmann(&a, &b, 0.95).expect("an interval");
+    near(found.level, 1.0 - 2.0 * 2.0 / 126.0);
+    assert_eq!((found.low, found.high), (differences[1], differences[18]));
+}
+
+/// Groups of 250 have the exact distribution of U, larger ones its normal approximation: the interval must not jump.
+#[test]
+fn large_groups_have_nearly_the_interval_of_the_exact_distribution() {
+    let interval = |size: usize| {
+        let values: Vec<f64> = (0..size).map(|value| value as f64 / size as f64).collect();
+        hodges_lehmann(&values, &values, 0.95).expect("an interval")
+    };
+    let [exact, approximate] = [250, 251].map(interval);
+    for found in [exact, approximate] {
+        near(found.low, -found.high);
+        assert!((found.level - 0.95).abs() < 1e-4, "covers {}", found.level);
+    }
+    assert!((exact.high - approximate.high).abs() < 0.005, "{} and {}", exact.high, approximate.high);
+    assert!(exact.high > 0.04 && exact.high < 0.06, "1.96 standard errors are 0.0507, found {}", exact.high);
+}

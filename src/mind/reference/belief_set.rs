@@ -13,7 +13,7 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State};
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::UnknownGazeTimer;
@@ -187,20 +187,7 @@ impl ParticleSet {
             ObservedEvidence::Started { state } => self.start(now, state, self.of.len(), random),
             ObservedEvidence::Gaze { .. } | ObservedEvidence::DisplayInView(_) | ObservedEvidence::Proposed(_) => {}
             ObservedEvidence::Frozen | ObservedEvidence::Thawed { .. } => {}
-            ObservedEvidence::Pressed(press) => {
-                let weights = match press.agent {
-                    Agent::Human => Some(self.human_pressed(press.button, press.effective, cost, random)),
-                    Agent::Robot => None,
-                };
-                if press.agent == Agent::Robot {
-                    self.robot_pressed(cost, random);
-                    self.see_changes(now, press.after, random);
-                }
-                self.show(now, press.after);
-                if let Some(weights) = weights {
-                    return weights;
-                }
-            }
+            ObservedEvidence::Pressed(press) => return self.pressed(now, &press, cost, random),
             ObservedEvidence::Displayed { state } => {
                 self.expect_cleared(state);
                 self.see_changes(now, state, random);
@@ -216,6 +203,20 @@ impl ParticleSet {
             }
         }
         vec![1.0; self.of.len()]
+    }
+
+    /// Takes in a press of either agent; returns the press's likelihood under each belief, 1 for presses of the robot.
+    fn pressed(&mut self, now: SessionTime, press: &Press, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
+        let weights = match press.agent {
+            Agent::Human => self.human_pressed(press.button, press.effective, cost, random),
+            Agent::Robot => {
+                self.robot_pressed(cost, random);
+                self.see_changes(now, press.after, random);
+                vec![1.0; self.of.len()]
+            }
+        };
+        self.show(now, press.after);
+        weights
     }
 
     /// The Dirichlets that match mean and pooled second moment of the weighted beliefs.

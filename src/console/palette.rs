@@ -58,8 +58,8 @@ fn ends(action: &KeyAction) -> bool {
     )
 }
 
-/// The actions that match the filter: first the one that the palette was opened with, then those of the help in its
-/// order, and last what stops the robot or ends the trial or the session.
+/// The actions that match the filter, in the order of the help. Without a filter, the one that the palette was opened
+/// with is first, and what stops the robot or ends the trial or the session is last.
 pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyBinding> {
     let is_active = |line: &&KeyBinding| line.layer.is_none_or(|only| only == model.layer);
     let is_left = |line: &&KeyBinding| {
@@ -67,6 +67,8 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
         line.action != KeyAction::Palette && cursor.keeps(&words)
     };
     let mut left: Vec<&KeyBinding> = model.keys.bindings.iter().filter(is_active).filter(is_left).collect();
-    left.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
+    if cursor.filter.is_empty() {
+        left.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
+    }
     left
 }

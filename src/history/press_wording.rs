@@ -1,8 +1,8 @@
-//! Wording of what a press took, put down or made.
+//! Wording of what a press took, put or made.
 
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, State};
 
-/// What a press with an effect took, put down or made, in words: "takes cooked rice", "puts down nori"; `None` where
+/// What a press with an effect took, put or made, in words: "takes cooked rice", "puts nori"; `None` where
 /// the button's name says it. The states are those before and after the press.
 pub(super) fn effect(
     kitchen: &Kitchen,
@@ -15,9 +15,7 @@ pub(super) fn effect(
     match kitchen.button(agent, button).action {
         ButtonAction::Take(_) => None,
         ButtonAction::Use(_) if before.content(hand).is_empty() => Some(format!("takes {}", content(after, hand))),
-        ButtonAction::Use(place) if before.content(place).is_empty() => {
-            Some(format!("puts down {}", content(before, hand)))
-        }
+        ButtonAction::Use(place) if before.content(place).is_empty() => Some(format!("puts {}", content(before, hand))),
         ButtonAction::Use(_) => Some(format!("stacks {}", content(before, hand))),
         ButtonAction::Process(process) => {
             let place = kitchen.processes[usize::from(process)].place.unwrap_or(hand);

@@ -74,10 +74,10 @@ pub struct PanelAreas {
 const OFFER_COLUMNS: u16 = 140;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
-/// Least size of a large terminal: columns and rows.
-const LARGE: (u16, u16) = (168, 46);
-/// Least width of the list of events on large terminals, in columns; it gets a quarter of the columns beyond the least.
+/// Least width of the list of events on large terminals, in columns, and how many it gets more where the kitchen does not
+/// need them.
 const EVENT_COLUMNS: u16 = 44;
+const MORE_EVENT_COLUMNS: u16 = 8;
 /// Height of the timeline with its title, in rows.
 const TIMELINE_ROWS: u16 = 7;
 /// Height of the list of signals on large terminals, in rows.
@@ -143,7 +143,7 @@ impl PanelAreas {
     /// Computes the arrangement of panels with these additional rows.
     fn with(size: (u16, u16), visibility: WizardVisibility, alone: Option<Panel>, lines: LineRows) -> PanelAreas {
         let room = match size {
-            (columns, rows) if columns >= LARGE.0 && rows >= LARGE.1 => ScreenSize::Large,
+            (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
             (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => ScreenSize::Medium,
             _ => ScreenSize::Small,
         };
@@ -282,8 +282,10 @@ impl PanelAreas {
         // The timeline has one more row where offers are shown.
         let rows = TIMELINE_ROWS + u16::from(visibility == WizardVisibility::Recommendation);
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
-        let (rest, events) = right(rest, EVENT_COLUMNS + (rest.width - LARGE.0) / 4);
-        let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
+        let kitchen_columns = (rest.width.saturating_sub(EVENT_COLUMNS) * 11 / 20).max(KITCHEN_COLUMNS);
+        let more = (kitchen_columns - KITCHEN_COLUMNS).min(MORE_EVENT_COLUMNS);
+        let (rest, events) = right(rest, EVENT_COLUMNS + more);
+        let (kitchen, side) = left(rest, kitchen_columns - more);
         let (kitchen, below) = bottom(kitchen, kitchen.height * 2 / 5);
         let (participant, map) = left(below, below.width * 2 / 5);
         let (shown, gaze) = top(participant, 5);

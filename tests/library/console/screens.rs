@@ -115,14 +115,14 @@ fn only_the_place_of_the_latest_gaze_sample_is_looked_at_now() {
 }
 
 #[test]
-fn a_row_of_the_events_says_what_a_press_took_put_down_or_made() {
+fn a_row_of_the_events_says_what_a_press_took_put_or_made() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.press(22.7, Agent::Human, "counter");
     stage.model.alone = Some(Panel::Events);
     let screen = stage.screen((120, 40));
     for row in [
         "human     take rice ",
-        "human     cooking pot: puts down rice",
+        "human     cooking pot: puts raw rice",
         "human     cook: makes cooked rice",
         "human     cooking pot: takes cooked rice",
         "human     assembly board: stacks cooked rice",

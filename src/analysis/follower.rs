@@ -185,12 +185,9 @@ impl SessionFollower {
             }
             _ => {}
         }
-        match stamped.event {
-            Event::Probe(ProbeEvent::Begun { probe, .. }) => {
-                let (state, belief) = (self.session.state, self.belief_at(stamped.time));
-                self.probed = Some(ProbedEstimate { probe, state, belief });
-            }
-            _ => {}
+        if let Event::Probe(ProbeEvent::Begun { probe, .. }) = stamped.event {
+            let (state, belief) = (self.session.state, self.belief_at(stamped.time));
+            self.probed = Some(ProbedEstimate { probe, state, belief });
         }
         if let Some(pause) = self.session.probe_pause(stamped) {
             self.judge.postpone(pause);

@@ -94,10 +94,10 @@ fn a_stream_that_is_saved_elsewhere_overwrites_nothing_whatever_its_name_is() {
     assert!(fs::read(lab.at("seed1-P01-1/recording.rrd")).expect("a stream").len() > 1000);
 }
 
-/// Runs a command that cannot write more than 1024 bytes into a file, as on a full disk; all that it prints.
+/// Runs a command that cannot write more than 512 bytes into a file, as on a full disk; all that it prints.
 #[cfg(unix)]
 fn run_on_a_full_disk(arguments: &[&str]) -> String {
-    // In blocks of 512 or 1024 bytes; the signal that would end the program is ignored.
+    // In blocks of 512 bytes (POSIX); the signal that would end the program is ignored.
     let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
     let done = Command::new("sh").args(["-c", script, "sh", TOMCOM]).args(arguments).stdin(Stdio::null()).output();
     let done = done.expect("a shell");
@@ -116,7 +116,7 @@ fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
     let fit = ["fit", &recording, "--parameters", "lapse", "--tries", "10", "--out", &path("fitted.toml")];
     assert_eq!(lab.run(&fit).0, Some(0));
     let before = lab.files();
-    assert!(before["fitted.toml"].len() > 1024);
+    assert!(before["fitted.toml"].len() > 512);
     run_on_a_full_disk(&fit);
     assert!(lab.files() == before, "the earlier file is whole, and nothing stands beside it");
     let freeze = ["plan", "sessions/study.toml", "--freeze", &path("frozen")];

@@ -64,16 +64,15 @@ fn errors_are_presses_that_lose_more_than_the_best_one() {
 /// The events of a session in which a freeze probe stands between a correction of the wizard and a press at its place.
 fn press_after_a_probe() -> (SessionEngine, Vec<TimestampedEvent>) {
     let mut engine = on_request(|_| ());
-    let corrected = Event::KitchenCorrected { location: "assembly_board".to_string(), content: "nori".to_string() };
+    let corrected = Event::KitchenCorrected { location: "human_hand".to_string(), content: "nori".to_string() };
     let skipped = ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() };
     let inputs = [
         (0.0, Event::TrialStarted),
-        (0.2, press("take nori")),
         (0.4, corrected),
         (0.5, Event::Probe(ProbeEvent::Requested)),
         (1.0, Event::Probe(skipped)),
         // The probe ends at 4 s, after its count down.
-        (4.1, press("assembly_board")),
+        (4.1, press("cut")),
     ];
     let mut events = Vec::new();
     for (seconds, event) in inputs {

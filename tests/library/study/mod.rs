@@ -128,7 +128,7 @@ fn a_recording_that_several_paths_lead_to_counts_once() {
         fs::write(folder.join(LOG_NAME), "{}\n").expect("written");
     }
     let found = |paths: &[PathBuf]| NamedRecordings::find(paths).expect("recordings").number();
-    assert_eq!(found(&[all.clone()]), 2);
+    assert_eq!(found(std::slice::from_ref(&all)), 2);
     assert_eq!(found(&[all.clone(), other.join("../recordings"), all.join("P01-2")]), 2);
     assert_eq!(found(&[all.clone(), other]), 3, "recordings of one name in two folders are two");
     #[cfg(unix)]

@@ -73,12 +73,12 @@ fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
             (false, WizardVisibility::State, false),
         ] {
             let mut stage = Stage::sushi(ParticipantKind::Simulated);
-            stage.session.spec.console.visibility = shows;
             stage.wait(0.0);
             let ahead = |stage: &mut Stage| stage.model.clock = stage.model.now + SessionTime::from_secs_f64(ahead_s);
             ahead(&mut stage);
             stage.click("[a]");
-            assert!(stage.asks_to_send());
+            assert!(stage.asks_to_send(), "clock ahead by {ahead_s} s");
+            stage.session.spec.console.visibility = shows;
             let what = OfferedCommunication::Signal(highlight("counter"));
             let advice = OfferedAdvice { what, for_seq: 17, worth: None, reason: None, visible };
             stage.at(23.5, Event::OfferOpened(advice));

@@ -9,7 +9,6 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::gaussian_likelihood::{GaussianLikelihood, inverse};
-use super::scoring_search::REJECTED_NATS;
 
 /// Standard deviation between persons at the start of the estimation, and its least and largest value, on the scale of
 /// the fit.
@@ -21,6 +20,8 @@ const PRIOR_SD: f64 = 10.0;
 /// Largest number of EM iterations, and the relative change of every standard deviation below which the iterations end.
 const ITERATIONS: usize = 2000;
 const SETTLED: f64 = 1e-6;
+/// Half the 95 % quantile of chi squared with one degree of freedom.
+const REJECTED_NATS: f64 = 1.92;
 /// Number of bisections by which the end of an interval is found.
 const BISECTIONS: usize = 40;
 

@@ -8,7 +8,7 @@
 use super::gaussian_likelihood::GaussianLikelihood;
 use super::parameter_scale::{bounds_of, is_possible, model_at};
 use super::population_estimate::{PopulationEstimate, estimate};
-use super::score_surface::{REACH, TriedPoint, points, points_around, surface};
+use super::response_surface::{REACH, points_around, surface};
 use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
 
@@ -84,15 +84,14 @@ pub fn search(
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> FoundPeople {
     let bounds = bounds_of(what.parameters);
-    let first = Survey { centre: start.to_vec(), steps: vec![FIRST_STEP; start.len()], tried: Vec::new() };
-    let mut surveys = vec![first; what.people];
+    let mut surveys = vec![Survey { centre: start.to_vec(), steps: vec![FIRST_STEP; start.len()] }; what.people];
     let mut tries = 0;
     let mut round = 0;
     loop {
         surveys.iter_mut().for_each(|survey| survey.keep_inside(&bounds));
-        tries += points(start.len()) as u64;
-        try_points(what, &mut surveys, &likelihoods);
-        let surfaces = surveys.iter().map(Survey::gaussian);
+        let found = likelihoods_at(what, &surveys, &likelihoods);
+        tries += found.first().map_or(0, Vec::len) as u64;
+        let surfaces = surveys.iter().zip(found).map(|(survey, losses)| survey.gaussian(losses));
         let (gaussians, noises): (Vec<GaussianLikelihood>, Vec<f64>) = surfaces.unzip();
         let estimate = estimate(&gaussians, start);
         let inside = |at: &[f64]| -> Vec<f64> {
@@ -110,35 +109,37 @@ pub fn search(
     }
 }
 
-/// Evaluates the log likelihood of every person at the points around the centre of the person's survey, except where the
-/// parameters are invalid.
-fn try_points(
+/// Negative log likelihoods of every person at the points of the person's survey; infinite where the parameters are
+/// invalid.
+fn likelihoods_at(
     what: PeopleSearch<'_>,
-    surveys: &mut [Survey],
+    surveys: &[Survey],
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
-) {
+) -> Vec<Vec<f64>> {
     let (mut tries, mut places) = (Vec::new(), Vec::new());
+    let mut losses: Vec<Vec<f64>> = Vec::new();
     for (person, survey) in surveys.iter().enumerate() {
-        for at in points_around(&survey.centre, &survey.steps) {
-            let model = model_at(what.base, what.parameters, &at);
+        let points = points_around(&survey.centre, &survey.steps);
+        losses.push(vec![f64::INFINITY; points.len()]);
+        for (point, at) in points.iter().enumerate() {
+            let model = model_at(what.base, what.parameters, at);
             if is_possible(&model) {
                 tries.push(PersonTry { person, part: what.part, model });
-                places.push((person, at));
+                places.push((person, point));
             }
         }
     }
-    for ((person, at), found) in places.into_iter().zip(likelihoods(&tries)) {
-        surveys[person].tried.push((at, found.losses()));
+    for ((person, point), found) in places.into_iter().zip(likelihoods(&tries)) {
+        losses[person][point] = -found.total();
     }
+    losses
 }
 
-/// Where the next quadratic surface of a person's log likelihood is fitted (centre and step sizes), and the points tried
-/// so far with the loss of each press.
+/// Where the next quadratic surface of a person's log likelihood is fitted: centre and step sizes.
 #[derive(Clone, Debug)]
 struct Survey {
     centre: Vec<f64>,
     steps: Vec<f64>,
-    tried: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
 impl Survey {
@@ -149,10 +150,11 @@ impl Survey {
         }
     }
 
-    /// The quadratic likelihood that fits the tried points, and the standard deviation of their noise.
-    fn gaussian(&self) -> (GaussianLikelihood, f64) {
-        let tried: Vec<TriedPoint<'_>> = self.tried.iter().map(|(at, losses)| (at.clone(), &losses[..])).collect();
-        match surface(&tried, &self.centre, &self.steps) {
+    /// The quadratic likelihood that fits these losses, and the standard deviation of their noise.
+    fn gaussian(&self, losses: Vec<f64>) -> (GaussianLikelihood, f64) {
+        let mut losses = losses.into_iter();
+        let next = |_: &[f64]| losses.next().unwrap_or(f64::INFINITY);
+        match surface(next, &self.centre, &self.steps) {
             Some(found) => (GaussianLikelihood::from_surface(&found, &self.centre, &self.steps), found.noise),
             None => (GaussianLikelihood::flat(self.centre.len()), 0.0),
         }

@@ -1,0 +1,194 @@
+//! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design
+//! (Box and Wilson 1951), with the surfaces' minimum and curvature.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// Distance from the centre up to which a quadratic surface is trusted, in steps.
+pub const REACH: f64 = 1.5;
+/// Number of sweeps of coordinate descent by which the surface's minimum is found.
+const SWEEPS: usize = 60;
+/// A matrix counts as singular if its smallest pivot is at most this share of its largest pivot.
+const SINGULAR: f64 = 1e-12;
+
+/// A quadratic surface that approximates a noisy function; variables are in steps from its centre.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuadraticSurface {
+    /// Value of the surface at its centre.
+    pub value: f64,
+    /// First derivatives of the surface at its centre.
+    pub slope: DVector<f64>,
+    /// Second derivatives of the surface.
+    pub curvature: DMatrix<f64>,
+    /// Standard deviation of the residuals between function values and surface.
+    pub noise: f64,
+    /// Covariance of the surface's first derivatives that follows from the residuals.
+    pub slope_covariance: DMatrix<f64>,
+}
+
+/// Number of function values that [`surface`] needs for this number of variables.
+pub fn points(variables: usize) -> usize {
+    design(variables).len()
+}
+
+/// The points at which [`surface`] evaluates its function, in the order of evaluation.
+pub fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+    let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
+    design(centre.len()).into_iter().map(at).collect()
+}
+
+/// Fits a quadratic surface around `centre`, with steps of the given sizes along each variable and each pair of
+/// variables. Values that are not finite are ignored; `None` if too few remain.
+pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
+    let n = centre.len();
+    let (mut rows, mut values) = (Vec::new(), Vec::new());
+    for (by, at) in design(n).into_iter().zip(points_around(centre, steps)) {
+        let value = function(&at);
+        if value.is_finite() {
+            rows.extend(terms(&by));
+            values.push(value);
+        }
+    }
+    let count = terms(&vec![0.0; n]).len();
+    let design = DMatrix::from_row_iterator(values.len(), count, rows);
+    let values = DVector::from_vec(values);
+    let inverse = inverse(design.tr_mul(&design))?;
+    let found = &inverse * design.tr_mul(&values);
+    let mut curvature = DMatrix::zeros(n, n);
+    for (term, (one, other)) in pairs(n).into_iter().enumerate() {
+        curvature[(one, other)] += found[1 + n + term];
+        curvature[(other, one)] += found[1 + n + term];
+    }
+    let residuals = values - design * &found;
+    let variance = residuals.norm_squared() / residuals.len().saturating_sub(count).max(1) as f64;
+    Some(QuadraticSurface {
+        value: found[0],
+        slope: found.rows(1, n).into_owned(),
+        curvature,
+        noise: variance.sqrt(),
+        slope_covariance: inverse.view((1, 1), (n, n)) * variance,
+    })
+}
+
+/// Inverse of a symmetric matrix; `None` if the matrix is not positive definite beyond rounding.
+fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let decomposed = Cholesky::<f64, Dyn>::new(matrix)?;
+    let pivots = decomposed.l_dirty().diagonal().map(|root| root * root);
+    (pivots.min() > SINGULAR * pivots.max()).then(|| decomposed.inverse())
+}
+
+impl QuadraticSurface {
+    /// Value of the surface at a distance `by` from the surface's centre, in steps.
+    pub fn at(&self, by: &[f64]) -> f64 {
+        let by = DVector::from_column_slice(by);
+        self.value + self.slope.dot(&by) + by.dot(&(&self.curvature * &by)) / 2.0
+    }
+
+    /// Minimum of the surface within bounds, in steps from the surface's centre: the best result of coordinate descents
+    /// from the centre and from the ends of each axis.
+    pub fn least(&self, low: &[f64], high: &[f64]) -> Vec<f64> {
+        let n = self.slope.len();
+        let mut starts = vec![vec![0.0; n]];
+        for index in 0..n {
+            for end in [low[index], high[index]] {
+                let mut start = vec![0.0; n];
+                start[index] = end;
+                starts.push(start);
+            }
+        }
+        let ends = starts.into_iter().map(|start| self.descend(start, low, high));
+        let better = |best: Vec<f64>, one: Vec<f64>| if self.at(&one) < self.at(&best) { one } else { best };
+        ends.reduce(better).unwrap_or_default()
+    }
+
+    fn descend(&self, mut by: Vec<f64>, low: &[f64], high: &[f64]) -> Vec<f64> {
+        for _ in 0..SWEEPS {
+            for index in 0..by.len() {
+                let bend = self.curvature[(index, index)];
+                let others: f64 = self.curvature.row(index).iter().zip(&by).map(|(bend, by)| bend * by).sum();
+                let slope = self.slope[index] + others - bend * by[index];
+                let value = |x: f64| slope * x + bend * x * x / 2.0;
+                by[index] = match bend > 0.0 {
+                    true => (-slope / bend).clamp(low[index], high[index]),
+                    false if value(low[index]) < value(high[index]) => low[index],
+                    false => high[index],
+                };
+            }
+        }
+        by
+    }
+
+    /// Covariance of the position of the surface's minimum: the inverse of the curvature (the observed information, if
+    /// values are negative log likelihoods) plus the part due to noise. `None` if the surface is not convex.
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        let inverse = inverse(self.curvature.clone())?;
+        Some(&inverse * &self.slope_covariance * &inverse + &inverse)
+    }
+}
+
+/// Points of the central composite design for `n` variables, in steps from the centre.
+fn design(n: usize) -> Vec<Vec<f64>> {
+    let at = |moves: &[(usize, f64)]| {
+        let mut by = vec![0.0; n];
+        moves.iter().for_each(|&(index, step)| by[index] = step);
+        by
+    };
+    let mut points = vec![at(&[])];
+    for index in 0..n {
+        points.extend([-1.0, -0.5, 0.5, 1.0].map(|step| at(&[(index, step)])));
+        for other in 0..index {
+            // Only half of the corners of each pair of variables are points; they alternate between the two diagonals.
+            let turned = if (index + other) % 2 == 0 { 1.0 } else { -1.0 };
+            points.extend([-1.0, 1.0].map(|step| at(&[(index, step), (other, turned * step)])));
+        }
+    }
+    points
+}
+
+fn pairs(n: usize) -> Vec<(usize, usize)> {
+    (0..n).flat_map(|one| (0..=one).map(move |other| (one, other))).collect()
+}
+
+/// Terms of the quadratic model at a point: 1, every variable, and every product of two variables.
+fn terms(by: &[f64]) -> Vec<f64> {
+    let products = pairs(by.len()).into_iter().map(|(one, other)| by[one] * by[other]);
+    std::iter::once(1.0).chain(by.iter().copied()).chain(products).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_minimum_and_curvature_of_what_is_quadratic() {
+        let function = |x: &[f64]| {
+            let (a, b) = (x[0] - 1.0, x[1] + 2.0);
+            3.0 + 2.0 * a * a + 1.5 * b * b + a * b
+        };
+        let (centre, steps) = ([0.9, -2.2], [0.4, 0.3]);
+        let found = surface(function, &centre, &steps).expect("a surface");
+        let least = found.least(&[-REACH; 2], &[REACH; 2]);
+        assert!((found.at(&least) - 3.0).abs() < 1e-9 && found.noise < 1e-9, "{found:?}");
+        for (index, expected) in [1.0, -2.0].into_iter().enumerate() {
+            assert!((centre[index] + least[index] * steps[index] - expected).abs() < 1e-9, "{least:?}");
+        }
+        // The test function has the second derivatives 4, 3, and 1 across.
+        let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
+        let covariance = found.covariance().expect("a covariance");
+        for (row, expected) in expected.iter().enumerate() {
+            for (column, expected) in expected.iter().enumerate() {
+                let found = covariance[(row, column)] * steps[row] * steps[column];
+                assert!((found - expected).abs() < 1e-9, "{covariance:?}");
+            }
+        }
+        assert_eq!(points(2), 11);
+    }
+
+    #[test]
+    fn a_valley_has_no_covariance_and_ends_at_a_bound() {
+        let valley = surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]).expect("a surface");
+        assert_eq!(valley.covariance(), None);
+        let saddle = surface(|x| x[0] * x[0] - x[1] * x[1] - 0.1 * x[1], &[0.0, 0.0], &[1.0, 1.0]);
+        let least = saddle.expect("a surface").least(&[-1.0, -1.0], &[1.0, 1.0]);
+        assert!(least[0].abs() < 1e-9 && least[1] == 1.0, "{least:?}");
+    }
+}

@@ -19,7 +19,7 @@ const STEPS: [f64; 2] = [0.02, 1.6];
 const STEP_CHANGE: f64 = 2.5;
 /// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of
 /// freedom.
-const REJECTED_NATS: f64 = 1.92;
+pub(super) const REJECTED_NATS: f64 = 1.92;
 /// First step of the search for the end of a profile interval; the end is found to within a quarter of this step.
 const PROFILE_STEP: f64 = 0.3;
 /// A bound is rejected, without optimising the other variables, if it lowers the log likelihood by more than this (plus
@@ -262,8 +262,8 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         let (mut near, mut far, mut step) = (0.0, None, PROFILE_STEP);
         let found = loop {
             let by = match far {
-                None if near + step > high - low => break None,
-                None => near + step,
+                None if near >= high - low => break None,
+                None => (near + step).min(high - low),
                 Some(far) if far - near <= PROFILE_STEP / 4.0 => break Some(best[index] + away * (near + far) / 2.0),
                 Some(far) => (near + far) / 2.0,
             };

@@ -43,6 +43,11 @@ impl ProbeAnswerFit {
             shrinkage: Vec::new(),
         }
     }
+
+    /// By how much less likely the answers are than before the fit, in nats.
+    pub fn lost(&self) -> f64 {
+        (self.log_likelihood_before - self.log_likelihood) * self.answers as f64
+    }
 }
 
 impl IntervalNarrowing {

@@ -29,7 +29,7 @@ use crate::base::words::count;
 use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
 
-/// Half width of a 95 % interval, in standard errors.
+/// Half width of a 95 % interval, in standard errors or standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
 /// The recordings of a fit: their number, their human model, and whether all have the same model.
@@ -85,6 +85,14 @@ pub struct FitSummary {
     /// Effect of the answers to freeze probes on the fit; `None` if the fit did not use answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<ProbeAnswerFit>,
+}
+
+impl FitSummary {
+    /// By how much less likely the presses, and the answers if they were used, are than before the fit, in nats.
+    fn lost(&self) -> f64 {
+        let presses = (self.log_likelihood_before - self.log_likelihood) * self.human_actions as f64;
+        presses + self.answers.as_ref().map_or(0.0, ProbeAnswerFit::lost)
+    }
 }
 
 /// Result of a fit for one parameter of the human model.
@@ -223,12 +231,12 @@ pub fn comment(fit: &FitSummary) -> String {
 
 /// The result of the fit as text for the terminal.
 pub fn describe(fit: &FitSummary) -> String {
-    let lost = fit.log_likelihood_before - fit.log_likelihood;
+    let lost = fit.lost();
     let end = match fit.converged {
         true if lost > 0.0 => format!(
-            "\nless likely than before by {:.1} nats over all presses: not more than the search can tell from chance in the \
-             estimate; more samples ([inference] in a file for --start) or recordings tell more",
-            lost * fit.human_actions as f64
+            "\nless likely than before by {lost:.1} nats over all presses{}: not more than the search can tell from chance in \
+             the estimate; more samples ([inference] in a file for --start) or recordings tell more",
+            if fit.answers.is_some() { " and answers" } else { "" }
         ),
         true => String::new(),
         false => format!(

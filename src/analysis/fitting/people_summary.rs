@@ -3,13 +3,11 @@
 
 use serde::Serialize;
 
+use super::HALF_WIDTH;
 use super::population_estimate::{PersonPosterior, PopulationEstimate};
 use crate::base::words::count;
 use crate::mind::fitted_people::HumanModelFile;
 use crate::mind::fitting::HumanModelParameter;
-
-/// Half width of a 95 % interval, in standard errors or standard deviations.
-const HALF_WIDTH: f64 = 1.96;
 
 /// A person to whose trials parameters are fitted.
 #[derive(Clone, Debug, PartialEq, Eq)]

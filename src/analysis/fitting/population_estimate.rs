@@ -8,6 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::ascent::REJECTED_NATS;
 use super::gaussian_likelihood::{GaussianLikelihood, inverse};
 
 /// Standard deviation between persons at the start of the estimation, and its least and largest value, on the scale of
@@ -20,8 +21,6 @@ const PRIOR_SD: f64 = 10.0;
 /// Largest number of EM iterations, and the relative change of every standard deviation below which the iterations end.
 const ITERATIONS: usize = 2000;
 const SETTLED: f64 = 1e-6;
-/// Half the 95 % quantile of chi squared with one degree of freedom.
-const REJECTED_NATS: f64 = 1.92;
 /// Number of bisections by which the end of an interval is found.
 const BISECTIONS: usize = 40;
 

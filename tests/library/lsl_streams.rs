@@ -97,7 +97,7 @@ fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
             for field in left_out.as_array().into_iter().flatten().filter_map(Value::as_str) {
                 let removed = event.as_object_mut().and_then(|fields| fields.remove(field));
                 // Whether somebody was unsure of a probe's question is left out, too: then the log has no such field.
-                assert!(removed.is_some() || event["what"] == "answered", "{field} is no field of {event}");
+                assert!(removed.is_some() || event["did"] == "answered", "{field} is no field of {event}");
             }
             assert_eq!(found, event, "{name}");
             assert_eq!((sample.time.0, code.time.0), (event["t_ns"].as_u64().unwrap_or(0), sample.time.0));

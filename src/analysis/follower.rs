@@ -38,8 +38,6 @@ pub struct SessionFollower {
     pub filter: BeliefFilter,
     /// Rule that says which signals the assistant is not to repeat yet.
     pub repeats: SignalRepeatRule,
-    /// Signal that has left the display, for whoever keeps a rule against repeats of its own.
-    pub ended_signal: Option<EndedSignal>,
     /// Computing times of updates of the belief estimate; `None` if the times are not measured.
     pub timing: Option<InferenceTiming>,
     /// The cost to go that judges presses; its caches can serve the next session in the same kitchen.
@@ -129,7 +127,6 @@ impl SessionFollower {
             episodes,
             filter,
             repeats,
-            ended_signal: None,
             timing,
             cost,
             judge,
@@ -254,9 +251,8 @@ impl SessionFollower {
     /// samples.
     fn remember(&mut self, stamped: &TimestampedEvent) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
-        if let Some(ended) = self.filter.take_signal_over() {
-            self.repeats.over(ended.location, ended.read);
-            self.ended_signal = Some(ended);
+        if let Some(EndedSignal { location, read }) = self.filter.take_signal_over() {
+            self.repeats.over(location, read);
         }
         match &stamped.event {
             Event::Gaze(_) | Event::Probe(_) => return,

@@ -160,10 +160,6 @@ impl SenderComparisonFollower {
         let filter = is_sent.then(|| self.follower.filter.clone());
         let AppliedEvent { change, .. } = self.follower.apply(stamped)?;
         self.update_counterfactuals(stamped, &change);
-        if let Some(ended) = self.follower.ended_signal.take() {
-            let rules = self.voices.iter_mut().map(|voice| &mut voice.repeats);
-            rules.chain([&mut self.shown]).for_each(|rule| rule.over(ended.location, ended.read));
-        }
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
             self.counterfactuals.push_back(CounterfactualFilter {

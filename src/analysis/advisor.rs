@@ -71,11 +71,6 @@ impl AdviceRequest {
         }
     }
 
-    /// The belief estimate from which the request starts.
-    pub fn belief(&self) -> &DirichletBelief {
-        &self.belief
-    }
-
     /// The request for advice in the form in which a communication concept receives it.
     pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {

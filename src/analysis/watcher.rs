@@ -84,16 +84,6 @@ struct CounterfactualFilter {
     /// State of the kitchen when the left out signal was sent.
     state: State,
     filter: BeliefFilter,
-    /// Session time of the filter's last observation since the signal; `None` before the first one.
-    updated_at: Option<SessionTime>,
-}
-
-impl CounterfactualFilter {
-    /// The estimate from which a request for advice at `now` starts, as [`SessionFollower::belief_for_advice`].
-    fn belief_for_advice(&self, now: SessionTime, cost: &mut CostToGo) -> DirichletBelief {
-        let is_current = self.updated_at.is_some_and(|updated| updated >= now);
-        self.filter.foreseen(now, is_current, cost)
-    }
 }
 
 /// Follows a session event by event, and asks each communication concept for its hypothetical signals.
@@ -162,13 +152,7 @@ impl SenderComparisonFollower {
         self.update_counterfactuals(stamped, &change);
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
-            self.counterfactuals.push_back(CounterfactualFilter {
-                press,
-                signal: signal.clone(),
-                state,
-                filter,
-                updated_at: None,
-            });
+            self.counterfactuals.push_back(CounterfactualFilter { press, signal: signal.clone(), state, filter });
             let spoken = self.spoken(CommunicationContent::from_signal(signal), stamped.time);
             self.sent.push(spoken);
         }
@@ -225,7 +209,6 @@ impl SenderComparisonFollower {
         let observation = Observation { time: stamped.time, what };
         for one in &mut self.counterfactuals {
             one.filter.observe(&observation, &mut self.follower.cost);
-            one.updated_at = Some(stamped.time);
         }
     }
 
@@ -263,21 +246,18 @@ impl SenderComparisonFollower {
         let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
         self.asked += 1;
         let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
-        let belief = match self.counterfactuals.front() {
-            Some(oldest) => oldest.belief_for_advice(time, &mut self.follower.cost),
-            None => question.belief().clone(),
-        };
         let session = &self.follower.session;
         let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
+        let belief = estimate(&self.follower, &self.counterfactuals);
         let shown = &self.shown;
         let answer = |voice: &mut Voice| {
             let mut signals = shown.allowed(&kitchen, own_hand);
             let unsaid = voice.repeats.allowed(&kitchen, own_hand);
             signals.retain(|signal| unsaid.contains(signal));
-            voice.advisor.answer(&question.about(&belief, signals))
+            voice.advisor.answer(&question.about(belief, signals))
         };
         let advice: Vec<Recommendation> = self.voices.iter_mut().map(answer).collect();
-        let held = BeliefSnapshot::new(&kitchen, session.state, &belief, time, false).held;
+        let held = BeliefSnapshot::new(&kitchen, session.state, belief, time, false).held;
         let (state, screen) = (session.state, self.screen.clone());
         let known = Arc::new(CommunicationContext { seq, state, held, advice, screen });
         self.known = Some(known.clone());

@@ -220,7 +220,7 @@ fn a_signal_without_a_delay_is_one_event_that_is_noticed_or_not_and_may_be_misre
         assert!((filter - reference).abs() < 0.015, "{filter} and {reference}");
     }
     // Whoever notices an order's signal reads both the order and its recipe.
-    let is_certain = |of: &[f64]| of.iter().any(|p| *p == 1.0);
+    let is_certain = |of: &[f64]| of.contains(&1.0);
     let [both, one] = [2, 1].map(|many| {
         let read = |person: &&Particle| {
             [order.index(), bench.recipe.index()].iter().filter(|index| is_certain(&person.of[**index])).count() == many

@@ -102,7 +102,7 @@ fn run_on_a_full_disk(arguments: &[&str]) -> String {
     let done = Command::new("sh").args(["-c", script, "sh", TOMCOM]).args(arguments).stdin(Stdio::null()).output();
     let done = done.expect("a shell");
     let told = String::from_utf8_lossy(&[done.stdout, done.stderr].concat()).into_owned();
-    assert_eq!(done.status.code(), Some(1), "{arguments:?}: {told}");
+    assert!(matches!(done.status.code(), Some(1 | 2)), "{arguments:?}: {told}");
     told
 }
 

@@ -50,7 +50,7 @@ fn check_wizard(session: &str) {
     std::thread::sleep(Duration::from_millis(800));
     terminal.key_logs(".", "trial_resumed");
     terminal.key("?");
-    terminal.see("any key closes");
+    terminal.see("─ Keys ─");
     terminal.key("x");
     std::thread::sleep(Duration::from_millis(800));
     terminal.key("C-e");

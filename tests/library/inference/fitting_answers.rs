@@ -124,10 +124,11 @@ fn answers_narrow_the_interval_of_what_presses_hardly_tell() {
     assert_eq!(answers.answers, 10 * 6 * 4);
     assert!(answers.log_likelihood > answers.log_likelihood_before, "{answers:?}");
     let [half_life] = &found.parameters[..] else { panic!("{found:?}") };
-    // Presses alone hardly tell how fast recipes are forgotten; answers bring it nearer to the truth, though not up to it: what the
-    // approximate filter believes of recipes is rounder than what people of the model believe.
+    // Presses alone hardly tell how fast recipes are forgotten: their value is anywhere in a wide interval. Answers narrow it, and lead from
+    // where the search begins to the truth, though not up to it: what the approximate filter believes of recipes is rounder than what
+    // people of the model believe.
     let [alone] = &answers.shrinkage[..] else { panic!("{answers:?}") };
-    assert!(alone.ratio.is_none_or(|ratio| ratio < 1.0), "{alone:?}");
+    assert!(alone.ratio.is_none_or(|ratio| ratio < 0.5), "{alone:?}");
     let off = |value: f64| (value / truth.transition.recipe_half_life_s).ln().abs();
-    assert!(off(half_life.value) < off(alone.value), "{half_life:?}, by presses alone {alone:?}");
+    assert!(off(half_life.value) < 0.5 * off(half_life.before), "{half_life:?}, by presses alone {alone:?}");
 }

@@ -6,8 +6,8 @@
 //!
 //! Modules from the ground up:
 //!
-//! - Components: `draws`, [`population`] (distribution of traits), [`true_beliefs`], `weighted_draw`, `memory` (of recipes), `eyes`,
-//!   `attention`, `signal_sense`.
+//! - Components: `draws`, [`population`] (distribution of traits), [`true_beliefs`], `weighted_draw`, `memory` (of
+//!   recipes), `eyes`, `attention`, `signal_sense`.
 //! - Planning: `knowledge` (of buttons and processing steps), `goals` (missing parts), `habits` (and lapses),
 //!   `planning` (backward chaining), `decision` (next presses).
 //! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).

@@ -52,7 +52,7 @@ impl Review {
         self.at = Instant::now();
     }
 
-    /// Stands at a position of the recording: after so many events.
+    /// Shows the recording as it was after its first `position` events, and pauses there.
     pub(super) fn stand_at(&mut self, position: usize) {
         self.wind(position);
         self.now = self.film.time();

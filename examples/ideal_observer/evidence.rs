@@ -138,7 +138,7 @@ impl Reading {
             KitchenChange::Press { press, .. } => {
                 let since_change_s = self.changed.iter().map(|at| at.map(|at| time.secs_since(at))).collect();
                 let held = self.held.take().ok_or("a press without a recorded belief")?;
-                let estimate = EstimateBeforePress { p_wrong: Vec::new(), p_false: Vec::new(), log_p: 0.0 };
+                let estimate = EstimateBeforePress { p_false: Vec::new(), log_p: 0.0 };
                 let interval = Interval { clues: Vec::new(), time, press, held, estimate, since_change_s };
                 self.presses.push((stamped.seq, interval));
             }

@@ -60,7 +60,6 @@ fn cases(trial: usize, evidence: &Evidence, concluded: &[Conclusion], aspect: us
             is_false: interval.held[aspect] < tomcom::measures::sequences::FALSE_BELOW,
             class: class(since_s),
             predicted: [estimate.p_false[aspect], smoothed],
-            ranked: [estimate.p_wrong[aspect], smoothed],
         }
     };
     pairs.map(case).collect()

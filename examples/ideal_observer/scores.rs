@@ -25,8 +25,6 @@ pub struct Case {
     pub class: usize,
     /// Predicted probabilities of a false belief by estimate and ideal observer.
     pub predicted: [f64; 2],
-    /// What orders the cases for the area under the ROC curve, for estimate and ideal observer.
-    pub ranked: [f64; 2],
 }
 
 /// The baseline's class of an aspect: for how long somebody else's last change of the location has been over. Recipes
@@ -72,7 +70,7 @@ impl GroupScores {
             (estimate - base) / (ideal - base)
         };
         let area = |who: usize| {
-            let score = |(case, &base): (&Case, &f64)| [base, case.ranked[0], case.ranked[1]][who];
+            let score = |(case, &base): (&Case, &f64)| predicted(case, base)[who];
             auc(&cases.iter().zip(&base).map(|one| (score(one), one.0.is_false)).collect::<Vec<_>>())
         };
         let calibration = |who: usize| {

@@ -75,7 +75,7 @@ impl ProbeDetection {
 
     /// Compares the estimate with probe questions for which it is known whether the belief is false.
     pub fn from_beliefs(beliefs: &[WeightedProbeBelief]) -> ProbeDetection {
-        let p_wrong = |one: &WeightedProbeBelief| Some(1.0 - one.question.frozen.as_ref()?.estimate_p_truth);
+        let p_false = |one: &WeightedProbeBelief| Some(one.question.frozen.as_ref()?.estimate_p_false);
         let changed = |one: &WeightedProbeBelief| {
             one.question.frozen.as_ref()?.changed_unseen.map(|changed| f64::from(u8::from(changed)))
         };
@@ -86,11 +86,9 @@ impl ProbeDetection {
                 of_group.filter_map(|one| Some((score(one)?, one.is_wrong, one.weight))).collect();
             weighted_auc(&scored)
         };
-        let of_groups = [area(false, &p_wrong), area(true, &p_wrong)];
+        let of_groups = [area(false, &p_false), area(true, &p_false)];
         let known: Vec<f64> = of_groups.into_iter().flatten().collect();
-        let predictions = beliefs
-            .iter()
-            .filter_map(|one| Some((one.question.frozen.as_ref()?.estimate_p_false, one.is_wrong, one.weight)));
+        let predictions = beliefs.iter().filter_map(|one| Some((p_false(one)?, one.is_wrong, one.weight)));
         let calibration = Calibration::from_weighted(predictions, CALIBRATED, CALIBRATION_BINS);
         ProbeDetection {
             wrong: weighted_share(beliefs.iter().map(|one| (one.weight, one.is_wrong))),

@@ -4,10 +4,10 @@
 //! The unit is a press of the human, with the estimate right before the press. A belief about an aspect is false if the
 //! participant's own P(truth) is below 0.5. The area under the ROC curve of a group (locations, recipes) is computed
 //! over all pairs of a press and an aspect of the group together: the score has to distinguish an aspect that is
-//! believed wrong now both from the other aspects and from the same aspect at other times. The macro-average is the
+//! believed wrong now both from the other aspects and from the same aspect at other times. The score of the estimate is
+//! the predicted probability of a false belief: that the participant's P(truth) is below 0.5. The macro-average is the
 //! mean of the two groups, so that the many pairs of one group do not hide the other group. Calibration judges the
-//! predicted probability of a false belief (the probability that the participant's P(truth) is below 0.5), not the
-//! expected probability of wrong values. The mean over single aspects is reported as well; this mean depends much on
+//! same probability, not the expected probability of wrong values. The mean over single aspects is reported as well; this mean depends much on
 //! aspects that are hardly ever wrong.
 
 use serde::Serialize;
@@ -72,7 +72,7 @@ impl FalseBeliefDetection {
         trials: &[TrialBeliefs],
         thresholds: Option<FlagThresholds>,
     ) -> FalseBeliefDetection {
-        let estimated = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
+        let predicted = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
         let changed =
             |press: &BeliefsBeforePress, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
         let groups = aspect_groups(kitchen);
@@ -81,14 +81,13 @@ impl FalseBeliefDetection {
         };
         let both: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
-        let of_groups = groups.each_ref().map(|group| pool(group, &estimated));
-        let predicted = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
+        let of_groups = groups.each_ref().map(|group| pool(group, &predicted));
         let predictions = scored(trials, &both, &predicted);
         let calibration = Calibration::from_predictions(predictions, CALIBRATED, CALIBRATION_BINS);
         let aspect = |&index: &usize| {
             let known: Vec<bool> = trials.iter().flatten().filter_map(|press| press.is_wrong(index)).collect();
             let wrong = known.iter().filter(|&&wrong| wrong).count() as f64 / known.len().max(1) as f64;
-            AspectAuc { aspect: kitchen.aspects[index].name.clone(), auc: pool(&[index], &estimated), wrong }
+            AspectAuc { aspect: kitchen.aspects[index].name.clone(), auc: pool(&[index], &predicted), wrong }
         };
         FalseBeliefDetection {
             auc: mean(of_groups.into_iter().flatten()),
@@ -96,7 +95,7 @@ impl FalseBeliefDetection {
             auc_recipes: of_groups[1],
             auc_baseline: pool(&groups[0], &changed),
             auc_recency: pool(&groups[0], &recent),
-            auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &estimated))),
+            auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &predicted))),
             flags: FlagPerformance::from_trials(trials, &groups, thresholds),
             ece: calibration.ece,
             calibration,

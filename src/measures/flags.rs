@@ -1,5 +1,5 @@
-//! Flags: aspects whose expected belief deviation, 1 - E[P(truth)], reaches a threshold, and the false belief episodes
-//! that flags detect in time.
+//! Flags: aspects whose predicted probability of a false belief reaches a threshold, and the false belief episodes that
+//! flags detect in time.
 //!
 //! An episode counts if the false belief caused two or more errors; the episode is detected if its aspect is flagged
 //! after the belief became false and before the third error (the estimate from before a press is before that press). A
@@ -27,12 +27,12 @@ const BEFORE_ERROR: u32 = 3;
 /// Number of candidate thresholds for each group of aspects.
 const CANDIDATES: usize = 200;
 
-/// Expected belief deviation, 1 - E[P(truth)], from which on an aspect is flagged, for locations and for recipes.
+/// Predicted probability of a false belief from which on an aspect is flagged, for locations and for recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FlagThresholds {
-    /// Flag threshold of the expected belief deviation for locations.
+    /// Flag threshold of the predicted probability for locations.
     pub locations: f64,
-    /// Flag threshold of the expected belief deviation for recipes.
+    /// Flag threshold of the predicted probability for recipes.
     pub recipes: f64,
 }
 
@@ -222,15 +222,15 @@ fn candidates(trials: &[&TrialBeliefs], group: &[usize], allowed: usize) -> Vec<
     if tried.is_empty() { vec![0.0] } else { tried }
 }
 
-fn p_wrong(press: &BeliefsBeforePress, aspect: usize) -> f64 {
-    press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_wrong[aspect])
+fn p_false(press: &BeliefsBeforePress, aspect: usize) -> f64 {
+    press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_false[aspect])
 }
 
-/// Expected belief deviations, 1 - E[P(truth)], of all (press, aspect) pairs with a right belief.
+/// Predicted probabilities of a false belief of all (press, aspect) pairs with a right belief.
 fn while_right<'a>(trials: &'a [&'a TrialBeliefs], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
     let is_right = |press: &BeliefsBeforePress, aspect: usize| press.is_wrong(aspect) == Some(false);
     trials.iter().flat_map(|trial| trial.iter()).flat_map(move |press| {
-        group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_wrong(press, aspect))
+        group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_false(press, aspect))
     })
 }
 
@@ -259,7 +259,7 @@ fn harmful(trials: &[&TrialBeliefs], aspect: usize) -> Vec<Episode> {
 
 impl Outcome {
     fn from_threshold(trials: &[&TrialBeliefs], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
-        let is_flagged = |press: &BeliefsBeforePress, aspect: usize| p_wrong(press, aspect) >= threshold;
+        let is_flagged = |press: &BeliefsBeforePress, aspect: usize| p_false(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))
         };

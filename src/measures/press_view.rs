@@ -29,12 +29,9 @@ pub struct BeliefsBeforePress {
 /// An estimate of the human's belief before a press.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateBeforePress {
-    /// For each aspect, the expected probability that the belief gives to wrong values: the score of detection and
-    /// flags.
-    pub p_wrong: Vec<f64>,
     /// For each aspect, the probability that the participant's own P(truth) is below [`FALSE_BELOW`], by the marginal
-    /// of the Dirichlet: I_.5(alpha_truth, A - alpha_truth), with A the sum of the alphas. Calibration judges this
-    /// predicted probability.
+    /// of the Dirichlet: I_.5(alpha_truth, A - alpha_truth), with A the sum of the alphas. Detection, flags and
+    /// calibration judge this predicted probability.
     pub p_false: Vec<f64>,
     /// The log probability of the press under the estimate, given that a button is pressed, in nats.
     pub log_p: f64,
@@ -43,12 +40,11 @@ pub struct EstimateBeforePress {
 impl EstimateBeforePress {
     /// The estimate before a press, from an estimate that a recording contains.
     pub fn from_witness(witness: &RecordedEstimate) -> EstimateBeforePress {
-        let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
         let p_false = witness.aspects.iter().map(|aspect| {
             let [of_truth, of_others] = [aspect.p_truth, 1.0 - aspect.p_truth].map(|mean| mean * aspect.precision);
             regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others)
         });
-        EstimateBeforePress { p_wrong: p_wrong.collect(), p_false: p_false.collect(), log_p: witness.log_p }
+        EstimateBeforePress { p_false: p_false.collect(), log_p: witness.log_p }
     }
 }
 

@@ -38,12 +38,11 @@ pub struct DetectionScores {
 impl DetectionScores {
     /// Scores and predictions before every press of these trials whose beliefs and estimates are known.
     pub fn from_trials(kitchen: &Kitchen, trials: &[TrialBeliefs]) -> DetectionScores {
-        let estimated = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
         let predicted = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
         let all: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let mut predictions = equal_scores(trials, &all, &predicted);
         predictions.retain(|one| (CALIBRATED[0]..=CALIBRATED[1]).contains(&one.score));
-        let groups = aspect_groups(kitchen).map(|group| equal_scores(trials, &group, &estimated));
+        let groups = aspect_groups(kitchen).map(|group| equal_scores(trials, &group, &predicted));
         DetectionScores { groups, predictions }
     }
 

@@ -85,6 +85,12 @@ impl Dirichlet {
         self.set_second(second);
     }
 
+    /// Replaces every belief b by one that is drawn from the Dirichlet with mean b and this precision r: the mean stays,
+    /// and S' = (r S + 1) / (r + 1).
+    pub fn redraw(&mut self, precision: f64) {
+        self.set_second((precision * self.second() + 1.0) / (precision + 1.0));
+    }
+
     /// Moves all probability of the value `from` to the value `to`; the result is an exact Dirichlet.
     pub fn shift(&mut self, from: usize, to: usize) {
         self.mean[to] += std::mem::take(&mut self.mean[from]);

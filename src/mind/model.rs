@@ -67,7 +67,8 @@ pub struct PriorModel {
     pub recipe_truth: f64,
     /// Share of the remaining probability that goes to variants which look like the true recipe, where there are any.
     pub recipe_look_alike: f64,
-    /// Precision (sum of the alphas) of the Dirichlet about a recipe: small, since people are certain of one variant.
+    /// Precision (sum of the alphas) of the Dirichlet about a recipe: small where people are certain of one variant from
+    /// the start, large where they are not before they recall it ([`TransitionModel::recall_precision`]).
     pub recipe_precision: f64,
 }
 
@@ -204,6 +205,11 @@ impl LocationReadingRate {
 pub struct TransitionModel {
     /// Half-life with which a belief about a recipe decays to its prior, in seconds.
     pub recipe_half_life_s: f64,
+    /// Precision with which a recipe is recalled when its dish is ordered: the belief becomes one that is drawn from a
+    /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. Absent: orders do
+    /// not change what is held of recipes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recall_precision: Option<f64>,
     /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
     /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
     pub foresight: f64,
@@ -211,7 +217,7 @@ pub struct TransitionModel {
 
 impl Default for TransitionModel {
     fn default() -> Self {
-        TransitionModel { recipe_half_life_s: 200.0, foresight: 0.2 }
+        TransitionModel { recipe_half_life_s: 200.0, recall_precision: None, foresight: 0.2 }
     }
 }
 

@@ -5,6 +5,7 @@
 //! location. Samples are used for the likelihood of a press, for the human's presses that involve several locations,
 //! and for presses of the robot.
 
+mod recipe_memory;
 mod standing_signal;
 
 use std::sync::Arc;
@@ -23,7 +24,7 @@ use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
 use crate::mind::choice::ChoiceModel;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::gaze_presence::UnknownGazeTimer;
@@ -169,6 +170,7 @@ impl ConditionalFilter {
                 self.lapse = LapsePosterior::around(self.model.decision.lapse);
                 self.forgot = Some(now);
                 self.presence.rest(now);
+                self.recall_ordered(self.kitchen.empty_state(), state);
                 self.show(now, state);
             }
             ObservedEvidence::Gaze { .. } | ObservedEvidence::DisplayInView(_) => {}
@@ -189,6 +191,7 @@ impl ConditionalFilter {
             ObservedEvidence::Displayed { state } => {
                 self.expect_cleared(state);
                 self.see_changes(now, state);
+                self.recall_ordered(self.shown, state);
                 self.show(now, state);
             }
             ObservedEvidence::Waited { longer } => self.weigh_waiting(longer, cost),
@@ -356,21 +359,6 @@ impl ConditionalFilter {
     fn show(&mut self, now: SessionTime, state: State) {
         self.shown = state;
         self.reader.show(now, state, self.model.perception.history_s);
-    }
-
-    /// Lets beliefs about recipes decay towards their prior.
-    fn forget(&mut self, now: SessionTime) {
-        let Some(last) = self.forgot else { return };
-        self.forgot = Some(now.max(last));
-        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / self.model.transition.recipe_half_life_s);
-        for index in 0..self.kitchen.aspects.len() {
-            if matches!(self.kitchen.aspects[index].kind, AspectKind::Recipe(_)) {
-                self.belief.aspects[index].mix(lost, &self.prior.aspects[index]);
-                if let Some(stretch) = &mut self.stretch {
-                    stretch.before[index].mix(lost, &self.prior.aspects[index]);
-                }
-            }
-        }
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {

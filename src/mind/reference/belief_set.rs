@@ -13,7 +13,9 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State};
+use crate::kitchen::{
+    Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
+};
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::UnknownGazeTimer;
@@ -91,6 +93,7 @@ impl ParticleSet {
         self.proposed = ProposedPresses::default();
         self.signals = ReferenceSignalHistory::default();
         self.lapses = lapses(&self.model);
+        self.recall_ordered(self.kitchen.empty_state(), state, random);
         self.show(now, state);
     }
 
@@ -191,6 +194,7 @@ impl ParticleSet {
             ObservedEvidence::Displayed { state } => {
                 self.expect_cleared(state);
                 self.see_changes(now, state, random);
+                self.recall_ordered(self.shown, state, random);
                 self.show(now, state);
             }
             ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
@@ -258,8 +262,24 @@ impl ParticleSet {
     fn forget(&mut self, now: SessionTime, random: &mut Stream) {
         let Some(last) = self.forgot else { return };
         self.forgot = Some(now.max(last));
-        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / self.model.transition.recipe_half_life_s);
-        self.of.iter_mut().for_each(|person| person.forget(&self.kitchen, &self.prior, lost, random));
+        let transition = &self.model.transition;
+        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / transition.recipe_half_life_s);
+        for dish in (0..self.kitchen.dishes.len()).map(|index| DishId(index as u8)) {
+            let recalls = transition.recall_precision.filter(|_| self.kitchen.is_ordered(self.shown, dish));
+            let aspect = self.kitchen.aspect_of_dish(dish);
+            self.of.iter_mut().for_each(|person| person.forget(aspect, &self.prior, (lost, recalls), random));
+        }
+    }
+
+    /// Lets the human of every belief recall the recipes of dishes that are ordered in `after` and not in `before`.
+    fn recall_ordered(&mut self, before: State, after: State, random: &mut Stream) {
+        let Some(precision) = self.model.transition.recall_precision else { return };
+        for dish in (0..self.kitchen.dishes.len()).map(|index| DishId(index as u8)) {
+            if self.kitchen.is_ordered(after, dish) && !self.kitchen.is_ordered(before, dish) {
+                let aspect = self.kitchen.aspect_of_dish(dish);
+                self.of.iter_mut().for_each(|person| person.recall(aspect, precision, random));
+            }
+        }
     }
 
     fn human_pressed(

@@ -10,7 +10,7 @@ use rand_distr::{Distribution, Gamma};
 use super::reading_effect::LocationReading;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
+use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
 use crate::kitchen::{OrderContent, Recipes, State};
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -74,13 +74,28 @@ impl Particle {
         of[value] = 1.0;
     }
 
-    /// Applies forgetting: with probability `lost` the belief about a recipe is drawn anew from the prior.
-    pub fn forget(&mut self, kitchen: &Kitchen, prior: &DirichletBelief, lost: f64, random: &mut Stream) {
-        for (index, aspect) in kitchen.aspects.iter().enumerate() {
-            if matches!(aspect.kind, AspectKind::Recipe(_)) && random.random::<f64>() < lost {
-                self.of[index] = draw(&prior.aspects[index], random);
-            }
+    /// Forgets a recipe with the probability `lost`: the belief is drawn anew from the prior, and from what is recalled
+    /// of it where `recalls` has the precision of recall.
+    pub fn forget(
+        &mut self,
+        aspect: AspectId,
+        prior: &DirichletBelief,
+        (lost, recalls): (f64, Option<f64>),
+        random: &mut Stream,
+    ) {
+        if random.random::<f64>() >= lost {
+            return;
         }
+        self.of[aspect.index()] = draw(prior.aspect(aspect), random);
+        if let Some(precision) = recalls {
+            self.recall(aspect, precision, random);
+        }
+    }
+
+    /// Recalls one version of the recipe of this aspect: the belief is drawn from a Dirichlet around the earlier one.
+    pub fn recall(&mut self, aspect: AspectId, precision: f64, random: &mut Stream) {
+        let of = &mut self.of[aspect.index()];
+        *of = draw(&Dirichlet::new(std::mem::take(of), precision), random);
     }
 
     /// Moves the probability of "served" to "none" in the belief about an order.

@@ -14,6 +14,7 @@ mod laws;
 mod observed;
 mod particles;
 mod proposals;
+mod recall;
 mod recorded;
 mod signals;
 mod unknown_gaze;

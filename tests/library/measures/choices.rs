@@ -163,11 +163,7 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
         state: there,
         button,
         held: None,
-        estimate: Some(EstimateBeforePress {
-            p_wrong: vec![0.0; kitchen.aspects.len()],
-            p_false: vec![0.0; kitchen.aspects.len()],
-            log_p,
-        }),
+        estimate: Some(EstimateBeforePress { p_false: vec![0.0; kitchen.aspects.len()], log_p }),
         unseen_change: vec![false; kitchen.locations.len()],
         since_change_s: vec![None; kitchen.locations.len()],
         errs_about: Vec::new(),

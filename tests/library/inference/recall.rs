@@ -67,7 +67,7 @@ fn an_order_makes_one_hold_one_version_as_long_as_it_is_ordered() {
     let recalling = model(Some(RECALL));
     let [before, other] = estimate(&recalling, 9.0);
     let [ordered, unordered] = estimate(&recalling, 10.0);
-    assert_eq!(other, unordered, "no other recipe is recalled");
+    assert!((other.second() - unordered.second()).abs() < 1e-9, "no other recipe is recalled: {unordered:?}");
     for (one, mean) in ordered.mean().iter().zip(before.mean()) {
         assert!((one - mean).abs() < 1e-9, "nobody learns from an order what is right: {one}, {mean}");
     }
@@ -87,7 +87,7 @@ fn an_order_makes_one_hold_one_version_as_long_as_it_is_ordered() {
 fn without_recall_orders_change_nothing_that_is_held_of_recipes() {
     for until_s in [9.0, 10.0, 109.0, 210.0] {
         let [ordered, other] = estimate(&model(None), until_s);
-        assert_eq!(ordered.precision(), other.precision(), "{until_s} s");
+        assert!((ordered.second() - other.second()).abs() < 1e-9, "{until_s} s: {ordered:?}");
     }
 }
 

@@ -70,7 +70,7 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
 }
 
 /// Inverse of a symmetric matrix; `None` if the matrix is not positive definite beyond rounding.
-fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let decomposed = Cholesky::<f64, Dyn>::new(matrix)?;
     let pivots = decomposed.l_dirty().diagonal().map(|root| root * root);
     (pivots.min() > SINGULAR * pivots.max()).then(|| decomposed.inverse())
@@ -117,11 +117,16 @@ impl QuadraticSurface {
         by
     }
 
-    /// Covariance of the position of the surface's minimum: the inverse of the curvature (the observed information, if
-    /// values are negative log likelihoods) plus the part due to noise. `None` if the surface is not convex.
-    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+    /// Whether the surface is convex beyond rounding.
+    pub fn is_convex(&self) -> bool {
+        inverse(self.curvature.clone()).is_some()
+    }
+
+    /// Covariance of the position of the surface's minimum where its slope has the covariance `slopes`: H^-1 S H^-1 with
+    /// the curvature H, the "sandwich" of Huber (1967) and White (1982). `None` if the surface is not convex.
+    pub fn covariance(&self, slopes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let inverse = inverse(self.curvature.clone())?;
-        Some(&inverse * &self.slope_covariance * &inverse + &inverse)
+        Some(&inverse * slopes * &inverse)
     }
 }
 
@@ -173,7 +178,8 @@ mod tests {
         }
         // The test function has the second derivatives 4, 3, and 1 across.
         let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
-        let covariance = found.covariance().expect("a covariance");
+        // With slopes whose covariance is the curvature, that of the minimum is the inverse of the curvature.
+        let covariance = found.covariance(&found.curvature).expect("a covariance");
         for (row, expected) in expected.iter().enumerate() {
             for (column, expected) in expected.iter().enumerate() {
                 let found = covariance[(row, column)] * steps[row] * steps[column];
@@ -186,7 +192,7 @@ mod tests {
     #[test]
     fn a_valley_has_no_covariance_and_ends_at_a_bound() {
         let valley = surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]).expect("a surface");
-        assert_eq!(valley.covariance(), None);
+        assert!(!valley.is_convex() && valley.covariance(&valley.curvature).is_none());
         let saddle = surface(|x| x[0] * x[0] - x[1] * x[1] - 0.1 * x[1], &[0.0, 0.0], &[1.0, 1.0]);
         let least = saddle.expect("a surface").least(&[-1.0, -1.0], &[1.0, 1.0]);
         assert!(least[0].abs() < 1e-9 && least[1] == 1.0, "{least:?}");

@@ -1,5 +1,6 @@
-//! Maximises a noisy log likelihood within bounds ([`super::surface_search`]), with standard errors and intervals. The
-//! method of scoring finds the maximum; the curvature of a response surface there gives the standard errors.
+//! Maximises a noisy log likelihood within bounds ([`super::surface_search`]), with standard errors and intervals.
+//! Surfaces from scores lead to the maximum; the curvature of a response surface there and the scores give the standard
+//! errors.
 //!
 //! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at
 //! that bound. Such a variable gets one end of a profile likelihood interval instead of a standard error (Venzon and
@@ -20,7 +21,6 @@ const PROFILE_SURFACES: usize = 3;
 /// A value of a variable is rejected, without optimising the other variables, if it lowers the log likelihood by more
 /// than this (plus the noise).
 const HOPELESS_NATS: f64 = 30.0;
-
 /// A value of a variable is rejected as soon as the log likelihood is lower than the maximum by more than this (plus the
 /// noise) and the surface promises no more.
 const CLEAR_NATS: f64 = 6.0;

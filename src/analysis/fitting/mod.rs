@@ -4,9 +4,9 @@
 //! used, over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale
 //! and searched within bounds. The belief filter's random numbers make the log likelihood noisy by some nats, so the
 //! search uses a sequence of quadratic surfaces ([`surface_search`]): first from the scores of presses ([`score_surface`]),
-//! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface
-//! (the observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; the
-//! interval of such a parameter is one-sided.
+//! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface and
+//! the outer products of the scores (the "sandwich" of Huber 1967 and White 1982). A parameter whose maximum lies at a
+//! bound is not identified; the interval of such a parameter is one-sided.
 //!
 //! [`people_fit`] fits a population of persons with different parameters ([`people_search`], [`population_estimate`]).
 

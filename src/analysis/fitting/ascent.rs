@@ -2,13 +2,12 @@
 //! Surfaces from scores lead to the maximum; the curvature of a response surface there and the scores give the standard
 //! errors.
 //!
-//! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at
-//! that bound. Such a variable gets one end of a profile likelihood interval instead of a standard error (Venzon and
-//! Moolgavkar 1988).
+//! A variable whose maximum lies at a bound is held there. Such a variable gets one end of a profile likelihood interval
+//! instead of a standard error (Venzon and Moolgavkar 1988).
 
 use nalgebra::DMatrix;
 
-use super::response_surface::{QuadraticSurface, REACH};
+use super::response_surface::QuadraticSurface;
 use super::surface_search::{BoundReached, REJECTED_NATS, SurfaceSearch, SurfaceSource};
 
 /// First step of the search for the end of a profile interval. The end is interpolated between two values of the
@@ -24,6 +23,8 @@ const HOPELESS_NATS: f64 = 30.0;
 /// A value of a variable is rejected as soon as the log likelihood is lower than the maximum by more than this (plus the
 /// noise) and the surface promises no more.
 const CLEAR_NATS: f64 = 6.0;
+/// Standard deviations of the noise by which a single loss has to exceed the least loss in addition.
+const NOISE_MARGIN: f64 = 2.0;
 /// A step that lowers the loss by less than this ends the optimisation of the other variables.
 const SETTLED_NATS: f64 = 0.5;
 
@@ -37,11 +38,10 @@ struct LeastLoss {
 }
 
 impl LeastLoss {
-    /// The least loss within reach of a surface.
+    /// The least loss of a surface within a step of its centre, where its points lie.
     fn from_surface(surface: &QuadraticSurface) -> LeastLoss {
-        let reach = vec![REACH; surface.slope.len()];
-        let low: Vec<f64> = reach.iter().map(|reach| -reach).collect();
-        LeastLoss { value: surface.at(&surface.least(&low, &reach)), noise: surface.noise }
+        let [low, high] = [-1.0, 1.0].map(|end| vec![end; surface.slope.len()]);
+        LeastLoss { value: surface.at(&surface.least(&low, &high)), noise: surface.noise }
     }
 }
 
@@ -132,19 +132,16 @@ pub fn ascend(
 }
 
 impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
-    /// Ends the search at the maximum of a response surface. A variable that converges at a bound, or whose bound is not
-    /// significantly worse, is held there, and the others are optimised again. `None` if too few evaluations are left.
+    /// Ends the search at the maximum of a response surface. A variable that converges at a bound is held there, and the
+    /// others are optimised again. `None` if too few evaluations are left.
     fn settle(&mut self, held: &mut [Option<BoundReached>]) -> Option<SettledSearch> {
         loop {
             let free: Vec<usize> = (0..held.len()).filter(|&index| held[index].is_none()).collect();
             let surface = self.climb(SurfaceSource::Values, &free)?;
             let covariance = surface.as_ref().and_then(|surface| surface.covariance(&self.slope_covariance(&free)?));
-            let least = surface.as_ref().map(LeastLoss::from_surface);
-            let mut ends = self.ends(&free);
+            let ends = self.ends(&free);
             if ends.is_empty() {
-                ends.extend(least.and_then(|least| self.open_end(&free, least)));
-            }
-            if ends.is_empty() {
+                let least = surface.as_ref().map(LeastLoss::from_surface);
                 return Some(SettledSearch { free, covariance, least });
             }
             self.hold(ends, held);
@@ -157,23 +154,6 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
             self.at[index] = self.bound(index, end);
             held[index] = Some(end);
         }
-    }
-
-    /// A variable with a bound that is not significantly worse than the maximum, and that bound. The other variables are
-    /// then where the likelihood at that bound is greatest.
-    fn open_end(&mut self, free: &[usize], least: LeastLoss) -> Option<(usize, BoundReached)> {
-        let best = self.at.clone();
-        for &index in free {
-            let others: Vec<usize> = free.iter().copied().filter(|&other| other != index).collect();
-            for end in [BoundReached::Low, BoundReached::High] {
-                self.at[index] = self.bound(index, end);
-                if self.excess(&others, least).is_some_and(|excess| excess <= REJECTED_NATS) {
-                    return Some((index, end));
-                }
-                self.at.clone_from(&best);
-            }
-        }
-        None
     }
 
     /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below the
@@ -219,14 +199,14 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
     /// left.
     fn excess(&mut self, others: &[usize], least: LeastLoss) -> Option<f64> {
         let clear = CLEAR_NATS + 3.0 * least.noise;
-        let mut excess = self.loss() - least.value - least.noise;
+        let mut excess = self.loss() - least.value - NOISE_MARGIN * least.noise;
         for _ in 0..PROFILE_SURFACES {
             if excess <= REJECTED_NATS || excess > HOPELESS_NATS + 3.0 * least.noise || others.is_empty() {
                 break;
             }
             let (surface, by) = self.step(SurfaceSource::Scores, others)?;
             let (before, foreseen) = (excess, surface.at(&by) - least.value);
-            excess = self.loss() - least.value - least.noise;
+            excess = self.loss() - least.value - NOISE_MARGIN * least.noise;
             if before - excess < SETTLED_NATS || excess > clear && foreseen > clear {
                 break;
             }

@@ -97,7 +97,7 @@ impl ScoreRegression {
         QuadraticSurface {
             value: found[0],
             slope: found.rows(1, curvature.nrows()).into_owned(),
-            noise: variance.sqrt(),
+            noise: press_noise.sqrt(),
             slope_covariance: self.of_slopes() * variance,
             curvature,
         }

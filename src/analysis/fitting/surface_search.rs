@@ -132,7 +132,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
             let is_noise =
                 surface.is_convex() && gain <= REJECTED_NATS + surface.noise * source.share_of_noise(free.len());
             let is_near = free.iter().zip(&by).all(|(&index, by)| by.abs() <= 1.0 || self.end(index).is_some());
-            let wanted = self.wanted_steps(source, free, &surface);
+            let wanted = self.wanted_steps(free, &surface);
             let is_telling = free.iter().zip(&wanted).all(|(&index, wanted)| {
                 let change = wanted / self.steps[index];
                 (0.5..=2.0).contains(&change) || self.end(index).is_some()
@@ -230,10 +230,8 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
     }
 
     /// Step sizes of the variables whose effect on the likelihood just exceeds the noise.
-    fn wanted_steps(&self, source: SurfaceSource, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
-        // The residuals of a surface from scores are mostly no noise: the surface does not fit where it reaches too far.
-        let noise = if source == SurfaceSource::Values { STEP_NOISE * surface.noise } else { 0.0 };
-        let [least, most] = STEP_NATS.map(|nats| nats + noise);
+    fn wanted_steps(&self, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
+        let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
         let wanted = |(place, &index): (usize, &usize)| {
             let rise = surface.curvature[(place, place)] / 2.0;
             let change = match rise {

@@ -5,7 +5,7 @@
 //! A variable whose maximum lies at a bound is held there. Such a variable gets one end of a profile likelihood interval
 //! instead of a standard error (Venzon and Moolgavkar 1988).
 
-use nalgebra::DMatrix;
+use nalgebra::DVector;
 
 use super::response_surface::QuadraticSurface;
 use super::surface_search::{BoundReached, REJECTED_NATS, SurfaceSearch, SurfaceSource};
@@ -49,8 +49,8 @@ impl LeastLoss {
 struct SettledSearch {
     /// The variables that are not held at a bound.
     free: Vec<usize>,
-    /// Covariance of the free variables' values, in steps; `None` where the likelihood does not determine them.
-    covariance: Option<DMatrix<f64>>,
+    /// Variances of the free variables' values, in steps; `None` where the likelihood does not determine them.
+    variances: Option<DVector<f64>>,
     /// The least loss, if there are free variables.
     least: Option<LeastLoss>,
 }
@@ -113,7 +113,7 @@ pub fn ascend(
     let error = |index: usize| {
         let last = last.as_ref()?;
         let place = last.free.iter().position(|&other| other == index)?;
-        Some(last.covariance.as_ref()?[(place, place)].sqrt() * search.steps[index])
+        Some(last.variances.as_ref()?[place].sqrt() * search.steps[index])
     };
     let errors: Vec<Option<f64>> = all.iter().map(|&index| error(index)).collect();
     let least = last.and_then(|last| last.least);
@@ -138,11 +138,11 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
         loop {
             let free: Vec<usize> = (0..held.len()).filter(|&index| held[index].is_none()).collect();
             let surface = self.climb(SurfaceSource::Values, &free)?;
-            let covariance = surface.as_ref().and_then(|surface| surface.covariance(&self.slope_covariance(&free)?));
+            let variances = surface.as_ref().and_then(|surface| surface.variances(&self.slope_covariance(&free)?));
             let ends = self.ends(&free);
             if ends.is_empty() {
                 let least = surface.as_ref().map(LeastLoss::from_surface);
-                return Some(SettledSearch { free, covariance, least });
+                return Some(SettledSearch { free, variances, least });
             }
             self.hold(ends, held);
         }

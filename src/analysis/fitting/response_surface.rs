@@ -122,11 +122,14 @@ impl QuadraticSurface {
         inverse(self.curvature.clone()).is_some()
     }
 
-    /// Covariance of the position of the surface's minimum where its slope has the covariance `slopes`: H^-1 S H^-1 with
-    /// the curvature H, the "sandwich" of Huber (1967) and White (1982). `None` if the surface is not convex.
-    pub fn covariance(&self, slopes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    /// Variances of the position of the surface's minimum, per variable, where the surface's slope has the covariance
+    /// `slopes`: the larger of H^-1 S H^-1 with the curvature H (the "sandwich" of Huber 1967 and White 1982) and of H^-1
+    /// (the observed information), since a curvature that noise makes too large shrinks the first more. `None` if the
+    /// surface is not convex.
+    pub fn variances(&self, slopes: &DMatrix<f64>) -> Option<DVector<f64>> {
         let inverse = inverse(self.curvature.clone())?;
-        Some(&inverse * slopes * &inverse)
+        let sandwich = &inverse * slopes * &inverse;
+        Some(sandwich.diagonal().zip_map(&inverse.diagonal(), f64::max))
     }
 }
 
@@ -177,13 +180,15 @@ mod tests {
             assert!((centre[index] + least[index] * steps[index] - expected).abs() < 1e-9, "{least:?}");
         }
         // The test function has the second derivatives 4, 3, and 1 across.
-        let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
-        // With slopes whose covariance is the curvature, that of the minimum is the inverse of the curvature.
-        let covariance = found.covariance(&found.curvature).expect("a covariance");
-        for (row, expected) in expected.iter().enumerate() {
-            for (column, expected) in expected.iter().enumerate() {
-                let found = covariance[(row, column)] * steps[row] * steps[column];
-                assert!((found - expected).abs() < 1e-9, "{covariance:?}");
+        let per_step = |row: usize, column: usize| found.curvature[(row, column)] / (steps[row] * steps[column]);
+        for ((row, column), expected) in [((0, 0), 4.0), ((1, 1), 3.0), ((0, 1), 1.0), ((1, 0), 1.0)] {
+            assert!((per_step(row, column) - expected).abs() < 1e-9, "{found:?}");
+        }
+        // With slopes whose covariance is twice the curvature, variances are twice those of the observed information.
+        for (share, times) in [(2.0, 2.0), (0.5, 1.0)] {
+            let variances = found.variances(&(&found.curvature * share)).expect("variances");
+            for (index, expected) in [3.0 / 11.0, 4.0 / 11.0].into_iter().enumerate() {
+                assert!((variances[index] * steps[index].powi(2) - times * expected).abs() < 1e-9, "{variances}");
             }
         }
         assert_eq!(points(2), 11);
@@ -192,7 +197,7 @@ mod tests {
     #[test]
     fn a_valley_has_no_covariance_and_ends_at_a_bound() {
         let valley = surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]).expect("a surface");
-        assert!(!valley.is_convex() && valley.covariance(&valley.curvature).is_none());
+        assert!(!valley.is_convex() && valley.variances(&valley.curvature).is_none());
         let saddle = surface(|x| x[0] * x[0] - x[1] * x[1] - 0.1 * x[1], &[0.0, 0.0], &[1.0, 1.0]);
         let least = saddle.expect("a surface").least(&[-1.0, -1.0], &[1.0, 1.0]);
         assert!(least[0].abs() < 1e-9 && least[1] == 1.0, "{least:?}");

@@ -199,7 +199,7 @@ pub struct FitObservations {
 }
 
 /// Log likelihoods of the human's presses and of the answers to freeze probes in one trial, with their numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialLikelihood {
     /// Number of presses of the human.
     pub presses: u64,
@@ -210,6 +210,9 @@ pub struct TrialLikelihood {
     /// Sum over answers of ln p(answer) under the estimate at the freeze, with the share [`ANSWERS_AT_RANDOM`] of
     /// random answers, in nats.
     pub log_p_answers: f64,
+    /// Log likelihood of each press and each answer in order of time, in nats. Which of them comes when does not depend
+    /// on the human model.
+    pub each: Vec<f64>,
 }
 
 impl TrialLikelihood {
@@ -218,14 +221,21 @@ impl TrialLikelihood {
         self.log_p + self.log_p_answers
     }
 
-    /// Sum of the log likelihoods of two trials.
-    pub fn plus(self, other: TrialLikelihood) -> TrialLikelihood {
+    /// Log likelihoods of two trials together: their sums, and each press and answer of this trial, then of the other.
+    pub fn plus(mut self, other: TrialLikelihood) -> TrialLikelihood {
+        self.each.extend(other.each);
         TrialLikelihood {
             presses: self.presses + other.presses,
             log_p: self.log_p + other.log_p,
             answers: self.answers + other.answers,
             log_p_answers: self.log_p_answers + other.log_p_answers,
+            each: self.each,
         }
+    }
+
+    /// Negative log likelihood of each press and each answer in order of time, in nats.
+    pub fn losses(&self) -> Vec<f64> {
+        self.each.iter().map(|log_p| -log_p).collect()
     }
 }
 
@@ -245,8 +255,10 @@ pub fn likelihood(
         if answers.peek().is_some_and(|answer| answer.after == index + 1) {
             let belief = filter.at(observation.time, cost);
             while let Some(answer) = answers.next_if(|answer| answer.after == index + 1) {
+                let log_p = p_answer(belief.aspect(answer.aspect), answer.value).ln();
                 found.answers += 1;
-                found.log_p_answers += p_answer(belief.aspect(answer.aspect), answer.value).ln();
+                found.log_p_answers += log_p;
+                found.each.push(log_p);
             }
         }
         if let (ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }), Some(evidence)) =
@@ -254,6 +266,7 @@ pub fn likelihood(
         {
             found.presses += 1;
             found.log_p += evidence.log_p;
+            found.each.push(evidence.log_p);
         }
     }
     found

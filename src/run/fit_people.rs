@@ -69,7 +69,9 @@ pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn() + Sync) -> P
         let found = pool.each(&items, of_trial, &tried);
         // Likelihoods are summed in the order of the trials, so the sums do not depend on the number of threads.
         let mut sums = vec![TrialLikelihood::default(); tries.len()];
-        items.iter().zip(found).for_each(|((index, _), found)| sums[*index] = sums[*index].plus(found));
+        items.iter().zip(found).for_each(|((index, _), found)| {
+            sums[*index] = std::mem::take(&mut sums[*index]).plus(found);
+        });
         sums
     };
     let mut summary = fit_people(&fitted, &trials.model, plan, likelihoods);

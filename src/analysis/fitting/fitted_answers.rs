@@ -34,7 +34,7 @@ pub struct IntervalNarrowing {
 
 impl ProbeAnswerFit {
     /// Log likelihood of the answers under the parameters before the fit and under the fitted parameters.
-    pub fn from_likelihoods(before: TrialLikelihood, after: TrialLikelihood) -> ProbeAnswerFit {
+    pub fn from_likelihoods(before: &TrialLikelihood, after: &TrialLikelihood) -> ProbeAnswerFit {
         let answers = before.answers.max(1) as f64;
         ProbeAnswerFit {
             answers: before.answers,

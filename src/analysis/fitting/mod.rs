@@ -3,9 +3,10 @@
 //! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if freeze probes are
 //! used, over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale
 //! and searched within bounds. The belief filter's random numbers make the log likelihood noisy by some nats, so the
-//! search uses a sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last
-//! surface (the observed information) and from the noise. A parameter whose maximum lies at a bound is not identified;
-//! the interval of such a parameter is one-sided.
+//! search uses a sequence of quadratic surfaces ([`surface_search`]): first from the scores of presses ([`score_surface`]),
+//! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface and
+//! the outer products of the scores (the "sandwich" of Huber 1967 and White 1982). A parameter whose maximum lies at a
+//! bound is not identified; the interval of such a parameter is one-sided.
 //!
 //! [`people_fit`] fits a population of persons with different parameters ([`people_search`], [`population_estimate`]).
 
@@ -19,12 +20,15 @@ pub mod people_search;
 pub mod people_summary;
 pub mod population_estimate;
 pub mod response_surface;
+pub mod score_surface;
+pub mod surface_search;
 
 use serde::Serialize;
 
-use self::ascent::{BoundReached, LikelihoodMaximum, VariableEstimate, ascend};
+use self::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
 pub use self::fitted_answers::ProbeAnswerFit;
 use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
+use self::surface_search::BoundReached;
 use crate::base::words::count;
 use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
@@ -164,23 +168,22 @@ pub fn fit(
 ) -> FitSummary {
     let begin = plan.start.as_ref().unwrap_or(trials.model);
     let with = |at: &[f64]| model_at(begin, &plan.parameters, at);
-    let loss = |at: &[f64]| {
+    let losses = |at: &[f64]| {
         let model = with(at);
-        // Parameter sets that are no valid human model get an infinite loss.
-        let loss = if is_possible(&model) { -likelihood(&model).total() } else { f64::INFINITY };
+        let losses = is_possible(&model).then(|| likelihood(&model).losses());
         tried();
-        loss
+        losses
     };
     let start = point_of(begin, &plan.parameters);
     let bounds = bounds_of(&plan.parameters);
     let before = likelihood(begin);
-    let LikelihoodMaximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
+    let LikelihoodMaximum { mut variables, evaluations, converged } = ascend(losses, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
     let mut after = likelihood(&model);
     // A search that did not converge may end at a point worse than the point where it began.
     if !converged && after.total() < before.total() {
         variables.iter_mut().zip(&start).for_each(|(variable, &start)| variable.at = start);
-        (model, after) = (begin.clone(), before);
+        (model, after) = (begin.clone(), before.clone());
     }
     let presses = before.presses.max(1) as f64;
     let fitted = plan.parameters.iter().zip(&variables);
@@ -196,7 +199,7 @@ pub fn fit(
         converged,
         parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
         model,
-        answers: (before.answers > 0).then(|| ProbeAnswerFit::from_likelihoods(before, after)),
+        answers: (before.answers > 0).then(|| ProbeAnswerFit::from_likelihoods(&before, &after)),
     }
 }
 

@@ -76,16 +76,13 @@ fn fit_part(
     (start, part): (&[f64], TrialSelection),
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> PartFit {
-    let loss = |at: &[f64]| {
+    let losses = |at: &[f64]| {
         let model = model_at(base, &plan.parameters, at);
-        if !is_possible(&model) {
-            return f64::INFINITY;
-        }
-        let tries: Vec<PersonTry> =
-            (0..people).map(|person| PersonTry { person, part, model: model.clone() }).collect();
-        -sums(&likelihoods(&tries)).total()
+        let tries =
+            || (0..people).map(|person| PersonTry { person, part, model: model.clone() }).collect::<Vec<PersonTry>>();
+        is_possible(&model).then(|| sums(&likelihoods(&tries())).losses())
     };
-    let pooled = climb(loss, start, &bounds_of(&plan.parameters), plan.most_tries);
+    let pooled = climb(losses, start, &bounds_of(&plan.parameters), plan.most_tries);
     let at: Vec<f64> = pooled.variables.iter().map(|variable| variable.at).collect();
     let what = PeopleSearch { base, parameters: &plan.parameters, people, part };
     let found = search(what, &at, likelihoods);
@@ -107,7 +104,7 @@ fn at_each(
 }
 
 fn sums(each: &[TrialLikelihood]) -> TrialLikelihood {
-    each.iter().copied().fold(TrialLikelihood::default(), TrialLikelihood::plus)
+    each.iter().cloned().fold(TrialLikelihood::default(), TrialLikelihood::plus)
 }
 
 /// How likely the presses of the trials that were left out of the fit are.

@@ -8,8 +8,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::ascent::REJECTED_NATS;
 use super::gaussian_likelihood::{GaussianLikelihood, inverse};
+use super::surface_search::REJECTED_NATS;
 
 /// Standard deviation between persons at the start of the estimation, and its least and largest value, on the scale of
 /// the fit.

@@ -70,7 +70,7 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
 }
 
 /// Inverse of a symmetric matrix; `None` if the matrix is not positive definite beyond rounding.
-fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let decomposed = Cholesky::<f64, Dyn>::new(matrix)?;
     let pivots = decomposed.l_dirty().diagonal().map(|root| root * root);
     (pivots.min() > SINGULAR * pivots.max()).then(|| decomposed.inverse())
@@ -117,11 +117,19 @@ impl QuadraticSurface {
         by
     }
 
-    /// Covariance of the position of the surface's minimum: the inverse of the curvature (the observed information, if
-    /// values are negative log likelihoods) plus the part due to noise. `None` if the surface is not convex.
-    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+    /// Whether the surface is convex beyond rounding.
+    pub fn is_convex(&self) -> bool {
+        inverse(self.curvature.clone()).is_some()
+    }
+
+    /// Variances of the position of the surface's minimum, per variable, where the surface's slope has the covariance
+    /// `slopes`: the larger of H^-1 S H^-1 with the curvature H (the "sandwich" of Huber 1967 and White 1982) and of H^-1
+    /// (the observed information), since a curvature that noise makes too large shrinks the first more. `None` if the
+    /// surface is not convex.
+    pub fn variances(&self, slopes: &DMatrix<f64>) -> Option<DVector<f64>> {
         let inverse = inverse(self.curvature.clone())?;
-        Some(&inverse * &self.slope_covariance * &inverse + &inverse)
+        let sandwich = &inverse * slopes * &inverse;
+        Some(sandwich.diagonal().zip_map(&inverse.diagonal(), f64::max))
     }
 }
 
@@ -172,12 +180,15 @@ mod tests {
             assert!((centre[index] + least[index] * steps[index] - expected).abs() < 1e-9, "{least:?}");
         }
         // The test function has the second derivatives 4, 3, and 1 across.
-        let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
-        let covariance = found.covariance().expect("a covariance");
-        for (row, expected) in expected.iter().enumerate() {
-            for (column, expected) in expected.iter().enumerate() {
-                let found = covariance[(row, column)] * steps[row] * steps[column];
-                assert!((found - expected).abs() < 1e-9, "{covariance:?}");
+        let per_step = |row: usize, column: usize| found.curvature[(row, column)] / (steps[row] * steps[column]);
+        for ((row, column), expected) in [((0, 0), 4.0), ((1, 1), 3.0), ((0, 1), 1.0), ((1, 0), 1.0)] {
+            assert!((per_step(row, column) - expected).abs() < 1e-9, "{found:?}");
+        }
+        // With slopes whose covariance is twice the curvature, variances are twice those of the observed information.
+        for (share, times) in [(2.0, 2.0), (0.5, 1.0)] {
+            let variances = found.variances(&(&found.curvature * share)).expect("variances");
+            for (index, expected) in [3.0 / 11.0, 4.0 / 11.0].into_iter().enumerate() {
+                assert!((variances[index] * steps[index].powi(2) - times * expected).abs() < 1e-9, "{variances}");
             }
         }
         assert_eq!(points(2), 11);
@@ -186,7 +197,7 @@ mod tests {
     #[test]
     fn a_valley_has_no_covariance_and_ends_at_a_bound() {
         let valley = surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]).expect("a surface");
-        assert_eq!(valley.covariance(), None);
+        assert!(!valley.is_convex() && valley.variances(&valley.curvature).is_none());
         let saddle = surface(|x| x[0] * x[0] - x[1] * x[1] - 0.1 * x[1], &[0.0, 0.0], &[1.0, 1.0]);
         let least = saddle.expect("a surface").least(&[-1.0, -1.0], &[1.0, 1.0]);
         assert!(least[0].abs() < 1e-9 && least[1] == 1.0, "{least:?}");

@@ -7,6 +7,7 @@ mod drop_outs;
 mod exact;
 mod fitting;
 mod fitting_answers;
+mod fitting_intervals;
 mod fitting_people;
 mod freezes;
 mod grid;

@@ -118,6 +118,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         }
     }
     let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
+    let extent = AnalysisScope { concepts, events };
     let export = AnalysisFolder::create(&analysis.out)?;
     let (mut collected, mut names) = (CollectedRecordings::default(), BTreeSet::new());
     for part in &mut parts {
@@ -126,11 +127,9 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
                 let found = format!("the recording {}, which is in another part, too", recording.recording);
                 return Err(FileError::from_finding(part.path(), found, "each recording once".to_string()).into());
             }
-            if events {
-                keep(&export, names.len(), &recording, &rows)?;
-            }
+            keep(&export, extent, names.len(), &recording, &rows)?;
             collected.add(names.len(), recording);
         }
     }
-    conclude(collected, &export, AnalysisScope { concepts, events }, frozen)
+    conclude(collected, &export, extent, frozen)
 }

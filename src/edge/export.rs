@@ -1,6 +1,6 @@
-//! Output files of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Rows of events and details of trials are
-//! kept in temporary files until all recordings are read, so that memory use does not grow with the number of recordings
-//! and tables have the order of the recordings.
+//! Output files of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Analysed recordings and their rows of
+//! events are kept in temporary files until all recordings are read, so that memory use does not grow with the number of
+//! recordings and tables have the order of the recordings.
 
 use std::borrow::{Borrow, Cow};
 use std::fs::{self, File};
@@ -13,14 +13,14 @@ use super::written_tables::{ListedTables, reader};
 use crate::study::column::{CsvRow, CsvTable};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
-use crate::study::trial_details::TrialDetails;
+use crate::study::study_part::AnalysedRecording;
 
 /// File name of the analysis report.
 pub const REPORT_NAME: &str = "report.html";
 /// Name of the folder for temporary files of an analysis.
 const PARTS_NAME: &str = ".rows";
-/// End of the name of a temporary file with the details of a trial.
-const DETAILS: &str = "details";
+/// End of the name of a temporary file with an analysed recording.
+const ANALYSED: &str = "analysed";
 
 /// An output file of an analysis that cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -146,7 +146,7 @@ impl AnalysisFolder {
         self.folder.join(PARTS_NAME)
     }
 
-    /// Path of a temporary file: the event rows of one recording for a table, or the details of its trial.
+    /// Path of a temporary file: an analysed recording, or its event rows for a table.
     fn part(&self, index: usize, what: &str) -> PathBuf {
         self.parts().join(format!("{index}-{what}"))
     }
@@ -163,22 +163,22 @@ impl AnalysisFolder {
         Ok(())
     }
 
-    /// Stores the details of the trial of one recording in a temporary file.
+    /// Stores an analysed recording in a temporary file.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn keep_details(&self, index: usize, details: &TrialDetails) -> Result<(), AnalysisWriteError> {
-        let path = self.part(index, DETAILS);
-        let written = serde_json::to_vec(details).map_err(io::Error::from).and_then(|text| fs::write(&path, text));
+    pub fn keep_analysed(&self, index: usize, recording: &AnalysedRecording) -> Result<(), AnalysisWriteError> {
+        let path = self.part(index, ANALYSED);
+        let written = serde_json::to_vec(recording).map_err(io::Error::from).and_then(|text| fs::write(&path, text));
         written.map_err(|reason| AnalysisWriteError { path, reason })
     }
 
-    /// The stored details of the trial of one recording.
+    /// The stored analysed recording with this number.
     ///
     /// # Errors
     /// The temporary file cannot be read.
-    pub fn kept_details(&self, index: usize) -> Result<TrialDetails, AnalysisWriteError> {
-        let path = self.part(index, DETAILS);
+    pub fn kept_analysed(&self, index: usize) -> Result<AnalysedRecording, AnalysisWriteError> {
+        let path = self.part(index, ANALYSED);
         let read = fs::read(&path).and_then(|text| serde_json::from_slice(&text).map_err(io::Error::from));
         read.map_err(|reason| AnalysisWriteError { path, reason })
     }
@@ -272,7 +272,7 @@ fn remove_parts(folder: &Path) -> io::Result<()> {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let is_part = name.split_once('-').is_some_and(|(index, table)| {
-            let is_kept = table == DETAILS || CsvTable::OF_EVENTS.iter().any(|part| part.name() == table);
+            let is_kept = table == ANALYSED || CsvTable::OF_EVENTS.iter().any(|part| part.name() == table);
             index.parse::<usize>().is_ok() && is_kept
         });
         if is_part {

@@ -1,5 +1,5 @@
 //! Details of a trial from which tables and summary follow, but which are too large to be kept in memory for every
-//! trial of a study: the analysis keeps them in a temporary file until all recordings are read.
+//! trial of a study: the analysis keeps them in temporary files and reads them trial by trial.
 
 use serde::{Deserialize, Serialize};
 

@@ -18,7 +18,7 @@ mod twin;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
@@ -145,16 +145,12 @@ pub fn study(
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
-    let collected = Mutex::new(CollectedRecordings::default());
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
         let (analysed, rows) = analyse(recording, analysis, (first, &kitchen), kept)?;
-        keep(&export, analysis.extent, index, &analysed, &rows)?;
-        collected.lock().unwrap_or_else(PoisonError::into_inner).add(index, analysed);
-        Ok(())
+        Ok(keep(&export, analysis.extent, index, &analysed, &rows)?)
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
-    let collected = collected.into_inner().unwrap_or_else(PoisonError::into_inner);
-    conclude(collected, &export, analysis.extent, frozen)
+    conclude(numbered.len(), &export, analysis.extent, frozen)
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -187,8 +183,9 @@ fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
     RecordedPlan { participant: spec.participant.code.clone(), plan }
 }
 
-/// Keeps the rows of a recording and the details of its trial in files until all recordings are read; practice
-/// recordings have neither.
+/// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
+/// Nothing of a recording stays in memory. What a thread would keep between the large and short-lived blocks of its
+/// replays would also hinder the use of these blocks for the next recording.
 fn keep(
     export: &AnalysisFolder,
     extent: AnalysisScope,
@@ -196,18 +193,17 @@ fn keep(
     analysed: &AnalysedRecording,
     rows: &[Vec<u8>; 5],
 ) -> Result<(), AnalysisWriteError> {
-    let Some((_, details, _)) = &analysed.trial else { return Ok(()) };
-    export.keep_details(index, details)?;
-    if extent.events { export.keep(index, rows) } else { Ok(()) }
+    export.keep_analysed(index, analysed)?;
+    if extent.events && analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
-/// What all analysed recordings of a study so far hand to its summary. Recordings can be added in any order.
+/// What all analysed recordings of a study hand to its summary, but for the details of their trials.
 #[derive(Debug, Default)]
 struct CollectedRecordings {
     trials: Vec<TrialStatistics>,
     /// Settings and circumstances of all trials together. Those of single trials would take most of the memory.
     facts: RecordingFacts,
-    /// By the name of each trial's recording, the number under which its rows and details are kept.
+    /// By the name of each trial's recording, the number under which the recording is kept.
     kept: BTreeMap<String, usize>,
     plans: Vec<RecordedPlan>,
     /// Consents, each with its recording's name.
@@ -216,7 +212,16 @@ struct CollectedRecordings {
 }
 
 impl CollectedRecordings {
-    /// Adds a recording whose rows and details are kept under this number.
+    /// Reads the kept recordings with the numbers below `number`.
+    fn read(export: &AnalysisFolder, number: usize) -> Result<CollectedRecordings, AnalysisWriteError> {
+        let mut collected = CollectedRecordings::default();
+        for index in 0..number {
+            collected.add(index, export.kept_analysed(index)?);
+        }
+        Ok(collected)
+    }
+
+    /// Adds the recording that is kept under this number.
     fn add(&mut self, index: usize, recording: AnalysedRecording) {
         self.plans.push(recording.plan);
         self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
@@ -229,14 +234,16 @@ impl CollectedRecordings {
     }
 }
 
-/// Computes the summary, the tables and the report from all recordings of a study.
+/// Computes the summary, the tables and the report from all recordings of a study, which are kept under the numbers
+/// below `number`.
 fn conclude(
-    collected: CollectedRecordings,
+    number: usize,
     export: &AnalysisFolder,
     extent: AnalysisScope,
     frozen: Option<(String, FrozenPlan)>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings { mut trials, facts, kept, plans, mut consents, mut tutorials } = collected;
+    let CollectedRecordings { mut trials, facts, kept, plans, mut consents, mut tutorials } =
+        CollectedRecordings::read(export, number)?;
     arrange(&mut trials);
     let practice = (plans.len() - trials.len()) as u64;
     consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
@@ -270,7 +277,8 @@ fn tables_of_details(
     let mut totals = DetailTotals::default();
     let (mut of_concepts, mut of_probes) = (export.begin(CsvTable::Concepts)?, export.begin(CsvTable::Probes)?);
     for trial in trials {
-        let details = export.kept_details(kept[&trial.recording])?;
+        let kept = export.kept_analysed(kept[&trial.recording])?;
+        let details = kept.trial.map(|(_, details, _)| details).unwrap_or_default();
         if trial.counts() {
             concepts(trial, &details).try_for_each(|row| of_concepts.add(&row))?;
         }

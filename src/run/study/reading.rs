@@ -68,13 +68,18 @@ pub struct AnalysisScope {
 /// Attributes people's errors to causes by means of the estimated beliefs.
 struct ByEstimate {
     attributor: ErrorAttributor,
-    cost: CostToGo,
     causes: Vec<(u64, ErrorCause)>,
 }
 
 impl ByEstimate {
     /// Attributes a press that was just applied to a cause, if the press was an error.
-    fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
+    fn note(
+        &mut self,
+        stamped: &TimestampedEvent,
+        change: &KitchenChange,
+        follower: &SessionFollower,
+        cost: &mut CostToGo,
+    ) {
         let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
         let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
@@ -82,7 +87,7 @@ impl ByEstimate {
         if let (Some(estimated), true) = (estimated, is_error) {
             let belief = expected(kitchen, estimated.state, &estimated.belief);
             let number = follower.session.all_presses();
-            let cause = self.attributor.cause(kitchen, &mut self.cost, &belief, &press, number);
+            let cause = self.attributor.cause(kitchen, cost, &belief, &press, number);
             self.causes.push((stamped.seq, cause));
         }
     }
@@ -116,11 +121,11 @@ pub fn read(
         return Ok(None);
     }
     let kitchen = log.kitchen.clone();
-    let cost = kept.for_kitchen(&kitchen);
+    let mut cost = kept.take(&kitchen);
     let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotEventTally::new(header.session.robot.arm);
-    let mut regret = RegretSum::new(cost.clone());
+    let mut regret = RegretSum::default();
     let mut answers = Vec::new();
     let mut probes = ProbeCollector::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
@@ -129,7 +134,6 @@ pub fn read(
     let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
         attributor: ErrorAttributor::new(header.session.human.decision.clone(), log.session().seed()),
-        cost: cost.clone(),
         causes: Vec::new(),
     });
     while let Some(line) = log.next_line()? {
@@ -140,10 +144,10 @@ pub fn read(
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
         probes.note(&line.stamped, &change, follower);
-        regret.note(&kitchen, &change);
+        regret.note(&kitchen, &mut cost, &change);
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
-            by_estimate.note(&line.stamped, &change, follower);
+            by_estimate.note(&line.stamped, &change, follower, &mut cost);
             trace.note(&line.stamped, &change, &follower.session);
         }
         if extent.events {
@@ -162,11 +166,11 @@ pub fn read(
     let mut trial = trial(name, &header, follower, standing);
     trial.ended = robot.ended;
     trial.robot = robot.into_figures();
-    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, cost));
+    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, &mut cost));
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
     trial.answers = answers;
     if extent.concepts && basis == Some(BeliefSource::Recorded) && trial.signals > 0 {
-        trial.useful_signals = useful_signals(recording, cost.clone())?;
+        trial.useful_signals = useful_signals(recording, cost)?;
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
@@ -192,7 +196,7 @@ pub fn read(
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
     trial.stale_consensus = coded.stale.filter(|_| !is_simulated);
     let facts = RecordingFacts::from_session(&header, &follower.session);
-    *cost = pass.into_cost();
+    kept.keep(&kitchen, pass.into_cost());
     Ok(Some((kitchen, RecordingAnalysis { trial, details, facts, rows })))
 }
 

@@ -16,7 +16,9 @@ use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use tomcom::study::concept_totals::ConceptPreventionCounts;
 use tomcom::study::dictionary::{DataDictionaryRow, columns, dictionary};
+use tomcom::study::preregistration::RecordedPlan;
 use tomcom::study::prevention::PreventionCounts;
+use tomcom::study::study_part::AnalysedRecording;
 use tomcom::study::tables::participants::participants;
 use tomcom::study::tables::trials::{HEADLINE, measures};
 use tomcom::study::trial_details::TrialDetails;
@@ -199,11 +201,11 @@ fn tables_are_written_as_they_are_declared() {
     assert_eq!(of_trials.collect::<Vec<_>>(), heads);
 }
 
-/// Details of trials come back from their files as they were, to the last digit.
+/// Analysed recordings come back from their files as they were, to the last digit.
 #[test]
-fn details_of_trials_are_kept_in_files_until_they_are_summed_up() {
-    let folder = folder("details");
-    let export = AnalysisFolder::create(&folder).expect("a folder");
+fn analysed_recordings_are_kept_in_files_until_all_are_read() {
+    let folder = folder("kept");
+    let RecordingAnalysis { trial, facts, .. } = analysis("kept-recording");
     let content = ComparedContent { kind: CommunicationKind::Highlight, target: Some(LocationId(3)) };
     let sent = CommunicationEvent { press: 7, clock: SessionTime(1_234_567_891), content };
     let count = PreventionCounts { presses: 90, lead_ms: 1_001, harmless: None, ..PreventionCounts::default() };
@@ -213,10 +215,19 @@ fn details_of_trials_are_kept_in_files_until_they_are_summed_up() {
         swept: vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 0.1 + 0.2, count }],
         probes: Some(one_right_answer(Condition::None)),
     };
-    export.keep_details(0, &details).expect("a file");
-    export.keep_details(1, &TrialDetails::default()).expect("a file");
-    assert_eq!(export.kept_details(0).expect("kept"), details);
-    assert_eq!(export.kept_details(1).expect("kept"), TrialDetails::default());
+    let plan = RecordedPlan { participant: trial.participant.clone(), plan: None };
+    let practice =
+        AnalysedRecording { recording: "practice".to_string(), plan, consent: None, tutorial: Vec::new(), trial: None };
+    let recording = AnalysedRecording {
+        recording: trial.recording.clone(),
+        trial: Some((trial, details, facts)),
+        ..practice.clone()
+    };
+    let export = AnalysisFolder::create(&folder).expect("a folder");
+    export.keep_analysed(0, &recording).expect("a file");
+    export.keep_analysed(1, &practice).expect("a file");
+    assert_eq!(export.kept_analysed(0).expect("kept"), recording);
+    assert_eq!(export.kept_analysed(1).expect("kept"), practice);
     export.remove_kept().expect("removed");
     assert!(fs::read_dir(&folder).expect("a folder").next().is_none(), "nothing is left");
 }

@@ -57,7 +57,7 @@ impl TimedOffer {
 }
 
 /// Statistics of the time for which offers stood: number, median and shortest, in seconds.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OfferDurations {
     /// Number of offers whose durations are known.
     pub n: u64,
@@ -81,7 +81,7 @@ impl OfferDurations {
 }
 
 /// Summary of offers: their number and durations, and how many the wizard used.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OfferSummary {
     /// Durations of all closed offers.
     #[serde(flatten)]
@@ -100,28 +100,11 @@ pub struct OfferSummary {
 }
 
 impl OfferSummary {
-    /// The summary of offers of one or several trials. An offer that was still open where a recording was cut is not
-    /// counted.
+    /// The summary of these offers. An offer that was still open where a recording was cut is not counted.
     pub fn from_offers<'a>(offers: impl IntoIterator<Item = &'a TimedOffer>) -> OfferSummary {
-        let mut summary = OfferSummary::default();
-        let (mut stood, mut reactions) = (Vec::new(), Vec::new());
-        let mut by_reason: BTreeMap<OfferCloseReason, Vec<f64>> = BTreeMap::new();
-        for one in offers {
-            let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
-            stood.push(stood_s);
-            by_reason.entry(reason).or_default().push(stood_s);
-            reactions.extend(one.reaction_s);
-            *match one.offer.used.map(|used| used.how) {
-                Some(OfferKeyKind::Taken) => &mut summary.taken,
-                Some(OfferKeyKind::OwnKey) => &mut summary.by_own_key,
-                None => &mut summary.not_taken,
-            } += 1;
-        }
-        summary.all = OfferDurations::from_times(stood);
-        let of_reason = |(reason, times)| (reason, OfferDurations::from_times(times));
-        summary.by_reason = by_reason.into_iter().map(of_reason).collect();
-        summary.reaction_s = median(reactions);
-        summary
+        let mut tally = OfferTally::default();
+        offers.into_iter().for_each(|offer| tally.add(offer));
+        tally.summary()
     }
 
     /// The summary of offers as text; empty without offers.
@@ -132,5 +115,53 @@ impl OfferSummary {
         let reaction = self.reaction_s.map_or(String::new(), |s| format!(", after {s:.1} s in the median"));
         let (durations, taken, by_own_key) = (self.all.describe(), self.taken, self.by_own_key);
         format!("{durations}        {taken} taken, {by_own_key} sent by their own key{reaction}\n")
+    }
+}
+
+/// Numbers of the offers of one or several trials, which are added one by one.
+#[derive(Clone, Debug, Default)]
+pub struct OfferTally {
+    /// Whether an offer was added, also one that is not counted.
+    is_any: bool,
+    /// Durations and reaction times in seconds.
+    stood: Vec<f64>,
+    by_reason: BTreeMap<OfferCloseReason, Vec<f64>>,
+    reactions: Vec<f64>,
+    taken: u64,
+    by_own_key: u64,
+    not_taken: u64,
+}
+
+impl OfferTally {
+    /// Adds an offer. An offer that was still open where a recording was cut is not counted.
+    pub fn add(&mut self, one: &TimedOffer) {
+        self.is_any = true;
+        let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { return };
+        self.stood.push(stood_s);
+        self.by_reason.entry(reason).or_default().push(stood_s);
+        self.reactions.extend(one.reaction_s);
+        *match one.offer.used.map(|used| used.how) {
+            Some(OfferKeyKind::Taken) => &mut self.taken,
+            Some(OfferKeyKind::OwnKey) => &mut self.by_own_key,
+            None => &mut self.not_taken,
+        } += 1;
+    }
+
+    /// Whether no offer was added.
+    pub fn is_empty(&self) -> bool {
+        !self.is_any
+    }
+
+    /// The summary of the added offers.
+    pub fn summary(self) -> OfferSummary {
+        let of_reason = |(reason, times)| (reason, OfferDurations::from_times(times));
+        OfferSummary {
+            all: OfferDurations::from_times(self.stood),
+            by_reason: self.by_reason.into_iter().map(of_reason).collect(),
+            taken: self.taken,
+            by_own_key: self.by_own_key,
+            not_taken: self.not_taken,
+            reaction_s: median(self.reactions),
+        }
     }
 }

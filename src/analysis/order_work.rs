@@ -29,26 +29,20 @@ pub fn order_times(session: &Session) -> Vec<f64> {
 }
 
 /// Running sum of the regret of both agents' presses, that is, of the presses that were lost.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct RegretSum {
-    cost: CostToGo,
     lost: i64,
 }
 
 impl RegretSum {
-    /// A sum of regret before the first press.
-    pub fn new(cost: CostToGo) -> RegretSum {
-        RegretSum { cost, lost: 0 }
-    }
-
     /// Adds the regret of the press that caused this change of the kitchen; other changes have no regret.
-    pub fn note(&mut self, kitchen: &Kitchen, change: &KitchenChange) {
+    pub fn note(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, change: &KitchenChange) {
         let KitchenChange::Press { press, .. } = change else { return };
         let recipes = kitchen.true_recipes();
         self.lost += match press.before == press.after {
             true => 1,
             false => {
-                let mut cost = |state| i64::from(self.cost.all_orders(state, &recipes));
+                let mut cost = |state| i64::from(cost.all_orders(state, &recipes));
                 1 + cost(press.after) - cost(press.before)
             }
         };

@@ -189,7 +189,21 @@ pub struct ProbedTrial {
     pub questions: Vec<ProbedQuestion>,
 }
 
+/// Statistics of the freeze probes of one trial.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProbedTrialStatistics {
+    /// Number of probe questions in the main results.
+    pub counted: u64,
+    /// Weighted share of wrong answers among the probe questions of the main results; `None` without such questions.
+    pub share_wrong: Option<f64>,
+}
+
 impl ProbedTrial {
+    /// Statistics of the trial's freeze probes.
+    pub fn statistics(&self) -> ProbedTrialStatistics {
+        ProbedTrialStatistics { counted: self.counted().count() as u64, share_wrong: self.share_wrong() }
+    }
+
     /// Whether the trial had, or should have had, a freeze probe.
     pub fn is_any(&self) -> bool {
         self.begun + self.dropped > 0

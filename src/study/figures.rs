@@ -7,12 +7,13 @@ use serde::Serialize;
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use super::arm_comparison::{StudyArmComparison, compare_arms};
 use super::arm_group::{RobotArmTotals, by_arm};
+use super::detail_totals::{DetailTotals, WizardAssistantSimilarity};
 use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::RecordingFacts;
 use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::live_arms::{SignalSenderResults, live_arms};
 use super::preregistration::PreregistrationCheck;
-use super::roc::{ConceptComparison, ConceptPreventionCounts, ConceptRocCurve, compare};
+use super::roc::{ConceptRocCurve, compare};
 use super::statistics::{Correlation, FTest};
 use super::tables::probe_table::PROBES_WRONG;
 use super::tables::trials::measures;
@@ -20,15 +21,14 @@ use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_statistics::{TrialStatistics, mean};
 use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
-use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
+use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
-use crate::analysis::probe_record::ProbedTrial;
 use crate::measures::belief_basis::BeliefSource;
 use crate::measures::cause_codes::{AgreementTable, RaterAgreement, RaterCodes};
-use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
+use crate::measures::matching::{MatchCounts, Similarity};
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::TrialEndReason;
-use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::settings::ParticipantKind;
 use crate::session::study_arm::StudyArm;
 
 /// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
@@ -145,23 +145,6 @@ pub struct StudyConditionSummary {
     pub sequence_lengths: Vec<u64>,
 }
 
-/// Similarity of wizard and assistant in one trial.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct WizardAssistantSimilarity {
-    /// Folder of the trial's recording.
-    pub recording: String,
-    /// Whether the wizard saw the assistant's recommendations.
-    pub wizard_saw_advice: bool,
-    /// Number of signals that the wizard sent in the trial.
-    pub of_n: u64,
-    /// Number of communications that the assistant would have sent in the trial.
-    pub with_n: u64,
-    /// Number of communications of both senders with the same signal and target (matches).
-    pub matched: u64,
-    /// The share of the wizard's signals that have a match.
-    pub recall: Option<f64>,
-}
-
 /// A consensus of two raters that no longer holds, since one of them changed a code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StaleConsensus {
@@ -183,17 +166,20 @@ pub struct ExcludedTrial {
 }
 
 impl StudySummary {
-    /// Summarises the trials of a study, which must be ordered by participant.
-    pub fn from_trials(trials: &[TrialStatistics], facts: &RecordingFacts, practice: u64) -> StudySummary {
+    /// Summarises the trials of a study, which must be ordered by participant, with the sums over their details.
+    pub fn from_trials(
+        trials: &[TrialStatistics],
+        details: DetailTotals,
+        facts: &RecordingFacts,
+        practice: u64,
+    ) -> StudySummary {
         let counting: Vec<&TrialStatistics> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
         let effects: Vec<AssistanceEffect> =
             compared(trials).map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
-        let comparison = concepts(&counting);
+        let comparison = compare(&details.concepts, SEED);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
-        let blind: Vec<&TrialStatistics> = counting.iter().copied().filter(|trial| !trial.wizard_saw_advice).collect();
-        let advised: Vec<&TrialStatistics> = counting.iter().copied().filter(|trial| trial.wizard_saw_advice).collect();
         let wizards: Vec<&WizardMeasures> = counting.iter().filter_map(|trial| trial.wizard.as_ref()).collect();
         let wizard = (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards));
         let left_out = trials.iter().filter_map(|trial| {
@@ -220,24 +206,24 @@ impl StudySummary {
             arms: compare_arms(&counting),
             live: live_arms(&counting, &comparison.concepts),
             roc: comparison.concepts,
-            roc_beliefs_from: least_reliable(counting.iter().filter(|trial| !trial.swept.is_empty())),
+            roc_beliefs_from: details.concepts_beliefs_from,
             roc_participants: comparison.participants,
             roc_trials: comparison.trials,
             roc_common_fpr: comparison.common_fpr,
-            similarity: similarity(&blind),
-            similarity_with_advice: similarity(&advised),
-            similarity_by_trial: counting.iter().filter_map(|trial| similarity_of_trial(trial)).collect(),
+            similarity: details.without_advice.as_ref().map(MatchCounts::similarity),
+            similarity_with_advice: details.with_advice.as_ref().map(MatchCounts::similarity),
+            similarity_by_trial: details.similarity_by_trial,
             wizard_beliefs_from: wizard
                 .as_ref()
                 .and_then(|wizard| wizard.hits)
                 .and_then(|_| least_reliable(counting.iter().filter(|trial| trial.wizard.is_some()))),
             wizard,
-            offers: offers(&counting),
+            offers: (!details.offers.is_empty()).then(|| details.offers.summary()),
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
             questionnaire_scores: scores(&counting),
             tutorial: None,
-            probes: ProbeSummary::from_trials(probed(&counting)),
+            probes: ProbeSummary::from_trials(details.probes.iter().map(|(code, probes)| (code.as_str(), probes))),
             raters: agreement(&counting),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
             consensus: consensus(&counting),
@@ -264,21 +250,9 @@ fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
     measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
 }
 
-/// Freeze probes of these trials, each with its participant's code.
-fn probed<'a>(trials: &[&'a TrialStatistics]) -> impl Iterator<Item = (&'a str, &'a ProbedTrial)> {
-    trials.iter().filter_map(|trial| Some((trial.participant.as_str(), trial.probes.as_ref()?)))
-}
-
 /// The least reliable source of participants' beliefs among these trials.
 fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> Option<BeliefSource> {
     trials.filter_map(|trial| trial.beliefs.as_ref()).map(|beliefs| beliefs.basis).max()
-}
-
-/// Summary of the offers in wizard trials; `None` if no trial had offers.
-fn offers(trials: &[&TrialStatistics]) -> Option<OfferSummary> {
-    let wizards = trials.iter().filter(|trial| trial.condition == Condition::Wizard);
-    let all: Vec<&TimedOffer> = wizards.filter_map(|trial| trial.offers.as_ref()).flatten().collect();
-    (!all.is_empty()).then(|| OfferSummary::from_offers(all))
 }
 
 fn title(facts: &RecordingFacts, trials: &[TrialStatistics], simulated: bool) -> String {
@@ -310,46 +284,6 @@ fn conditions(trials: &[&TrialStatistics]) -> Vec<StudyConditionSummary> {
         })
     };
     StudyArm::ALL.into_iter().filter_map(of).collect()
-}
-
-/// Compares concepts over the trials in which concepts were evaluated; the trials are ordered by participant.
-fn concepts(trials: &[&TrialStatistics]) -> ConceptComparison {
-    let tried: Vec<&TrialStatistics> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
-    let of_participant = |of_one: &[&TrialStatistics]| {
-        let mut sum: Vec<ConceptPreventionCounts> = of_one[0].swept.clone();
-        for trial in &of_one[1..] {
-            for (sum, one) in sum.iter_mut().zip(&trial.swept) {
-                sum.count = sum.count.plus(&one.count);
-            }
-        }
-        sum
-    };
-    let participants: Vec<Vec<ConceptPreventionCounts>> =
-        tried.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
-    compare(&participants, tried.len() as u64, SEED)
-}
-
-/// Similarity of wizard and assistant over these trials; `None` if the wizard's signals were compared in none of them.
-fn similarity(trials: &[&TrialStatistics]) -> Option<Similarity> {
-    let mut all = MatchCounts::default();
-    let compared: Vec<&TrialStatistics> = trials.iter().copied().filter(|trial| trial.lanes.is_some()).collect();
-    compared.iter().for_each(|trial| add_lanes(&mut all, trial));
-    (!compared.is_empty()).then(|| all.similarity())
-}
-
-fn add_lanes(tally: &mut MatchCounts, trial: &TrialStatistics) {
-    if let Some([of, with]) = &trial.lanes {
-        tally.add(of, with, trial.human_presses as u32, WINDOW);
-    }
-}
-
-fn similarity_of_trial(trial: &TrialStatistics) -> Option<WizardAssistantSimilarity> {
-    trial.lanes.as_ref()?;
-    let mut own = MatchCounts::default();
-    add_lanes(&mut own, trial);
-    let Similarity { of_n, with_n, matched, signal, .. } = own.similarity();
-    let (recording, wizard_saw_advice) = (trial.recording.clone(), trial.wizard_saw_advice);
-    Some(WizardAssistantSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
 }
 
 /// Number of trials that use the consensus of two raters, by pair of raters.

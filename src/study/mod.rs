@@ -1,13 +1,14 @@
 //! Analysis of a study: from single trials to summary, tables and report. The module reads and writes no files.
 //!
-//! A `TrialStatistics` holds the counts, medians, sequences and answers of one recording; everything else is computed
-//! from trials. Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of
+//! A `TrialStatistics` holds the counts, medians, sequences and answers of one recording, and `TrialDetails` what is too
+//! large to be kept in memory for every trial; everything else is computed from both. Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of
 //! communication are applied to the same benefits; ToM's thresholds are applied to the same estimate. Causes of errors
 //! come from the recorded beliefs of simulated participants; for people from two raters' codes if both coded every
 //! error, else from the belief estimate. The summary names the source of the causes (`beliefs_from`).
 //!
-//! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`figures`] summarizes
-//!   them with [`effect`], [`roc`] and [`statistics`].
+//! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`detail_totals`] sums up
+//!   the [`trial_details`], [`concept_totals`] those of concepts; [`figures`] summarizes all of them with [`effect`],
+//!   [`roc`] and [`statistics`].
 //! - [`arm_comparison`] compares any number of arms, by a [linear mixed model](linear_mixed_model) and a
 //!   [negative binomial one](negative_binomial_model), after an [`arm_design`].
 //! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts in how many of these studies tests find
@@ -32,7 +33,9 @@ pub mod belief_trace;
 pub mod charts;
 pub mod cohort_chart;
 pub mod column;
+pub mod concept_totals;
 pub mod definitions;
+pub mod detail_totals;
 pub mod dictionary;
 pub mod drawn_study;
 pub mod effect;
@@ -44,6 +47,7 @@ pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;
 pub mod negative_binomial_model;
+pub mod pairwise_differences;
 pub mod power;
 pub mod power_answer;
 pub mod power_chart;
@@ -59,6 +63,7 @@ pub mod statistics;
 pub mod study_part;
 pub mod svg;
 pub mod tables;
+pub mod trial_details;
 pub mod trial_statistics;
 pub mod trial_totals;
 pub mod tutorial_summary;

@@ -6,8 +6,9 @@
 //! useless signals. Signals are counted as interruptions: a proposal of k presses is one.
 
 use rand::RngExt;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use super::concept_totals::{ConceptPreventionCounts, ConceptTotals};
 use super::prevention::{PreventionCounts, PreventionRates};
 use crate::base::rng::stream;
 use crate::communication::concept::ConceptName;
@@ -44,17 +45,6 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
 
 /// Communication concepts that the analysis compares with each other.
 pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
-
-/// Prevention counts of a concept with one parameter value in one unassisted trial.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ConceptPreventionCounts {
-    /// Communication concept that would have sent the signals.
-    pub concept: ConceptName,
-    /// Value of the concept's parameter, such as the cost of communication.
-    pub parameter: f64,
-    /// Errors that the concept would have prevented, and signals that the concept would have sent.
-    pub count: PreventionCounts,
-}
 
 /// A point of a concept's receiver operating characteristic (ROC) curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -132,21 +122,6 @@ struct Curves {
     of: Vec<[Vec<(f64, f64)>; 3]>,
 }
 
-/// Sum of each concept's counts over participants; each participant counts as often as `times` says.
-fn summed(participants: &[Vec<ConceptPreventionCounts>], times: &[u32]) -> Vec<ConceptPreventionCounts> {
-    let Some(first) = participants.first() else { return Vec::new() };
-    let mut sum: Vec<ConceptPreventionCounts> =
-        first.iter().map(|one| ConceptPreventionCounts { count: PreventionCounts::default(), ..*one }).collect();
-    for (participant, &times) in participants.iter().zip(times) {
-        for (sum, one) in sum.iter_mut().zip(participant) {
-            for _ in 0..times {
-                sum.count = sum.count.plus(&one.count);
-            }
-        }
-    }
-    sum
-}
-
 impl Curves {
     fn from_counts(sum: &[ConceptPreventionCounts]) -> Curves {
         let curve = |concept: ConceptName, point: fn(&PreventionRates) -> (f64, f64)| {
@@ -199,19 +174,18 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     (to > 0.0).then(|| area / to)
 }
 
-/// Compares the communication concepts. `participants` has, for each participant, the sums over the participant's
-/// trials for every concept and parameter value, in the same order. The percentile bootstrap (Efron 1979) resamples
-/// participants; its random stream is seeded by `seed`.
-pub fn compare(participants: &[Vec<ConceptPreventionCounts>], trials: u64, seed: u64) -> ConceptComparison {
-    let once = vec![1; participants.len()];
-    let sum = summed(participants, &once);
+/// Compares the communication concepts by their counts over the unassisted trials of a study. The percentile bootstrap
+/// (Efron 1979) resamples participants; its random stream is seeded by `seed`.
+pub fn compare(totals: &ConceptTotals, seed: u64) -> ConceptComparison {
+    let sum = totals.sum();
     if sum.is_empty() {
         return ConceptComparison::default();
     }
-    let curves = Curves::from_counts(&sum);
+    let curves = Curves::from_counts(sum);
     let common = curves.common();
+    let participants = totals.participants();
     let resampled: Vec<Curves> =
-        resamples(participants.len(), seed).map(|times| Curves::from_counts(&summed(participants, &times))).collect();
+        resamples(participants, seed).map(|times| Curves::from_counts(&totals.resampled(&times))).collect();
     let roc = |(index, &concept): (usize, &ConceptName)| {
         let of_concept = sum.iter().filter(|one| one.concept == concept);
         let point = |one: &ConceptPreventionCounts| {
@@ -247,8 +221,8 @@ pub fn compare(participants: &[Vec<ConceptPreventionCounts>], trials: u64, seed:
         }
     };
     ConceptComparison {
-        participants: participants.len() as u64,
-        trials,
+        participants: participants as u64,
+        trials: totals.trials(),
         common_fpr: common,
         concepts: CONCEPTS.iter().enumerate().map(roc).collect(),
     }

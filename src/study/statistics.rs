@@ -7,6 +7,7 @@ use rand::seq::SliceRandom;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
+use super::pairwise_differences::PairwiseDifferences;
 use crate::base::rng::stream;
 
 /// Result of an F test in an analysis of variance.
@@ -179,31 +180,39 @@ pub struct ConfidenceInterval {
 /// confidence interval (distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` if a group is
 /// empty.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<ConfidenceInterval> {
-    let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
-    differences.sort_by(f64::total_cmp);
-    let last = differences.len().checked_sub(1)?;
-    let below = mann_whitney_cdf(a.len(), b.len());
-    // Number of differences that are omitted on each side of the interval.
-    let left_out = below.iter().take_while(|p| **p <= (1.0 - level) / 2.0).count();
-    let covered = if left_out == 0 { 1.0 } else { 1.0 - 2.0 * below[left_out - 1] };
-    let low = if left_out == 0 { f64::NEG_INFINITY } else { differences[left_out - 1] };
-    let high = if left_out == 0 { f64::INFINITY } else { differences[last + 1 - left_out] };
-    Some(ConfidenceInterval { estimate: crate::measures::median(differences)?, low, high, level: covered })
+    let differences = PairwiseDifferences::new(a, b);
+    let last = differences.number().checked_sub(1)?;
+    let tail = (1.0 - level) / 2.0;
+    let (left_out, below) = match differences.number() {
+        0..=MAX_EXACT_PAIRS => omitted(exact_cdf(a.len(), b.len()).into_iter(), tail),
+        _ => omitted(normal_cdf(a.len(), b.len()), tail),
+    };
+    let low = if left_out == 0 { f64::NEG_INFINITY } else { differences.nth(left_out - 1) };
+    let high = if left_out == 0 { f64::INFINITY } else { differences.nth(last + 1 - left_out) };
+    Some(ConfidenceInterval { estimate: differences.median()?, low, high, level: 1.0 - 2.0 * below })
 }
 
-/// P(U <= u) for u = 0, 1, …, m n / 2: U of two samples of these sizes from the same distribution, without ties. Exact
-/// up to [`MAX_EXACT_PAIRS`], else by the normal approximation with continuity correction.
+/// Number of differences that are omitted on each side of the interval, and the probability of each side: the largest
+/// of these cumulated probabilities that is at most `tail`.
+fn omitted(cumulated: impl Iterator<Item = f64>, tail: f64) -> (usize, f64) {
+    cumulated.take_while(|p| *p <= tail).fold((0, 0.0), |(count, _), p| (count + 1, p))
+}
+
+/// P(U <= u) for u = 0, 1, …, m n / 2 by the normal approximation with continuity correction: U of two samples of these
+/// sizes from the same distribution.
+fn normal_cdf(m: usize, n: usize) -> impl Iterator<Item = f64> {
+    let (pairs, values) = ((m * n) as f64, (m + n) as f64);
+    let (mean, deviation) = (pairs / 2.0, (pairs * (values + 1.0) / 12.0).sqrt());
+    let normal = Normal::standard();
+    (0..=m * n / 2).map(move |u| normal.cdf((u as f64 + 0.5 - mean) / deviation))
+}
+
+/// The same probabilities, exact for samples without ties.
 ///
 /// The numbers of ways to get U = u are the coefficients of the Gaussian binomial, the product over i = 1 to m of
 /// (1 - q^(n + i)) / (1 - q^i), so that one row of numbers suffices.
-fn mann_whitney_cdf(m: usize, n: usize) -> Vec<f64> {
+fn exact_cdf(m: usize, n: usize) -> Vec<f64> {
     let (m, n, half) = (m.min(n), m.max(n), m * n / 2);
-    if m * n > MAX_EXACT_PAIRS {
-        let (pairs, values) = ((m * n) as f64, (m + n) as f64);
-        let (mean, deviation) = (pairs / 2.0, (pairs * (values + 1.0) / 12.0).sqrt());
-        let normal = Normal::standard();
-        return (0..=half).map(|u| normal.cdf((u as f64 + 0.5 - mean) / deviation)).collect();
-    }
     let (mut ways, mut total) = (vec![0.0; half + 1], 1.0);
     ways[0] = 1.0;
     for i in 1..=m {

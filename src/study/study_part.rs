@@ -24,12 +24,13 @@ use super::facts::RecordingFacts;
 use super::preregistration::RecordedPlan;
 use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialQuestionRow;
+use super::trial_details::TrialDetails;
 use super::trial_statistics::TrialStatistics;
 use crate::session::header::RecordedFile;
 use crate::session::plan::PlanPosition;
 
 /// Version of the file format of a study's parts.
-pub const PART_FORMAT: u32 = 1;
+pub const PART_FORMAT: u32 = 2;
 
 /// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,8 +79,8 @@ pub struct AnalysedRecording {
     pub consent: Option<RecordedConsent>,
     /// The answers to the questions of the recording's tutorial.
     pub tutorial: Vec<TutorialQuestionRow>,
-    /// The recording's trial, with what the report tells about the recording; `None` for practice.
-    pub trial: Option<(TrialStatistics, RecordingFacts)>,
+    /// The recording's trial, with its details and with what the report tells about the recording; `None` for practice.
+    pub trial: Option<(TrialStatistics, TrialDetails, RecordingFacts)>,
 }
 
 /// Why parts of a study cannot be joined.

@@ -1,17 +1,16 @@
-//! Statistics of one trial for the analysis; recordings themselves are not kept in memory.
+//! Statistics of one trial, which the analysis keeps in memory for every trial of a study. Recordings themselves, and
+//! the details of trials ([`super::trial_details`]), are not kept in memory.
 
 use serde::{Deserialize, Serialize};
 
 use super::acting_arm::SignalSenderWithParameter;
 use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::robot_tally::RobotEventSummary;
-use super::roc::ConceptPreventionCounts;
-use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
-use crate::analysis::probe_record::ProbedTrial;
+use crate::analysis::offer_summary::OfferSummary;
+use crate::analysis::probe_record::ProbedTrialStatistics;
 use crate::measures::belief_basis::BeliefSource;
 use crate::measures::cause_codes::RaterCodes;
 use crate::measures::cause_kinds::BeliefErrorCounts;
-use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::TrialEndReason;
@@ -88,8 +87,8 @@ pub struct TrialStatistics {
     /// How the participant's display showed the robot; `None` without a display, and in older recordings, which do not
     /// say how.
     pub display_arm: Option<RobotDepiction>,
-    /// Offers that a wizard could see; `None` in recordings without offers.
-    pub offers: Option<Vec<TimedOffer>>,
+    /// Summary of the offers that a wizard could see; `None` in recordings without offers.
+    pub offers: Option<OfferSummary>,
     /// Duration of the trial without pauses, in seconds.
     pub seconds: f64,
     /// Answers to the questionnaires after the trial.
@@ -98,11 +97,6 @@ pub struct TrialStatistics {
     pub wizard: Option<WizardMeasures>,
     /// Whether the wizard saw the assistant's recommendations, by the settings or from some time of the trial on.
     pub wizard_saw_advice: bool,
-    /// In wizard trials: the communications that were sent, and those that the assistant would have sent.
-    pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
-    /// In unassisted trials with known beliefs: what each concept would have prevented, for each value of its
-    /// parameter.
-    pub swept: Vec<ConceptPreventionCounts>,
     /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
     pub raters: Option<[RaterCodes; 2]>,
     /// Agreement of the two raters about false beliefs.
@@ -111,8 +105,8 @@ pub struct TrialStatistics {
     pub settled_by: Option<[String; 2]>,
     /// Why the raters' consensus is not used: a rater's code changed after the raters settled it.
     pub stale_consensus: Option<String>,
-    /// Freeze probes of the trial with their questions and answers; `None` without probes.
-    pub probes: Option<ProbedTrial>,
+    /// Statistics of the trial's freeze probes; `None` without probes.
+    pub probes: Option<ProbedTrialStatistics>,
 }
 
 /// Errors of a trial that follow from false beliefs.
@@ -167,11 +161,6 @@ pub struct QuestionnaireAnswer {
 }
 
 impl TrialStatistics {
-    /// Summary of the offers that a wizard could see; `None` in recordings without offers.
-    pub fn offer_summary(&self) -> Option<OfferSummary> {
-        self.offers.as_ref().map(OfferSummary::from_offers)
-    }
-
     /// Whether the analysis includes the trial.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()

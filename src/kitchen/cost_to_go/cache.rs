@@ -15,11 +15,14 @@ pub const KIND_BITS: u32 = 2;
 const EMPTY: u64 = u64::MAX;
 
 /// Bucket of eight cache entries; an entry is a key with the value in the lowest byte, or [`EMPTY`].
+///
+/// A bucket has the size of a cache line. It is not aligned to one: that made no look-up faster, and glibc's allocator
+/// hardly ever uses a freed block again for an aligned one of the same size, so that every copy of a cache made the heap
+/// larger.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
 struct Bucket([u64; 8]);
 
-/// Cache of one-byte values by keys below 2^56 - 1, in buckets of eight entries; a bucket is one cache line.
+/// Cache of one-byte values by keys below 2^56 - 1, in buckets of eight entries.
 #[derive(Clone, Debug)]
 pub struct ValueCache {
     buckets: Vec<Bucket>,
@@ -68,9 +71,10 @@ impl ValueCache {
     }
 }
 
-/// Costs to go for one decision: of the present state, and after each button of an agent.
+/// Costs to go for one decision: of the present state, and after each button of an agent. It has the size of a cache
+/// line.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
+#[repr(C)]
 pub struct DecisionCosts {
     state: State,
     /// Hash of the request (orders, fidelity, agent); `u32::MAX` for an empty entry.
@@ -81,7 +85,7 @@ pub struct DecisionCosts {
     pub after: [u8; MAX_BUTTONS],
 }
 
-/// Cache of decisions by state and request, one cache line each; a new entry replaces the old one in its line.
+/// Cache of decisions by state and request, a line of 64 bytes each; a new entry replaces the old one in its line.
 #[derive(Clone, Debug)]
 pub struct DecisionCache {
     lines: Vec<DecisionCosts>,

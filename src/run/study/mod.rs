@@ -8,6 +8,7 @@
 mod coded_errors;
 mod questionnaire_answers;
 pub mod reading;
+mod replay_pass;
 mod rows;
 pub mod shards;
 mod sweep;
@@ -15,9 +16,9 @@ mod tell;
 mod tutorials;
 mod twin;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
@@ -31,6 +32,8 @@ use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
+use crate::study::column::CsvTable;
+use crate::study::detail_totals::DetailTotals;
 use crate::study::dictionary::{DataDictionaryRow, dictionary};
 use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
@@ -39,9 +42,9 @@ use crate::study::preregistration::{PreregistrationCheck, RecordedPlan};
 use crate::study::recorded_consent::RecordedConsent;
 use crate::study::report;
 use crate::study::study_part::AnalysedRecording;
-use crate::study::tables::concept_table::{ConceptRow, concepts};
+use crate::study::tables::concept_table::concepts;
 use crate::study::tables::participants::{ParticipantRow, participants};
-use crate::study::tables::probe_table::{ProbeRow, probes};
+use crate::study::tables::probe_table::probes;
 use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::tables::tutorial_answers::TutorialQuestionRow;
 use crate::study::trial_statistics::{TrialStatistics, arrange};
@@ -142,18 +145,12 @@ pub fn study(
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
-    let collected = Mutex::new(CollectedRecordings::default());
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
         let (analysed, rows) = analyse(recording, analysis, (first, &kitchen), kept)?;
-        if analysis.extent.events {
-            keep(&export, index, &analysed, &rows)?;
-        }
-        collected.lock().unwrap_or_else(PoisonError::into_inner).add(index, analysed);
-        Ok(())
+        Ok(keep(&export, analysis.extent, index, &analysed, &rows)?)
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
-    let collected = collected.into_inner().unwrap_or_else(PoisonError::into_inner);
-    conclude(collected, &export, analysis.extent, frozen)
+    conclude(numbered.len(), &export, analysis.extent, frozen)
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -175,7 +172,7 @@ fn analyse(
     let (mut trial, mut rows) = (None, Default::default());
     if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref(), kept)? {
         same_kitchen(first, (path, &own))?;
-        (trial, rows) = (Some((read.trial, read.facts)), read.rows);
+        (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }
     Ok((AnalysedRecording { recording: name.clone(), plan, consent, tutorial, trial }, rows))
 }
@@ -186,24 +183,28 @@ fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
     RecordedPlan { participant: spec.participant.code.clone(), plan }
 }
 
-/// Keeps the rows of a recording until all recordings are read; practice recordings have no rows.
+/// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
+/// Nothing of a recording stays in memory. What a thread would keep between the large and short-lived blocks of its
+/// replays would also hinder the use of these blocks for the next recording.
 fn keep(
     export: &AnalysisFolder,
+    extent: AnalysisScope,
     index: usize,
     analysed: &AnalysedRecording,
     rows: &[Vec<u8>; 5],
 ) -> Result<(), AnalysisWriteError> {
-    if analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
+    export.keep_analysed(index, analysed)?;
+    if extent.events && analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
-/// What all analysed recordings of a study so far hand to its summary. Recordings can be added in any order.
+/// What all analysed recordings of a study hand to its summary, but for the details of their trials.
 #[derive(Debug, Default)]
 struct CollectedRecordings {
     trials: Vec<TrialStatistics>,
     /// Settings and circumstances of all trials together. Those of single trials would take most of the memory.
     facts: RecordingFacts,
-    /// For each trial, the recording's name and the number under which its rows are kept.
-    kept: Vec<(String, usize)>,
+    /// By the name of each trial's recording, the number under which the recording is kept.
+    kept: BTreeMap<String, usize>,
     plans: Vec<RecordedPlan>,
     /// Consents, each with its recording's name.
     consents: Vec<(String, RecordedConsent)>,
@@ -211,52 +212,80 @@ struct CollectedRecordings {
 }
 
 impl CollectedRecordings {
-    /// Adds a recording whose rows are kept under this number.
+    /// Reads the kept recordings with the numbers below `number`.
+    fn read(export: &AnalysisFolder, number: usize) -> Result<CollectedRecordings, AnalysisWriteError> {
+        let mut collected = CollectedRecordings::default();
+        for index in 0..number {
+            collected.add(index, export.kept_analysed(index)?);
+        }
+        Ok(collected)
+    }
+
+    /// Adds the recording that is kept under this number.
     fn add(&mut self, index: usize, recording: AnalysedRecording) {
         self.plans.push(recording.plan);
         self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
         self.tutorials.extend(recording.tutorial);
-        if let Some((trial, facts)) = recording.trial {
-            self.kept.push((recording.recording, index));
+        if let Some((trial, _, facts)) = recording.trial {
+            self.kept.insert(trial.recording.clone(), index);
             self.trials.push(trial);
             self.facts.add(facts);
         }
     }
 }
 
-/// Computes the summary, the tables and the report from all recordings of a study.
+/// Computes the summary, the tables and the report from all recordings of a study, which are kept under the numbers
+/// below `number`.
 fn conclude(
-    collected: CollectedRecordings,
+    number: usize,
     export: &AnalysisFolder,
     extent: AnalysisScope,
     frozen: Option<(String, FrozenPlan)>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings { mut trials, facts, mut kept, plans, mut consents, mut tutorials } = collected;
+    let CollectedRecordings { mut trials, facts, kept, plans, mut consents, mut tutorials } =
+        CollectedRecordings::read(export, number)?;
     arrange(&mut trials);
-    kept.sort_unstable();
     let practice = (plans.len() - trials.len()) as u64;
     consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
     let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
+    let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
     let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
-    let figures = StudySummary::from_trials(&trials, &facts, practice).with_tutorials(&tutorials);
+    let figures = StudySummary::from_trials(&trials, details, &facts, practice).with_tutorials(&tutorials);
     let figures = figures.with_preregistration(preregistration);
-    if !extent.events {
-        kept.clear();
-    }
-    let kept: Vec<usize> = kept.into_iter().map(|(_, index)| index).collect();
-    let mut filled = export.tables_of_events(&kept)?;
+    let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
+    filled.extend(export.tables_of_events(&events)?);
+    export.remove_kept()?;
     filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents))?);
     filled.extend(export.table::<TrialStatistics>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
     filled.extend(export.table::<TutorialQuestionRow>(&tutorials)?);
-    filled.extend(export.table::<ConceptRow>(trials.iter().filter(|trial| trial.counts()).flat_map(concepts))?);
-    filled.extend(export.table::<ProbeRow>(trials.iter().flat_map(probes))?);
     filled.extend(export.table::<DataDictionaryRow>(dictionary())?);
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))
+}
+
+/// Writes the tables that follow from the details of trials, trial by trial. Returns the sums over the details, and the
+/// tables that have rows.
+fn tables_of_details(
+    trials: &[TrialStatistics],
+    kept: &BTreeMap<String, usize>,
+    export: &AnalysisFolder,
+) -> Result<(DetailTotals, Vec<CsvTable>), AnalysisWriteError> {
+    let mut totals = DetailTotals::default();
+    let (mut of_concepts, mut of_probes) = (export.begin(CsvTable::Concepts)?, export.begin(CsvTable::Probes)?);
+    for trial in trials {
+        let kept = export.kept_analysed(kept[&trial.recording])?;
+        let details = kept.trial.map(|(_, details, _)| details).unwrap_or_default();
+        if trial.counts() {
+            concepts(trial, &details).try_for_each(|row| of_concepts.add(&row))?;
+        }
+        probes(trial, &details).try_for_each(|row| of_probes.add(&row))?;
+        totals.add(trial, details);
+    }
+    Ok((totals, [of_concepts.finish()?, of_probes.finish()?].into_iter().flatten().collect()))
 }
 
 fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {

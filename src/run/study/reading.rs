@@ -5,19 +5,17 @@ use std::sync::Arc;
 
 use super::coded_errors::CodedErrors;
 use super::questionnaire_answers;
+use super::replay_pass::ReplayPass;
 use super::rows::{RowCollector, TrialPressAnalyses};
-use super::sweep::ConceptSweep;
 use super::twin::useful_signals;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::follower::SessionFollower;
-use crate::analysis::offer_summary::TimedOffer;
+use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
-use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogReader, rater_codes};
 use crate::history::comparison::CommunicationContent;
@@ -33,7 +31,6 @@ use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::run::kept_cost::KeptCost;
 use crate::run::standing::exclusion_status;
-use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
@@ -43,6 +40,7 @@ use crate::study::facts::RecordingFacts;
 use crate::study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use crate::study::prevention::TrialGroundTruth;
 use crate::study::robot_tally::{RobotEventSummary, RobotEventTally};
+use crate::study::trial_details::TrialDetails;
 use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics};
 
 /// Result of analysing one recording.
@@ -50,6 +48,8 @@ use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics};
 pub struct RecordingAnalysis {
     /// Statistics of the recording's trial.
     pub trial: TrialStatistics,
+    /// Details of the recording's trial.
+    pub details: TrialDetails,
     /// Settings and circumstances of the recording, for the report.
     pub facts: RecordingFacts,
     /// Rows of the recording in the CSV tables of events, a text for each table.
@@ -65,68 +65,21 @@ pub struct AnalysisScope {
     pub events: bool,
 }
 
-/// Replay of a recording together with the analyses that its condition and the requested scope need.
-enum Pass {
-    Plain(Box<SessionFollower>),
-    /// Replay of a wizard trial with the assistant's hypothetical signals.
-    Beside(Box<SenderComparisonFollower>),
-    /// Replay of an unassisted trial with hypothetical signals of all compared concepts.
-    Swept(Box<ConceptSweep>),
-}
-
-impl Pass {
-    /// The replay for this session. `is_known`: whether the participant's beliefs are recorded, or may follow from
-    /// raters' codes.
-    fn new(session: Session, extent: AnalysisScope, is_known: bool, cost: CostToGo) -> Pass {
-        let (spec, mut session) = (&session.spec.clone(), session);
-        match spec.trial.condition {
-            Condition::Wizard if extent.concepts => {
-                let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
-                session.spec.assistant.concept = ConceptName::TomCom;
-                Pass::Beside(Box::new(SenderComparisonFollower::new(session, cost, &request)))
-            }
-            // Prevented errors can be counted only where false beliefs are known.
-            Condition::None if extent.concepts && is_known => Pass::Swept(Box::new(ConceptSweep::new(session, cost))),
-            _ => Pass::Plain(Box::new(SessionFollower::new(session, cost))),
-        }
-    }
-
-    fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
-        match self {
-            Pass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
-            Pass::Beside(watcher) => watcher.apply(stamped),
-            Pass::Swept(sweeper) => sweeper.apply(stamped),
-        }
-    }
-
-    /// The cost to go with the caches that the replay filled, for the next recording.
-    fn into_cost(self) -> CostToGo {
-        match self {
-            Pass::Plain(follower) => follower.cost,
-            Pass::Beside(watcher) => watcher.follower.cost,
-            Pass::Swept(sweeper) => sweeper.cost,
-        }
-    }
-
-    fn follower(&self) -> &SessionFollower {
-        match self {
-            Pass::Plain(follower) => follower,
-            Pass::Beside(watcher) => &watcher.follower,
-            Pass::Swept(sweeper) => &sweeper.follower,
-        }
-    }
-}
-
 /// Attributes people's errors to causes by means of the estimated beliefs.
 struct ByEstimate {
     attributor: ErrorAttributor,
-    cost: CostToGo,
     causes: Vec<(u64, ErrorCause)>,
 }
 
 impl ByEstimate {
     /// Attributes a press that was just applied to a cause, if the press was an error.
-    fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
+    fn note(
+        &mut self,
+        stamped: &TimestampedEvent,
+        change: &KitchenChange,
+        follower: &SessionFollower,
+        cost: &mut CostToGo,
+    ) {
         let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
         let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
@@ -134,7 +87,7 @@ impl ByEstimate {
         if let (Some(estimated), true) = (estimated, is_error) {
             let belief = expected(kitchen, estimated.state, &estimated.belief);
             let number = follower.session.all_presses();
-            let cause = self.attributor.cause(kitchen, &mut self.cost, &belief, &press, number);
+            let cause = self.attributor.cause(kitchen, cost, &belief, &press, number);
             self.causes.push((stamped.seq, cause));
         }
     }
@@ -168,20 +121,19 @@ pub fn read(
         return Ok(None);
     }
     let kitchen = log.kitchen.clone();
-    let cost = kept.for_kitchen(&kitchen);
+    let mut cost = kept.take(&kitchen);
     let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotEventTally::new(header.session.robot.arm);
-    let mut regret = RegretSum::new(cost.clone());
+    let mut regret = RegretSum::default();
     let mut answers = Vec::new();
     let mut probes = ProbeCollector::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
-    let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded, cost.clone());
+    let mut pass = ReplayPass::new(log.session(), extent.concepts, is_simulated || is_coded, cost.clone());
     let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
         attributor: ErrorAttributor::new(header.session.human.decision.clone(), log.session().seed()),
-        cost: cost.clone(),
         causes: Vec::new(),
     });
     while let Some(line) = log.next_line()? {
@@ -192,10 +144,10 @@ pub fn read(
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
         probes.note(&line.stamped, &change, follower);
-        regret.note(&kitchen, &change);
+        regret.note(&kitchen, &mut cost, &change);
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
-            by_estimate.note(&line.stamped, &change, follower);
+            by_estimate.note(&line.stamped, &change, follower, &mut cost);
             trace.note(&line.stamped, &change, &follower.session);
         }
         if extent.events {
@@ -214,24 +166,20 @@ pub fn read(
     let mut trial = trial(name, &header, follower, standing);
     trial.ended = robot.ended;
     trial.robot = robot.into_figures();
-    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, cost));
+    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, &mut cost));
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
     trial.answers = answers;
     if extent.concepts && basis == Some(BeliefSource::Recorded) && trial.signals > 0 {
-        trial.useful_signals = useful_signals(recording, cost.clone())?;
+        trial.useful_signals = useful_signals(recording, cost)?;
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
         Some(known) if known.basis != BeliefSource::Recorded => hands.measures_by_raters(follower, &known.episodes),
         _ => hands.figures(follower).measures,
     });
-    if let (Pass::Swept(sweeper), Some(known)) = (&pass, &known) {
-        trial.swept = sweeper.swept(&TrialGroundTruth::new(&kitchen, &judged, known));
-    }
-    if let [(_, of), (_, with)] = &lanes[..] {
-        trial.lanes = Some([of.clone(), with.clone()]);
-    }
-    let follower = pass.follower();
+    let details = details(&pass, &judged, known.as_ref(), &lanes, probes);
+    trial.offers = follower.session.makes_offers.then(|| OfferSummary::from_offers(&details.offers));
+    trial.probes = details.probes.as_ref().map(ProbedTrial::statistics);
     let sequences = sequences(&judged);
     let presses = TrialPressAnalyses {
         judged: &judged,
@@ -240,7 +188,6 @@ pub fn read(
         coded: &coded,
         known: known.as_ref(),
     };
-    trial.probes = Some(probes.finish(&follower.session)).filter(ProbedTrial::is_any);
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters)) {
         trial.shared_beliefs = coded.raters.as_ref().map(RaterFalseBeliefAgreement::count);
@@ -249,14 +196,39 @@ pub fn read(
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
     trial.stale_consensus = coded.stale.filter(|_| !is_simulated);
     let facts = RecordingFacts::from_session(&header, &follower.session);
-    *cost = pass.into_cost();
-    Ok(Some((kitchen, RecordingAnalysis { trial, facts, rows })))
+    kept.keep(&kitchen, pass.into_cost());
+    Ok(Some((kitchen, RecordingAnalysis { trial, details, facts, rows })))
+}
+
+/// Details of the trial of a replayed recording. `lanes`: the communications of each sender.
+fn details(
+    pass: &ReplayPass,
+    judged: &[JudgedPress],
+    known: Option<&KnownFalseBeliefs>,
+    lanes: &[(String, Vec<CommunicationEvent>)],
+    probes: ProbeCollector,
+) -> TrialDetails {
+    let session = &pass.follower().session;
+    TrialDetails {
+        offers: TimedOffer::visible(session),
+        lanes: match lanes {
+            [(_, of), (_, with)] => Some([of.clone(), with.clone()]),
+            _ => None,
+        },
+        swept: match (pass, known) {
+            (ReplayPass::Swept(sweeper), Some(known)) => {
+                sweeper.swept(&TrialGroundTruth::new(&session.kitchen, judged, known))
+            }
+            _ => Vec::new(),
+        },
+        probes: Some(probes.finish(session)).filter(ProbedTrial::is_any),
+    }
 }
 
 /// Communications of each sender, with the sender's name: the communications that were sent and, in a wizard trial,
 /// those that the assistant would have sent.
-fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
-    if let Pass::Beside(watcher) = pass {
+fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
+    if let ReplayPass::Beside(watcher) = pass {
         watcher.finish();
         let lanes = watcher.comparison(true).lanes;
         return lanes.iter().map(|lane| (lane.name.clone(), lane.said())).collect();
@@ -387,10 +359,8 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         wizard: None,
         useful_signals: None,
         display_arm: spec.display.arm.filter(|_| spec.participant.kind == ParticipantKind::Display),
-        offers: session.makes_offers.then(|| TimedOffer::visible(session)),
+        offers: None,
         wizard_saw_advice: session.wizard_saw_advice(),
-        lanes: None,
-        swept: Vec::new(),
         raters: None,
         shared_beliefs: None,
         settled_by: None,

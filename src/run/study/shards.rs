@@ -10,9 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::reading::AnalysisScope;
-use super::{
-    AnalysisRequest, CollectedRecordings, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan,
-};
+use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan};
 use crate::edge::export::AnalysisFolder;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
@@ -118,19 +116,18 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         }
     }
     let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
+    let extent = AnalysisScope { concepts, events };
     let export = AnalysisFolder::create(&analysis.out)?;
-    let (mut collected, mut names) = (CollectedRecordings::default(), BTreeSet::new());
+    let mut names = BTreeSet::new();
     for part in &mut parts {
         while let Some((recording, rows)) = part.next_recording()? {
+            let index = names.len();
             if !names.insert(recording.recording.clone()) {
                 let found = format!("the recording {}, which is in another part, too", recording.recording);
                 return Err(FileError::from_finding(part.path(), found, "each recording once".to_string()).into());
             }
-            if events {
-                keep(&export, names.len(), &recording, &rows)?;
-            }
-            collected.add(names.len(), recording);
+            keep(&export, extent, index, &recording, &rows)?;
         }
     }
-    conclude(collected, &export, AnalysisScope { concepts, events }, frozen)
+    conclude(names.len(), &export, extent, frozen)
 }

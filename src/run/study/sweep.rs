@@ -18,8 +18,9 @@ use crate::kitchen::{Agent, KitchenChange};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent};
+use crate::study::concept_totals::ConceptPreventionCounts;
 use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
-use crate::study::roc::{CONCEPTS, ConceptPreventionCounts, LEAST_COST, parameters};
+use crate::study::roc::{CONCEPTS, LEAST_COST, parameters};
 
 /// A concept with one value of its parameter, and the signals that the concept would have sent.
 #[derive(Debug)]

@@ -2,8 +2,9 @@
 
 use crate::communication::concept::ConceptName;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::study::concept_totals::ConceptPreventionCounts;
 use crate::study::prevention::PreventionCounts;
-use crate::study::roc::ConceptPreventionCounts;
+use crate::study::trial_details::TrialDetails;
 use crate::study::trial_statistics::TrialStatistics;
 
 /// Row of the table of concepts: a concept with one value of its parameter in an unassisted trial.
@@ -14,8 +15,8 @@ pub struct ConceptRow<'a> {
 }
 
 /// Rows for all communication concepts that were evaluated on a trial.
-pub fn concepts(trial: &TrialStatistics) -> impl Iterator<Item = ConceptRow<'_>> {
-    trial.swept.iter().map(move |swept| ConceptRow { trial, swept })
+pub fn concepts<'a>(trial: &'a TrialStatistics, details: &'a TrialDetails) -> impl Iterator<Item = ConceptRow<'a>> {
+    details.swept.iter().map(move |swept| ConceptRow { trial, swept })
 }
 
 impl CsvRow for ConceptRow<'_> {

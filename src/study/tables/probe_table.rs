@@ -1,10 +1,11 @@
 //! Table of the questions of freeze probes.
 
-use crate::analysis::probe_record::{AspectAtFreeze, ProbeResponse, ProbedQuestion, ProbedTrial};
+use crate::analysis::probe_record::{AspectAtFreeze, ProbeResponse, ProbedQuestion};
 use crate::mind::WORTH_TELLING;
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::StudyMeasure;
+use crate::study::trial_details::TrialDetails;
 use crate::study::trial_statistics::TrialStatistics;
 
 /// Measure of situation awareness: share of wrong answers to freeze probes.
@@ -15,7 +16,7 @@ pub const PROBES_WRONG: StudyMeasure = StudyMeasure {
     meaning_in: "weighted share of wrong answers to probes in the {} trial",
     title: "share of wrong answers to probes",
     digits: 3,
-    value: |trial| trial.probes.as_ref().and_then(ProbedTrial::share_wrong),
+    value: |trial| trial.probes.and_then(|probes| probes.share_wrong),
 };
 
 /// Row of the table of probes: a question of a freeze probe in a recording.
@@ -26,8 +27,8 @@ pub struct ProbeRow<'a> {
 }
 
 /// Rows for the questions of a trial's freeze probes.
-pub fn probes(trial: &TrialStatistics) -> impl Iterator<Item = ProbeRow<'_>> {
-    trial.probes.iter().flat_map(|probes| &probes.questions).map(move |question| ProbeRow { trial, question })
+pub fn probes<'a>(trial: &'a TrialStatistics, details: &'a TrialDetails) -> impl Iterator<Item = ProbeRow<'a>> {
+    details.probes.iter().flat_map(|probes| &probes.questions).map(move |question| ProbeRow { trial, question })
 }
 
 impl ProbeRow<'_> {

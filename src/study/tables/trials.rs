@@ -331,10 +331,10 @@ fn offered() -> Vec<TrialColumn> {
         name: &'static str,
         unit: &'static str,
         meaning: &'static str,
-        value: fn(OfferSummary) -> CsvCell<'static>,
+        value: fn(&OfferSummary) -> CsvCell<'static>,
     ) -> TrialColumn {
         TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, move |trial| {
-            trial.offer_summary().map(value).into()
+            trial.offers.as_ref().map(value).into()
         }))
     }
     vec![
@@ -402,7 +402,7 @@ fn probed() -> Vec<TrialColumn> {
             "probe_questions",
             "questions",
             "questions of probes in the main results: scheduled, about what is, answered in time; empty: no probes",
-            |t| t.probes.as_ref().map(|probes| probes.counted().count() as u64).into(),
+            |t| t.probes.map(|probes| probes.counted).into(),
         ),
         Compared(PROBES_WRONG),
     ]

@@ -14,6 +14,7 @@ use super::{at, kitchen};
 struct Recorded {
     session: Session,
     regret: RegretSum,
+    cost: CostToGo,
     seq: u64,
     now_s: f64,
 }
@@ -24,7 +25,7 @@ impl Recorded {
         let stamped = TimestampedEvent { seq: self.seq, time: at(self.now_s), event };
         self.seq += 1;
         let applied = apply(&mut self.session, &stamped).expect("an event that fits");
-        self.regret.note(&self.session.kitchen.clone(), &applied.change);
+        self.regret.note(&self.session.kitchen.clone(), &mut self.cost, &applied.change);
     }
 
     fn press(&mut self, agent: Agent, button: &str) {
@@ -54,7 +55,7 @@ fn an_order_takes_the_time_from_its_appearance_and_every_lost_press() {
     let mut cost = CostToGo::new(kitchen.clone());
     let spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
     let session = Session::new(kitchen.clone(), spec, 0);
-    let mut recorded = Recorded { session, regret: RegretSum::new(cost.clone()), seq: 0, now_s: 0.0 };
+    let mut recorded = Recorded { session, regret: RegretSum::default(), cost: cost.clone(), seq: 0, now_s: 0.0 };
     recorded.add(0.0, Event::TrialStarted);
     let dish = kitchen.dishes[0].name.clone();
     recorded.add(5.0, Event::OrderShown { order: "order_1".to_string(), dish: dish.clone() });

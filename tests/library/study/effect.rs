@@ -1,6 +1,7 @@
 //! The effect of assistance, against values of other programs.
 
 use tomcom::session::settings::Condition;
+use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::effect::{effect, pairs};
 use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
@@ -40,7 +41,7 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     trials[0].left_out = Some("excluded: the tracker slipped".to_string());
     assert_eq!(pairs(&trials, HEADLINE).len(), 3);
-    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+    let figures = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
     assert_eq!((figures.trials, figures.participants, figures.left_out.len()), (7, 4, 1));
     // A second trial that was done again counts as it was done the last time.
     let mut again = trial("A1", 2, Condition::Wizard, 2);
@@ -49,7 +50,7 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     arrange(&mut trials);
     let pair = pairs(&trials, HEADLINE).into_iter().find(|pair| pair.participant == "A1").expect("a pair");
     near(pair.values[1], 0.01);
-    let nobody = StudySummary::from_trials(&[], &RecordingFacts::default(), 0);
+    let nobody = StudySummary::from_trials(&[], DetailTotals::default(), &RecordingFacts::default(), 0);
     assert!(nobody.anova.is_none() && nobody.pearson.is_none() && nobody.permutation_p.is_none());
     assert!(nobody.totals.error_rate.is_none() && nobody.totals.belief_related_share.is_none());
     assert_eq!((permutation_p(&[], &[1.0], 1), hodges_lehmann(&[], &[1.0], 0.95)), (None, None));

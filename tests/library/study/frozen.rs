@@ -7,6 +7,7 @@ use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::frozen_file::{freeze, read_frozen};
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::CsvTable;
+use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::frozen_plan::{FrozenDefinition, FrozenPlan};
@@ -103,8 +104,8 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
     let trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     let page = |recordings: &[RecordedPlan]| {
         let found = PreregistrationCheck::new("abc123".to_string(), &plan, recordings);
-        let summary =
-            StudySummary::from_trials(&trials, &RecordingFacts::default(), 0).with_preregistration(Some(found));
+        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0)
+            .with_preregistration(Some(found));
         report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL)
     };
     let all = recordings(&plan);
@@ -120,7 +121,7 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
         fewer.contains("Not as preregistered") && fewer.contains("1 participant is without a recording: P01"),
         "{fewer}"
     );
-    let without = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+    let without = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
     let json = serde_json::to_string(&without).expect("JSON");
     assert!(!json.contains("preregistration"), "nothing was frozen");
 }

@@ -91,8 +91,6 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         answers: Vec::new(),
         wizard: None,
         wizard_saw_advice: false,
-        lanes: None,
-        swept: Vec::new(),
         raters: None,
         shared_beliefs: None,
         settled_by: None,

@@ -2,10 +2,11 @@
 
 use tomcom::communication::concept::ConceptName;
 use tomcom::kitchen::AspectId;
+use tomcom::study::concept_totals::{ConceptPreventionCounts, ConceptTotals};
 use tomcom::study::prevention::{
     FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
 };
-use tomcom::study::roc::{ConceptPreventionCounts, compare};
+use tomcom::study::roc::compare;
 
 use super::{at, near};
 
@@ -148,7 +149,10 @@ fn concepts_are_compared_where_they_say_equally_much() {
         swept(ConceptName::Tom, 0.4, 16, 6, 20),
         swept(ConceptName::Dev, 1.0, 10, 2, 20),
     ];
-    let found = compare(&[participant.clone(), participant], 2, 1);
+    let mut totals = ConceptTotals::default();
+    ["P1", "P2"].into_iter().for_each(|code| totals.add(code, &participant));
+    let found = compare(&totals, 1);
+    assert_eq!((found.participants, found.trials), (2, 2));
     near(found.common_fpr.expect("a range"), 0.1);
     let at_equal = |concept: usize| -> Vec<f64> {
         found.concepts[concept].at_equal_signals.iter().map(|one| one.value.expect("a value")).collect()

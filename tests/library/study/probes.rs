@@ -17,10 +17,12 @@ use tomcom::session::probes::ProbeOrigin;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::CsvRow;
+use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::report;
 use tomcom::study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
+use tomcom::study::trial_details::TrialDetails;
 
 use super::{near, trial};
 
@@ -323,12 +325,13 @@ fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participant
 fn probes_stand_in_tables_and_report() {
     let mut trials = super::trials(&[[12, 6], [10, 5], [14, 8]], &[[8, 9], [6, 7], [9, 8]]);
     let none = report::page(
-        &StudySummary::from_trials(&trials, &RecordingFacts::default(), 0),
+        &StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0),
         &trials,
         &RecordingFacts::default(),
         &[],
     );
     assert!(!none.contains("What people knew"));
+    let mut details = Vec::new();
     for (index, trial) in trials.iter_mut().enumerate() {
         let is_right = trial.is_assisted() || index % 3 == 0;
         let answer = if is_right { "rice" } else { "empty" };
@@ -338,9 +341,13 @@ fn probes_stand_in_tables_and_report() {
             question(ProbeQuestionKind::Recipe),
             asked(ProbeQuestionKind::NextOrder),
         ];
-        trial.probes = Some(probed(trial.condition, questions));
+        let probed = probed(trial.condition, questions);
+        trial.probes = Some(probed.statistics());
+        details.push(TrialDetails { probes: Some(probed), ..TrialDetails::default() });
     }
-    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+    let mut totals = DetailTotals::default();
+    trials.iter().zip(&details).for_each(|(trial, details)| totals.add(trial, details.clone()));
+    let figures = StudySummary::from_trials(&trials, totals, &RecordingFacts::default(), 0);
     let found = figures.probes.as_ref().expect("there are probes");
     assert_eq!((found.participants, found.counts.counted), (6, 24));
     let effect = figures.effects.iter().find(|effect| effect.measure == PROBES_WRONG).expect("it is compared");
@@ -354,7 +361,7 @@ fn probes_stand_in_tables_and_report() {
     ] {
         assert!(page.contains(part), "{part} is missing");
     }
-    let rows: Vec<ProbeRow> = trials.iter().flat_map(probes).collect();
+    let rows: Vec<ProbeRow> = trials.iter().zip(&details).flat_map(|(trial, details)| probes(trial, details)).collect();
     assert_eq!(rows.len(), 36);
     let value = |name: &str| {
         let columns = ProbeRow::columns();

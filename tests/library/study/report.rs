@@ -26,12 +26,14 @@ use tomcom::session::event::TrialEndReason;
 use tomcom::session::plan::QuestionnaireItemKind;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::column::{CsvCell, CsvRow, CsvTable};
+use tomcom::study::concept_totals::ConceptPreventionCounts;
+use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::prevention::PreventionCounts;
 use tomcom::study::report::{self, page_head};
 use tomcom::study::robot_tally::{ArmSafetySummary, RobotEventTally};
-use tomcom::study::roc::ConceptPreventionCounts;
+use tomcom::study::trial_details::TrialDetails;
 use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::{at, near, trial, trials};
@@ -57,7 +59,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             score: None,
         });
     }
-    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+    let figures = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
     let accepted = figures.acceptance.clone().expect("answers");
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
     let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
@@ -75,7 +77,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     let people: Vec<TrialStatistics> =
         trials.into_iter().map(|trial| TrialStatistics { kind: ParticipantKind::Display, ..trial }).collect();
     let page = report::page(
-        &StudySummary::from_trials(&people, &RecordingFacts::default(), 0),
+        &StudySummary::from_trials(&people, DetailTotals::default(), &RecordingFacts::default(), 0),
         &people,
         &RecordingFacts::default(),
         &CsvTable::ALL,
@@ -90,7 +92,7 @@ fn few_participants_have_no_r_among_the_main_results() {
         let errors: Vec<[u64; 2]> =
             (0..participants as u64 / 2).map(|index| [24 + index, 12 + index * index]).collect();
         let trials = trials(&errors, &errors);
-        let summary = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
         let page = report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL);
         assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
         page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
@@ -152,15 +154,15 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
 #[test]
 fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
-    let report = |trials: &[TrialStatistics], tables: &[CsvTable]| {
+    let report = |trials: &[TrialStatistics], details: DetailTotals, tables: &[CsvTable]| {
         report::page(
-            &StudySummary::from_trials(trials, &RecordingFacts::default(), 0),
+            &StudySummary::from_trials(trials, details, &RecordingFacts::default(), 0),
             trials,
             &RecordingFacts::default(),
             tables,
         )
     };
-    let page = report(&trials, &[CsvTable::Trials]);
+    let page = report(&trials, DetailTotals::default(), &[CsvTable::Trials]);
     assert!(page.contains("6 after the set number of presses.") && page.contains("arm was timed."));
     assert!(
         !page.contains("hypothetical signals of each concept")
@@ -179,8 +181,10 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
         outside: 50,
         ..PreventionCounts::default()
     };
-    trials[0].swept = vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 1.0, count }];
-    let page = report(&trials, &CsvTable::ALL);
+    let mut details = DetailTotals::default();
+    let swept = vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 1.0, count }];
+    details.add(&trials[0], TrialDetails { swept, ..TrialDetails::default() });
+    let page = report(&trials, details, &CsvTable::ALL);
     assert!(page.contains("4 after the set number of presses, 1 after the set time, 1 early by the wizard."));
     assert!(page.contains("timed in 5 trials and simulated with contact forces in 1 trial; the statistics pool them."));
     assert!(page.contains("the hypothetical signals of each concept were recomputed"));
@@ -222,7 +226,7 @@ fn two_raters_say_why_people_erred() {
     assert_eq!(basis(&coded.trial), Some(BeliefSource::Raters));
     let related = errors.len() as u64 - 1;
     assert_eq!(coded.trial.beliefs.as_ref().map(|beliefs| beliefs.errors), Some(related));
-    let figures = StudySummary::from_trials(&[coded.trial], &coded.facts, 0);
+    let figures = StudySummary::from_trials(&[coded.trial], DetailTotals::default(), &coded.facts, 0);
     let agreement = figures.raters.expect("an agreement");
     assert_eq!((agreement.errors, agreement.same_cause, agreement.same_aspect), (related + 1, related, 0));
     let actions = String::from_utf8(coded.rows[0].clone()).expect("text");
@@ -248,14 +252,16 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
             reaction_s: how.map(|_| stood_s),
         }
     };
-    let mut trials = trials(&[[12, 5]], &[[9, 15]]);
-    let wizards = trials.iter_mut().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
-    wizards.offers = Some(vec![
+    let trials = trials(&[[12, 5]], &[[9, 15]]);
+    let offers = vec![
         offer(1, 3.0, Some(OfferKeyKind::Taken), OfferCloseReason::Taken),
         offer(2, 2.0, Some(OfferKeyKind::OwnKey), OfferCloseReason::OwnKey),
         offer(3, 8.0, None, OfferCloseReason::Fell),
-    ]);
-    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+    ];
+    let wizards = trials.iter().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
+    let mut details = DetailTotals::default();
+    details.add(wizards, TrialDetails { offers, ..TrialDetails::default() });
+    let figures = StudySummary::from_trials(&trials, details, &RecordingFacts::default(), 0);
     let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
     for words in [
         "The wizard saw 3 offers, which stood 3.0 s in the median, 2.0 s at least",
@@ -300,7 +306,7 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     assert!(
         rows.lines().any(|row| row.contains("slip,belief assembly_board,") && row.contains(",belief assembly_board,"))
     );
-    let figures = StudySummary::from_trials(&[settled.trial], &settled.facts, 0);
+    let figures = StudySummary::from_trials(&[settled.trial], DetailTotals::default(), &settled.facts, 0);
     assert_eq!(figures.consensus, [("anna+ben".to_string(), 1)].into());
     let agreement = figures.raters.as_ref().expect("the raters' own agreement");
     assert_eq!((agreement.errors, agreement.same_cause), (errors.len() as u64, 0));
@@ -309,7 +315,7 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     rater_codes::write(&folder, "ben", &all(ErrorCauseCode::Race)).expect("a file");
     let stale = read();
     assert_eq!(basis(&stale.trial), Some((BeliefSource::Raters, 0)));
-    let figures = StudySummary::from_trials(&[stale.trial], &stale.facts, 0);
+    let figures = StudySummary::from_trials(&[stale.trial], DetailTotals::default(), &stale.facts, 0);
     assert!(figures.stale_consensus[0].reason.starts_with("ben changed the code of error 1"));
     assert!(describe(&figures).contains("stale consensus of raters, not used: hand: ben changed"));
 }

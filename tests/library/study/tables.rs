@@ -4,15 +4,24 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tomcom::base::time::SessionTime;
+use tomcom::communication::concept::ConceptName;
 use tomcom::edge::export::AnalysisFolder;
+use tomcom::kitchen::LocationId;
+use tomcom::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use tomcom::study::concept_totals::ConceptPreventionCounts;
 use tomcom::study::dictionary::{DataDictionaryRow, columns, dictionary};
+use tomcom::study::preregistration::RecordedPlan;
+use tomcom::study::prevention::PreventionCounts;
+use tomcom::study::study_part::AnalysedRecording;
 use tomcom::study::tables::participants::participants;
 use tomcom::study::tables::trials::{HEADLINE, measures};
+use tomcom::study::trial_details::TrialDetails;
 use tomcom::study::trial_statistics::TrialStatistics;
 
 use super::probes::one_right_answer;
@@ -134,7 +143,8 @@ fn columns_have_names_of_their_own_that_need_no_quotes() {
 /// A statistic that is compared is declared once, and is then a column of trials and two of participants.
 #[test]
 fn statistics_stand_in_both_tables_with_the_same_values() {
-    let trials = pair().map(|trial| TrialStatistics { probes: Some(one_right_answer(trial.condition)), ..trial });
+    let trials =
+        pair().map(|trial| TrialStatistics { probes: Some(one_right_answer(trial.condition).statistics()), ..trial });
     let rows: Vec<_> = participants(&trials, &[]).collect();
     let [participant] = &rows[..] else { panic!("one participant") };
     assert_eq!(cell(participant, "assisted_second"), CsvCell::Flag(true));
@@ -191,6 +201,37 @@ fn tables_are_written_as_they_are_declared() {
     assert_eq!(of_trials.collect::<Vec<_>>(), heads);
 }
 
+/// Analysed recordings come back from their files as they were, to the last digit.
+#[test]
+fn analysed_recordings_are_kept_in_files_until_all_are_read() {
+    let folder = folder("kept");
+    let RecordingAnalysis { trial, facts, .. } = analysis("kept-recording");
+    let content = ComparedContent { kind: CommunicationKind::Highlight, target: Some(LocationId(3)) };
+    let sent = CommunicationEvent { press: 7, clock: SessionTime(1_234_567_891), content };
+    let count = PreventionCounts { presses: 90, lead_ms: 1_001, harmless: None, ..PreventionCounts::default() };
+    let details = TrialDetails {
+        offers: Vec::new(),
+        lanes: Some([vec![sent], Vec::new()]),
+        swept: vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 0.1 + 0.2, count }],
+        probes: Some(one_right_answer(Condition::None)),
+    };
+    let plan = RecordedPlan { participant: trial.participant.clone(), plan: None };
+    let practice =
+        AnalysedRecording { recording: "practice".to_string(), plan, consent: None, tutorial: Vec::new(), trial: None };
+    let recording = AnalysedRecording {
+        recording: trial.recording.clone(),
+        trial: Some((trial, details, facts)),
+        ..practice.clone()
+    };
+    let export = AnalysisFolder::create(&folder).expect("a folder");
+    export.keep_analysed(0, &recording).expect("a file");
+    export.keep_analysed(1, &practice).expect("a file");
+    assert_eq!(export.kept_analysed(0).expect("kept"), recording);
+    assert_eq!(export.kept_analysed(1).expect("kept"), practice);
+    export.remove_kept().expect("removed");
+    assert!(fs::read_dir(&folder).expect("a folder").next().is_none(), "nothing is left");
+}
+
 /// Rows of events go through files of their own, without a first line.
 #[test]
 fn tables_of_events_say_what_happened() {
@@ -201,6 +242,8 @@ fn tables_of_events_say_what_happened() {
     // Nobody could see an offer.
     let written: Vec<CsvTable> = CsvTable::OF_EVENTS.into_iter().filter(|&table| table != CsvTable::Offers).collect();
     assert_eq!(export.tables_of_events(&[0]).expect("tables"), written);
+    export.remove_kept().expect("removed");
+    assert!(!folder.join(".rows").exists());
     let actions = |column: &str| fields(&folder, CsvTable::Actions, column);
     let agents = actions("agent");
     let count = |agent: &str| agents.iter().filter(|one| *one == agent).count() as u64;

@@ -264,10 +264,14 @@ impl ParticleSet {
         self.forgot = Some(now.max(last));
         let transition = &self.model.transition;
         let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / transition.recipe_half_life_s);
-        for dish in (0..self.kitchen.dishes.len()).map(|index| DishId(index as u8)) {
+        let recipe = |index: usize| {
+            let dish = DishId(index as u8);
             let recalls = transition.recall_precision.filter(|_| self.kitchen.is_ordered(self.shown, dish));
-            let aspect = self.kitchen.aspect_of_dish(dish);
-            self.of.iter_mut().for_each(|person| person.forget(aspect, &self.prior, (lost, recalls), random));
+            (self.kitchen.aspect_of_dish(dish), recalls)
+        };
+        let recipes: Vec<(AspectId, Option<f64>)> = (0..self.kitchen.dishes.len()).map(recipe).collect();
+        for person in &mut self.of {
+            recipes.iter().for_each(|&(aspect, recalls)| person.forget(aspect, &self.prior, (lost, recalls), random));
         }
     }
 

@@ -1,6 +1,6 @@
 """Resident memory of `tomcom study` with few and with many trials, and with the same trials in parts.
 
-    tests/outside/study_memory.py TOMCOM FOLDER [--trials 280] [--presses 16] [--more 1.15] [--seed 8106]
+    tests/outside/study_memory.py TOMCOM FOLDER [--trials 280] [--presses 16] [--more 1.4] [--seed 8106]
 
 The trials are short, since memory is held against their number: unassisted trials with what concepts would have prevented, and trials of a
 scripted wizard with the signals that the assistant would have sent.
@@ -30,7 +30,7 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--trials", type=int, default=280)
     parser.add_argument("--presses", type=int, default=16, help="of both agents in a trial")
-    parser.add_argument("--more", type=float, default=1.15, help=f"how many times the memory of {FEW} trials may be needed")
+    parser.add_argument("--more", type=float, default=1.4, help=f"how many times the memory of {FEW} trials may be needed")
     parser.add_argument("--seed", type=int, default=8106)
     arguments = parser.parse_args()
     tomcom, folder, trials = arguments.tomcom, arguments.folder / f"study-memory-{os.getpid()}", arguments.trials

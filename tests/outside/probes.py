@@ -58,7 +58,7 @@ def main_results(tables):
 
 
 def areas(rows):
-    score = 1 - rows.estimate_p_truth
+    score = rows.estimate_p_false
     is_recipe = rows.kind == "recipe"
     area = lambda of, score: roc_auc_score(rows.wrong[of], score[of], sample_weight=rows.weight[of])  # noqa: E731
     changed = rows.changed_unseen.map({True: 1.0, False: 0.0})

@@ -138,7 +138,7 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
         loop {
             let free: Vec<usize> = (0..held.len()).filter(|&index| held[index].is_none()).collect();
             let surface = self.climb(SurfaceSource::Values, &free)?;
-            let variances = surface.as_ref().and_then(|surface| surface.variances(&self.slope_covariance(&free)?));
+            let variances = surface.as_ref().and_then(|surface| surface.variances(&self.score_products(&free)?));
             let ends = self.ends(&free);
             if ends.is_empty() {
                 let least = surface.as_ref().map(LeastLoss::from_surface);
@@ -195,7 +195,7 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
 
     /// By how much the least loss over the variables `others` exceeds the least loss so far, beyond the noise, in nats.
     /// What does not have to be known exactly is not: the others are optimised only where that can decide whether the
-    /// excess is significant. The best point moves to the least loss that was found. `None` if too few evaluations are
+    /// excess is significant. The current point moves to the least loss that was found. `None` if too few evaluations are
     /// left.
     fn excess(&mut self, others: &[usize], least: LeastLoss) -> Option<f64> {
         let clear = CLEAR_NATS + 3.0 * least.noise;

@@ -6,7 +6,7 @@
 //! search uses a sequence of quadratic surfaces ([`surface_search`]): first from the scores of presses ([`score_surface`]),
 //! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface and
 //! the outer products of the scores (the "sandwich" of Huber 1967 and White 1982). A parameter whose maximum lies at a
-//! bound is not identified; the interval of such a parameter is one-sided.
+//! bound, or whose interval reaches one, is not identified; the interval of such a parameter is one-sided.
 //!
 //! [`people_fit`] fits a population of persons with different parameters ([`people_search`], [`population_estimate`]).
 

@@ -72,7 +72,7 @@ impl ScoreRegression {
 
     /// Covariance of the slope of the log likelihood: the sum over presses of the outer products of their scores, with the
     /// noise of single presses, which moves the slope as well.
-    pub fn slope_covariance(&self) -> DMatrix<f64> {
+    pub fn score_products(&self) -> DMatrix<f64> {
         let scores = self.lines.rows(1, self.lines.nrows() - 1);
         scores * scores.transpose()
     }
@@ -86,7 +86,7 @@ impl ScoreRegression {
     /// The quadratic surface with the scores' outer products as curvature, less the noise of single presses.
     pub fn surface(&self) -> QuadraticSurface {
         let press_noise = (&self.losses - &self.design * &self.lines).norm_squared() / self.freedom();
-        let curvature = self.slope_covariance() - self.of_slopes() * press_noise;
+        let curvature = self.score_products() - self.of_slopes() * press_noise;
         let bend = |row: usize| {
             let by = self.design.row(row).columns(1, curvature.nrows()).transpose();
             by.dot(&(&curvature * &by)) / 2.0

@@ -72,7 +72,7 @@ pub(super) struct SurfaceSearch<'a, F> {
     pub(super) bounds: &'a [[f64; 2]],
     /// All points tried so far that have a likelihood, with the loss of each press.
     tried: Vec<(Vec<f64>, Vec<f64>)>,
-    /// Point with the least loss that the search has found so far.
+    /// The current point: where the latest surface, or half a step to it, has led.
     pub(super) at: Vec<f64>,
     /// Centre of the latest surface.
     centre: Vec<f64>,
@@ -185,10 +185,10 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
     }
 
     /// Covariance of the log likelihood's slope around the centre of the latest surface, per step of each free variable.
-    pub(super) fn slope_covariance(&self, free: &[usize]) -> Option<DMatrix<f64>> {
+    pub(super) fn score_products(&self, free: &[usize]) -> Option<DMatrix<f64>> {
         let [centre, steps] = [&self.centre, &self.steps].map(|of| free.iter().map(|&index| of[index]).collect());
         let [centre, steps]: [Vec<f64>; 2] = [centre, steps];
-        ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.slope_covariance())
+        ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.score_products())
     }
 
     /// The points tried so far at which the other variables were as at the best point, as values of the free variables.

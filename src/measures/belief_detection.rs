@@ -6,9 +6,9 @@
 //! over all pairs of a press and an aspect of the group together: the score has to distinguish an aspect that is
 //! believed wrong now both from the other aspects and from the same aspect at other times. The score of the estimate is
 //! the predicted probability of a false belief: that the participant's P(truth) is below 0.5. The macro-average is the
-//! mean of the two groups, so that the many pairs of one group do not hide the other group. Calibration judges the
-//! same probability, not the expected probability of wrong values. The mean over single aspects is reported as well; this mean depends much on
-//! aspects that are hardly ever wrong.
+//! mean of the two groups, so that the many pairs of one group do not hide the other group. Calibration judges the same
+//! probability, not the expected probability of wrong values. The mean over single aspects is reported as well; this
+//! mean depends much on aspects that are hardly ever wrong.
 
 use serde::Serialize;
 

@@ -144,7 +144,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         }
     }
 
-    /// Goes to the least value of a surface around the best point. Returns the surface, and how far that was, in steps from
+    /// Goes to the least value of a surface around the current point. Returns the surface, and how far that was, in steps from
     /// the surface's centre; `None` if too few evaluations are left.
     pub(super) fn step(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(QuadraticSurface, Vec<f64>)> {
         let (centre, surface) = self.survey(source, free)?;
@@ -155,7 +155,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         Some((surface, by))
     }
 
-    /// A surface over the free variables around the best point, inside the bounds, with the surface's centre;
+    /// A surface over the free variables around the current point, inside the bounds, with the surface's centre;
     /// `None` if too few evaluations are left.
     fn survey(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + source.points(free.len()) > self.most {
@@ -191,7 +191,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.score_products())
     }
 
-    /// The points tried so far at which the other variables were as at the best point, as values of the free variables.
+    /// The points tried so far at which the other variables were as at the current point, as values of the free variables.
     fn tried_with(&self, free: &[usize]) -> Vec<TriedPoint<'_>> {
         let is_held = |index: &usize| !free.contains(index);
         let has_held =
@@ -200,14 +200,14 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         self.tried.iter().filter(|(at, _)| has_held(at)).map(|(at, losses)| (of_free(at), &losses[..])).collect()
     }
 
-    /// The best point with other values of the free variables.
+    /// The current point with other values of the free variables.
     fn with(&self, free: &[usize], values: &[f64]) -> Vec<f64> {
         let mut whole = self.at.clone();
         free.iter().zip(values).for_each(|(&index, &value)| whole[index] = value);
         whole
     }
 
-    /// Loss at the best point with other values of the free variables, in nats; infinite without a likelihood.
+    /// Loss at the current point with other values of the free variables, in nats; infinite without a likelihood.
     fn try_point(&mut self, free: &[usize], values: &[f64]) -> f64 {
         let at = self.with(free, values);
         self.evaluations += 1;
@@ -269,7 +269,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         self.bounds[index][end as usize]
     }
 
-    /// Loss at the best point, in nats; infinite without a likelihood.
+    /// Loss at the current point, in nats; infinite without a likelihood.
     pub(super) fn loss(&mut self) -> f64 {
         self.try_point(&[], &[])
     }

@@ -250,6 +250,8 @@ pub(super) enum FitParameter {
     Capture,
     /// Expected probability of a true recipe at the start of a trial.
     RecipeKnowledge,
+    /// Share of the people who, at a given time, consider only one order.
+    OneOrder,
 }
 
 impl FitParameter {
@@ -268,6 +270,7 @@ impl FitParameter {
             FitParameter::OtherLooks => HumanModelParameter::OtherLooksHz,
             FitParameter::Capture => HumanModelParameter::Capture,
             FitParameter::RecipeKnowledge => HumanModelParameter::RecipeTruth,
+            FitParameter::OneOrder => HumanModelParameter::OneOrder,
         }
     }
 }

@@ -72,7 +72,7 @@ impl FalseBeliefDetection {
         trials: &[TrialBeliefs],
         thresholds: Option<FlagThresholds>,
     ) -> FalseBeliefDetection {
-        let predicted = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
+        let predicted = BeliefsBeforePress::p_false;
         let changed =
             |press: &BeliefsBeforePress, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
         let groups = aspect_groups(kitchen);

@@ -222,15 +222,16 @@ fn candidates(trials: &[&TrialBeliefs], group: &[usize], allowed: usize) -> Vec<
     if tried.is_empty() { vec![0.0] } else { tried }
 }
 
-fn p_false(press: &BeliefsBeforePress, aspect: usize) -> f64 {
-    press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_false[aspect])
+/// The predicted probability of a false belief by which an aspect is flagged: without an estimate it never is.
+fn score(press: &BeliefsBeforePress, aspect: usize) -> f64 {
+    press.p_false(aspect).unwrap_or(0.0)
 }
 
 /// Predicted probabilities of a false belief of all (press, aspect) pairs with a right belief.
 fn while_right<'a>(trials: &'a [&'a TrialBeliefs], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
     let is_right = |press: &BeliefsBeforePress, aspect: usize| press.is_wrong(aspect) == Some(false);
     trials.iter().flat_map(|trial| trial.iter()).flat_map(move |press| {
-        group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_false(press, aspect))
+        group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| score(press, aspect))
     })
 }
 
@@ -259,7 +260,7 @@ fn harmful(trials: &[&TrialBeliefs], aspect: usize) -> Vec<Episode> {
 
 impl Outcome {
     fn from_threshold(trials: &[&TrialBeliefs], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
-        let is_flagged = |press: &BeliefsBeforePress, aspect: usize| p_false(press, aspect) >= threshold;
+        let is_flagged = |press: &BeliefsBeforePress, aspect: usize| score(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))
         };

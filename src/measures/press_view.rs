@@ -56,4 +56,9 @@ impl BeliefsBeforePress {
     pub fn is_wrong(&self, aspect: usize) -> Option<bool> {
         self.held.as_ref().map(|held| held[aspect] < FALSE_BELOW)
     }
+
+    /// The predicted probability that the participant's belief about an aspect is false; `None` without an estimate.
+    pub fn p_false(&self, aspect: usize) -> Option<f64> {
+        self.estimate.as_ref().map(|estimate| estimate.p_false[aspect])
+    }
 }

@@ -38,7 +38,7 @@ pub struct DetectionScores {
 impl DetectionScores {
     /// Scores and predictions before every press of these trials whose beliefs and estimates are known.
     pub fn from_trials(kitchen: &Kitchen, trials: &[TrialBeliefs]) -> DetectionScores {
-        let predicted = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
+        let predicted = BeliefsBeforePress::p_false;
         let all: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let mut predictions = equal_scores(trials, &all, &predicted);
         predictions.retain(|one| (CALIBRATED[0]..=CALIBRATED[1]).contains(&one.score));

@@ -15,6 +15,7 @@ use super::evidence_model::EvidenceModel;
 use super::exchange::ExchangeUpdate;
 use super::human_act::{HumanAction, ProposalMixture};
 use super::look_news::UnseenLooks;
+use super::order_focus::OrderFocus;
 use super::perception::GazeBeliefUpdate;
 use super::serving::ServingUpdate;
 use super::signals_so_far::SignalReadingHistory;
@@ -76,6 +77,8 @@ pub struct ConditionalFilter {
     signals: SignalReadingHistory,
     /// How often this person slips, where the model learns that.
     lapse: LapsePosterior,
+    /// Which orders the human considers.
+    focus: OrderFocus,
     evidence: Option<PressEvidence>,
 }
 
@@ -104,6 +107,7 @@ impl ConditionalFilter {
             proposed: ProposedPresses::default(),
             signals: SignalReadingHistory::default(),
             lapse: LapsePosterior::around(model.decision.lapse),
+            focus: OrderFocus::new(&kitchen, model.decision.one_order),
             evidence: None,
             kitchen,
             model,
@@ -172,6 +176,7 @@ impl ConditionalFilter {
                 self.presence.rest(now);
                 self.recall_ordered(self.kitchen.empty_state(), state);
                 self.show(now, state);
+                self.focus = OrderFocus::new(&self.kitchen, self.model.decision.one_order);
             }
             ObservedEvidence::Gaze { .. } | ObservedEvidence::DisplayInView(_) => {}
             ObservedEvidence::Frozen | ObservedEvidence::Thawed { .. } | ObservedEvidence::Proposed(_) => {}
@@ -300,7 +305,8 @@ impl ConditionalFilter {
     fn needs_now(&mut self, cost: &mut CostToGo) -> Vec<f64> {
         let mut random = stream(self.seed, "needs", self.presses);
         let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
+        let (inference, focus) = (&self.model.inference, &self.focus);
+        let model = EvidenceModel { kitchen, choice, inference, watched, lapse, focus };
         self.sampler.needs(&model, cost, &self.belief, &mut random)
     }
 
@@ -335,13 +341,16 @@ impl ConditionalFilter {
         }
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
         let lapse = self.model.adapt.lapse.then(|| self.lapse.expected());
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
+        let (inference, focus) = (&self.model.inference, &self.focus);
+        let model = EvidenceModel { kitchen, choice, inference, watched, lapse, focus };
         let evidence =
             self.sampler.weigh(&model, cost, &mut self.belief, HumanAction::Presses(press), looks.as_ref(), random);
         if lapse.is_some() {
             let parts = self.sampler.expected_parts();
             self.lapse.learn(|lapse| press.likelihood(parts.likelihood(lapse)));
         }
+        let focus = self.sampler.focus(self.focus.count());
+        self.focus.learn(&focus);
         if let Some(UnknownGazePeriod { signal_hazard, .. }) = stretch.filter(|_| has_signal) {
             self.correct_reading(signal_hazard, self.sampler.signal_read());
         }
@@ -352,11 +361,13 @@ impl ConditionalFilter {
     fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
         let mut random = stream(self.seed, "waiting", self.presses);
         let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
+        let (inference, focus) = (&self.model.inference, &self.focus);
+        let model = EvidenceModel { kitchen, choice, inference, watched, lapse, focus };
         self.sampler.weigh(&model, cost, &mut self.belief, HumanAction::Waits { longer }, None, &mut random);
     }
 
     fn show(&mut self, now: SessionTime, state: State) {
+        self.focus.release(&self.kitchen, self.shown, state);
         self.shown = state;
         self.reader.show(now, state, self.model.perception.history_s);
     }

@@ -102,12 +102,6 @@ impl DistinctWorlds {
         any
     }
 
-    /// The world with this index.
-    #[inline]
-    pub fn world(&self, index: u32) -> World {
-        self.known[index as usize].world
-    }
-
     /// Number of distinct worlds among the draws.
     pub fn len(&self) -> usize {
         self.known.len()

@@ -8,10 +8,9 @@
 
 use rand::RngExt;
 
-use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
+use crate::kitchen::{Agent, AspectKind, Kitchen, LocationId, OrderContent};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::lapse_posterior::PressParts;
 use crate::mind::model::InferenceSettings;
@@ -21,6 +20,7 @@ use super::evidence_model::EvidenceModel;
 use super::human_act::HumanAction;
 use super::look_news::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
 use super::moments::MixtureMoments;
+use super::sample_worlds::{DistinctDraws, Run};
 use super::urn::PolyaUrn;
 
 /// Share of the first draws of a recipe that is spread evenly over the recipe's variants (importance sampling), so that
@@ -52,7 +52,7 @@ pub struct BeliefSampler {
     /// `[sample * aspects + aspect]`: value of the belief sample's first draw.
     pub(super) firsts: Vec<u8>,
     /// All draws of those aspects of which a belief sample has several values, in consecutive rows of length `states`.
-    rows: Vec<u8>,
+    pub(super) rows: Vec<u8>,
     pub(super) samples: Vec<Sample>,
     /// Importance weight of a first draw, by aspect and value; empty where first draws come from the mean.
     counts: Vec<Vec<f64>>,
@@ -68,9 +68,7 @@ pub struct BeliefSampler {
     /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
     /// The groups of equal draws in the present belief sample.
-    alike: Vec<Alike>,
-    /// The values of the aspects with several values in a belief sample, by draw.
-    keys: Vec<Key>,
+    pub(super) alike: DistinctDraws,
     /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
@@ -84,9 +82,11 @@ pub struct BeliefSampler {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// Bit set of the aspects of which the belief sample has several values (mixed aspects).
-    mixed: u32,
+    pub(super) mixed: u32,
     /// Start of the mixed aspects' rows in [`BeliefSampler::rows`].
-    rows: usize,
+    pub(super) rows: usize,
+    /// Index of the orders that a human with this belief considers (see [`super::order_focus`]).
+    pub(super) focus: u8,
     /// Range of the sample's distinct worlds in [`BeliefSampler::runs`].
     pub(super) runs: [usize; 2],
 }
@@ -97,27 +97,6 @@ impl Sample {
     fn row(&self, aspect: usize, states: usize) -> usize {
         self.rows + (self.mixed & ((1 << aspect) - 1)).count_ones() as usize * states
     }
-}
-
-/// The draws of one belief sample that give the same world: index of the first draw, and number of draws.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Run {
-    pub(super) world: u32,
-    first: u32,
-    pub(super) draws: u32,
-}
-
-/// The values of up to 32 aspects, one byte each.
-type Key = [u64; 4];
-/// Number of values in one of the four parts of a key.
-const KEY_PART: usize = (u64::BITS / u8::BITS) as usize;
-
-/// The equal draws of one belief sample: their values, the index of the first draw, and the number of draws.
-#[derive(Clone, Copy, Debug)]
-struct Alike {
-    key: Key,
-    first: usize,
-    draws: u32,
 }
 
 impl BeliefSampler {
@@ -210,9 +189,9 @@ impl BeliefSampler {
         for sample in 0..new {
             let rows = self.rows.len();
             let mixed = self.draw_on(kitchen, new, sample, states, random);
-            let begin = self.runs.len();
-            self.count_worlds(kitchen, states, mixed, rows);
-            self.samples.push(Sample { mixed, rows, runs: [begin, self.runs.len()] });
+            let (begin, focus) = (self.runs.len(), model.focus.of_sample(sample, new));
+            self.samples.push(Sample { mixed, rows, focus, runs: [begin; 2] });
+            self.count_worlds(kitchen, states);
         }
         self.worlds.rate(cost, wanted * states);
     }
@@ -247,45 +226,6 @@ impl BeliefSampler {
         }
         self.priors.push(prior);
         mixed
-    }
-
-    /// Counts the distinct worlds of the newest belief sample, whose rows start at `rows`.
-    fn count_worlds(&mut self, kitchen: &Kitchen, states: usize, mixed: u32, rows: usize) {
-        self.tell_apart(states, mixed, rows);
-        let mut world = World::empty(kitchen);
-        let firsts = &self.firsts[self.firsts.len() - self.urns.len()..];
-        for (aspect, &value) in firsts.iter().enumerate().filter(|(_, value)| **value != UNDRAWN) {
-            world.set_value(kitchen, AspectId(aspect as u8), usize::from(value));
-        }
-        for &Alike { first, draws, .. } in &self.alike {
-            for (aspect, row) in ones(mixed).zip(self.rows[rows..].chunks_exact(states)) {
-                world.set_value(kitchen, AspectId(aspect as u8), usize::from(row[first]));
-            }
-            let index = self.worlds.count(world, draws);
-            self.runs.push(Run { world: index, first: first as u32, draws });
-        }
-    }
-
-    /// Groups the draws of a belief sample by equality of their values.
-    fn tell_apart(&mut self, states: usize, mixed: u32, rows: usize) {
-        self.alike.clear();
-        if mixed == 0 {
-            return self.alike.push(Alike { key: Key::default(), first: 0, draws: states as u32 });
-        }
-        self.keys.clear();
-        self.keys.resize(states, Key::default());
-        for (index, row) in self.rows[rows..].chunks_exact(states).enumerate() {
-            for (key, &value) in self.keys.iter_mut().zip(row) {
-                let part = &mut key[index / KEY_PART];
-                *part = *part << u8::BITS | u64::from(value);
-            }
-        }
-        for (first, &key) in self.keys.iter().enumerate() {
-            match self.alike.iter_mut().find(|alike| alike.key == key) {
-                Some(alike) => alike.draws += 1,
-                None => self.alike.push(Alike { key, first, draws: 1 }),
-            }
-        }
     }
 
     /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's action.
@@ -355,6 +295,16 @@ impl BeliefSampler {
         }
         let sum = self.posteriors.iter().sum::<f64>() * states as f64;
         self.worlds.rate_again(cost, &self.world_weights, sum)
+    }
+
+    /// Posterior probability of each focus of the human.
+    pub fn focus(&self, focuses: usize) -> Vec<f64> {
+        let total: f64 = self.posteriors.iter().sum();
+        let mut found = vec![0.0; focuses];
+        for (sample, weight) in self.samples.iter().zip(&self.posteriors) {
+            found[usize::from(sample.focus)] += weight / total;
+        }
+        found
     }
 
     /// Expected parts of the last press's likelihood, under the estimate before that press.

@@ -1,5 +1,6 @@
 //! The models that define the likelihood of what the human does.
 
+use super::order_focus::OrderFocus;
 use crate::kitchen::Kitchen;
 use crate::mind::choice::ChoiceModel;
 use crate::mind::model::InferenceSettings;
@@ -16,4 +17,6 @@ pub struct EvidenceModel<'a> {
     pub watched: &'a [u32],
     /// The expected lapse (share of slips) of this person; `None`: the lapse of the choice model.
     pub lapse: Option<f64>,
+    /// Which orders the human considers.
+    pub focus: &'a OrderFocus,
 }

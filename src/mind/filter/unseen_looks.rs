@@ -7,7 +7,6 @@
 
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
-use crate::kitchen::AspectId;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::mind::dirichlet::DirichletBelief;
@@ -79,7 +78,7 @@ impl BeliefSampler {
             let changed = self.news[begin..].iter().fold(0, |changed, news| changed | 1 << news.aspect);
             self.looks.push(SampleLookEffects { changed, news, read_signal });
             if changed != 0 {
-                self.believe_news(model, index, news);
+                self.believe_news(model.kitchen, index, news, model.inference.states);
             }
         }
     }
@@ -109,18 +108,6 @@ impl BeliefSampler {
     pub fn signal_read(&self) -> f64 {
         let read = self.posteriors.iter().zip(&self.looks).filter(|(_, looks)| looks.read_signal);
         read.map(|(weight, _)| weight).sum::<f64>() / self.posteriors.iter().sum::<f64>()
-    }
-
-    /// Replaces the worlds of a belief sample by worlds with the values that the sample has learned from looks.
-    fn believe_news(&mut self, model: &EvidenceModel, sample: usize, [begin, end]: [usize; 2]) {
-        let [first, last] = self.samples[sample].runs;
-        for run in &mut self.runs[first..last] {
-            let mut world = self.worlds.world(run.world);
-            for news in &self.news[begin..end] {
-                world.set_value(model.kitchen, AspectId(news.aspect as u8), usize::from(news.value));
-            }
-            run.world = self.worlds.count(world, run.draws);
-        }
     }
 
     /// What a belief sample has learned from looks; nothing if no looks were drawn.

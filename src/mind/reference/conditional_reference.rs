@@ -11,7 +11,7 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::belief_set::ParticleSet;
-use super::person::Particle;
+use super::person::{Particle, pick};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
@@ -94,14 +94,15 @@ impl ConditionalReference {
     fn project(&mut self, weights: &[f64], random: &mut Stream) {
         if !self.people.of.is_empty() {
             let estimate = self.people.projected(weights);
-            self.draw(&estimate, self.people.share_with_signal(weights), random);
+            self.draw(&estimate, weights, random);
             self.people.doubt = estimate;
         }
     }
 
     /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is
-    /// preserved, and so is the share that has read the signal on the display.
-    fn draw(&mut self, estimate: &DirichletBelief, with_signal: f64, random: &mut Stream) {
+    /// preserved, and so are the weighted shares that have read the signal on the display and that consider one order.
+    fn draw(&mut self, estimate: &DirichletBelief, weights: &[f64], random: &mut Stream) {
+        let with_signal = self.people.share_with_signal(weights);
         let count = self.people.of.len() as f64;
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;
         let read: Vec<f64> = (0..self.kitchen.locations.len()).map(read).collect();
@@ -109,6 +110,9 @@ impl ConditionalReference {
             let mut person = Particle::draw(&self.kitchen, estimate, random);
             person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
             person.read_signal = with_signal > 0.0 && random.random::<f64>() < with_signal;
+            if self.people.is_focused() {
+                person.focus = self.people.of[pick(weights, random)].focus;
+            }
             person
         };
         let people = (0..self.beliefs).map(|_| person(random)).collect();

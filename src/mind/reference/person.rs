@@ -31,6 +31,8 @@ pub struct Particle {
     pub read: Vec<bool>,
     /// Whether the human with this belief has read the signal on the display.
     pub read_signal: bool,
+    /// The only order that the human considers; `None`: all orders.
+    pub focus: Option<LocationId>,
 }
 
 /// A hypothesis of kitchen state and recipes, with its probability.
@@ -48,7 +50,7 @@ impl Particle {
     /// A belief drawn from an estimate; every component is drawn by a gamma variate.
     pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
-        Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false }
+        Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false, focus: None }
     }
 
     /// Applies a gaze sample: a location that has not been read in this look is read with a probability, and the belief
@@ -65,6 +67,12 @@ impl Particle {
                 self.settle(AspectId::of_location(glance.location), value);
             }
         }
+    }
+
+    /// Draws which orders the human considers: with the probability `one_order` one of several orders, else all.
+    pub fn choose_focus(&mut self, kitchen: &Kitchen, one_order: f64, random: &mut Stream) {
+        let is_on_one = kitchen.orders.len() > 1 && random.random::<f64>() < one_order;
+        self.focus = is_on_one.then(|| kitchen.orders[random.random_range(0..kitchen.orders.len())]);
     }
 
     /// Makes the belief certain of a value of an aspect.
@@ -120,13 +128,25 @@ impl Particle {
         let mut here = 0.0;
         let mut after = vec![0.0; kitchen.buttons[Agent::Human.index()].len()];
         for way in self.ways(kitchen, states, random) {
-            let decision = cost.decision(way.state, &way.recipes, Agent::Human);
+            let state = self.considered(kitchen, way.state);
+            let decision = cost.decision(state, &way.recipes, Agent::Human);
             here += way.p * f64::from(decision.here);
             for (sum, &one) in after.iter_mut().zip(&decision.after) {
                 *sum += way.p * f64::from(one);
             }
         }
         (here, after)
+    }
+
+    /// What the human considers of a believed state: a dish that is ordered at the order of the focus, and then no other.
+    fn considered(&self, kitchen: &Kitchen, mut state: State) -> State {
+        let Some(only) = self.focus.filter(|&order| matches!(state.order(order), OrderContent::Dish(_))) else {
+            return state;
+        };
+        for &order in kitchen.orders.iter().filter(|&&order| order != only) {
+            state.set_order(order, OrderContent::None);
+        }
+        state
     }
 
     /// p(a | b) of every button of the human, given that a button is pressed.

@@ -16,7 +16,7 @@ const UNSURE: &str = "a certain belief could not be corrected by any observation
 const PRECISION: &str = "with a lower precision there is no belief, with a higher one the belief is certain";
 const DRAWS: &str = "larger samples take seconds to minutes for each press";
 
-pub(super) const RANGES: [NumberRange; 39] = [
+pub(super) const RANGES: [NumberRange; 40] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
@@ -109,6 +109,7 @@ pub(super) const RANGES: [NumberRange; 39] = [
         "with the largest cost of waiting, nobody ever waits",
     )
     .recorded(NOT_NEGATIVE),
+    NumberRange::real("human.decision.one_order", [0.0, 0.999], "", "at 1 nobody would ever consider two orders"),
     NumberRange::whole("human.decision.cases", [1.0, 4_096.0], "worlds", DRAWS).recorded(TO_65536),
     NumberRange::real("human.signal.noticed", [0.0, 1.0], "", CHANCE),
     NumberRange::real("human.signal.highlight_noticed", [0.0, 1.0], "", CHANCE),

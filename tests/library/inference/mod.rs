@@ -13,6 +13,7 @@ mod freezes;
 mod grid;
 mod laws;
 mod observed;
+mod order_focus;
 mod particles;
 mod proposals;
 mod recall;

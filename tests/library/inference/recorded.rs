@@ -62,6 +62,23 @@ fn they_agree_without_gaze_where_the_attention_is_learned() {
     agree(model, |what| !matches!(what, ObservedEvidence::Gaze { .. }), with_signals);
 }
 
+#[test]
+fn they_agree_where_people_consider_one_order() {
+    agree(considers_one_order(), |_| true, |same| same);
+}
+
+#[test]
+fn they_agree_without_gaze_where_people_consider_one_order() {
+    agree(considers_one_order(), |what| !matches!(what, ObservedEvidence::Gaze { .. }), |same| same);
+}
+
+/// A human who mostly considers one order.
+fn considers_one_order() -> HumanModel {
+    let mut model = HumanModel::default();
+    model.decision.one_order = 0.8;
+    model
+}
+
 /// A human who reads signals in time.
 fn reads_in_time() -> HumanModel {
     let signal = SignalModel {

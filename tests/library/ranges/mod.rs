@@ -43,6 +43,8 @@ const SETTINGS: &str = r#"
         answers_from = 0.4
         answer_s = { median = 2.0, sigma = 0.4 }
         follows_proposal = { median = 0.5, sigma = 0.4 }
+        [human.decision]
+        one_order = 0.5
         [human.transition]
         recall_precision = 0.5
         [human.signal]

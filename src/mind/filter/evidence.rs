@@ -8,19 +8,21 @@
 
 use rand::RngExt;
 
+use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectKind, Kitchen, LocationId, OrderContent};
+use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::lapse_posterior::PressParts;
 use crate::mind::model::InferenceSettings;
 
 use super::distinct::DistinctWorlds;
+use super::distinct_draws::{Alike, DistinctDraws, Run};
 use super::evidence_model::EvidenceModel;
 use super::human_act::HumanAction;
 use super::look_news::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
 use super::moments::MixtureMoments;
-use super::sample_worlds::{DistinctDraws, Run};
+use super::order_focus::considered;
 use super::urn::PolyaUrn;
 
 /// Share of the first draws of a recipe that is spread evenly over the recipe's variants (importance sampling), so that
@@ -52,7 +54,7 @@ pub struct BeliefSampler {
     /// `[sample * aspects + aspect]`: value of the belief sample's first draw.
     pub(super) firsts: Vec<u8>,
     /// All draws of those aspects of which a belief sample has several values, in consecutive rows of length `states`.
-    pub(super) rows: Vec<u8>,
+    rows: Vec<u8>,
     pub(super) samples: Vec<Sample>,
     /// Importance weight of a first draw, by aspect and value; empty where first draws come from the mean.
     counts: Vec<Vec<f64>>,
@@ -68,7 +70,7 @@ pub struct BeliefSampler {
     /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
     /// The groups of equal draws in the present belief sample.
-    pub(super) alike: DistinctDraws,
+    alike: DistinctDraws,
     /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
@@ -82,9 +84,9 @@ pub struct BeliefSampler {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// Bit set of the aspects of which the belief sample has several values (mixed aspects).
-    pub(super) mixed: u32,
+    mixed: u32,
     /// Start of the mixed aspects' rows in [`BeliefSampler::rows`].
-    pub(super) rows: usize,
+    rows: usize,
     /// Index of the orders that a human with this belief considers (see [`super::order_focus`]).
     pub(super) focus: u8,
     /// Range of the sample's distinct worlds in [`BeliefSampler::runs`].
@@ -226,6 +228,35 @@ impl BeliefSampler {
         }
         self.priors.push(prior);
         mixed
+    }
+
+    /// Counts the distinct worlds of the newest belief sample.
+    fn count_worlds(&mut self, kitchen: &Kitchen, states: usize) {
+        let index = self.samples.len() - 1;
+        let Sample { rows, focus, .. } = self.samples[index];
+        self.alike.tell_apart(states, &self.rows[rows..]);
+        for group in 0..self.alike.groups.len() {
+            let Alike { first, draws, .. } = self.alike.groups[group];
+            let world = considered(kitchen, self.world_of(kitchen, index, first, states), focus);
+            let world = self.worlds.count(world, draws);
+            self.runs.push(Run { world, first: first as u32, draws });
+        }
+        self.samples[index].runs[1] = self.runs.len();
+    }
+
+    /// The world of one draw of a belief sample.
+    pub(super) fn world_of(&self, kitchen: &Kitchen, index: usize, draw: usize, states: usize) -> World {
+        let aspects = self.urns.len();
+        let Sample { mixed, rows, .. } = self.samples[index];
+        let mut world = World::empty(kitchen);
+        let firsts = &self.firsts[index * aspects..][..aspects];
+        for (aspect, &value) in firsts.iter().enumerate().filter(|(_, value)| **value != UNDRAWN) {
+            world.set_value(kitchen, AspectId(aspect as u8), usize::from(value));
+        }
+        for (aspect, row) in ones(mixed).zip(self.rows[rows..].chunks_exact(states)) {
+            world.set_value(kitchen, AspectId(aspect as u8), usize::from(row[draw]));
+        }
+        world
     }
 
     /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's action.

@@ -7,6 +7,7 @@
 
 pub mod conditional_filter;
 mod distinct;
+mod distinct_draws;
 mod evidence;
 mod evidence_model;
 mod exchange;
@@ -18,7 +19,6 @@ pub mod order_focus;
 mod own_press;
 mod perception;
 mod robot_press;
-mod sample_worlds;
 mod serving;
 pub mod signals_so_far;
 mod unknown_gaze;

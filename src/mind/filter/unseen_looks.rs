@@ -9,12 +9,15 @@ use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::state::MAX_LOCATIONS;
+use crate::kitchen::{AspectId, Kitchen};
 use crate::mind::dirichlet::DirichletBelief;
 use rand::RngExt;
 
-use super::evidence::{BeliefSampler, UNDRAWN};
+use super::distinct_draws::Run;
+use super::evidence::{BeliefSampler, Sample, UNDRAWN};
 use super::evidence_model::EvidenceModel;
 use super::look_news::{PossiblyReadSignal, SampleLookEffects, UnseenLooks, ValueSeenByLook};
+use super::order_focus::considered;
 
 impl BeliefSampler {
     /// The probability that the human looks at each location before the next press, averaged over belief samples.
@@ -108,6 +111,19 @@ impl BeliefSampler {
     pub fn signal_read(&self) -> f64 {
         let read = self.posteriors.iter().zip(&self.looks).filter(|(_, looks)| looks.read_signal);
         read.map(|(weight, _)| weight).sum::<f64>() / self.posteriors.iter().sum::<f64>()
+    }
+
+    /// Replaces the worlds of a belief sample by worlds with the values that the sample has learned from looks.
+    fn believe_news(&mut self, kitchen: &Kitchen, index: usize, news: [usize; 2], states: usize) {
+        let Sample { runs: [first, last], focus, .. } = self.samples[index];
+        for run in first..last {
+            let Run { first, draws, .. } = self.runs[run];
+            let mut world = self.world_of(kitchen, index, first as usize, states);
+            for &ValueSeenByLook { aspect, value, .. } in &self.news[news[0]..news[1]] {
+                world.set_value(kitchen, AspectId(aspect as u8), usize::from(value));
+            }
+            self.runs[run].world = self.worlds.count(considered(kitchen, world, focus), draws);
+        }
     }
 
     /// What a belief sample has learned from looks; nothing if no looks were drawn.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
+use super::order_focus;
 use super::person::{Particle, press_chances, wait_chance};
 use super::plausible_looks::{self, LookNeedProbabilities};
 use super::reading_effect::LookTracker;
@@ -18,7 +19,6 @@ use crate::kitchen::{
 };
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
-use crate::mind::filter::order_focus::RETURNING;
 use crate::mind::gaze_presence::UnknownGazeTimer;
 use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
@@ -96,31 +96,7 @@ impl ParticleSet {
         self.lapses = lapses(&self.model);
         self.recall_ordered(self.kitchen.empty_state(), state, random);
         self.show(now, state);
-        self.turn_to_orders(|_, _| true, random);
-    }
-
-    /// Whether some of the humans consider one order only.
-    pub fn is_focused(&self) -> bool {
-        self.of.iter().any(|person| person.focus.is_some())
-    }
-
-    /// Lets the humans of those beliefs whose focus `turns` choose anew which orders they consider.
-    fn turn_to_orders(&mut self, mut turns: impl FnMut(Option<LocationId>, &mut Stream) -> bool, random: &mut Stream) {
-        let one_order = self.model.decision.one_order;
-        if one_order > 0.0 {
-            for person in &mut self.of {
-                if turns(person.focus, random) {
-                    person.choose_focus(&self.kitchen, one_order, random);
-                }
-            }
-        }
-    }
-
-    /// Lets those who consider only an order that differs between two states choose anew.
-    fn turn_from_changed(&mut self, after: State, random: &mut Stream) {
-        let before = self.shown;
-        let differs = |order: LocationId| before.code(order) != after.code(order);
-        self.turn_to_orders(|focus, _| focus.is_some_and(differs), random);
+        order_focus::begin(&self.kitchen, &self.model, &mut self.of, random);
     }
 
     /// Replaces all explicit beliefs of the set.
@@ -221,7 +197,7 @@ impl ParticleSet {
                 self.expect_cleared(state);
                 self.see_changes(now, state, random);
                 self.recall_ordered(self.shown, state, random);
-                self.turn_from_changed(state, random);
+                order_focus::turn_from_changed(&self.kitchen, &self.model, &mut self.of, [self.shown, state], random);
                 self.show(now, state);
             }
             ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
@@ -241,7 +217,7 @@ impl ParticleSet {
         let weights = match press.agent {
             Agent::Human => {
                 let weights = self.human_pressed(press.button, press.effective, cost, random);
-                self.turn_to_orders(|_, random| random.random::<f64>() < RETURNING, random);
+                order_focus::turn_at_press(&self.kitchen, &self.model, &mut self.of, random);
                 weights
             }
             Agent::Robot => {
@@ -250,7 +226,7 @@ impl ParticleSet {
                 vec![1.0; self.of.len()]
             }
         };
-        self.turn_from_changed(press.after, random);
+        order_focus::turn_from_changed(&self.kitchen, &self.model, &mut self.of, [self.shown, press.after], random);
         self.show(now, press.after);
         weights
     }

@@ -106,11 +106,12 @@ impl ConditionalReference {
         let count = self.people.of.len() as f64;
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;
         let read: Vec<f64> = (0..self.kitchen.locations.len()).map(read).collect();
+        let is_focused = self.people.of.iter().any(|person| person.focus.is_some());
         let person = |random: &mut Stream| {
             let mut person = Particle::draw(&self.kitchen, estimate, random);
             person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
             person.read_signal = with_signal > 0.0 && random.random::<f64>() < with_signal;
-            if self.people.is_focused() {
+            if is_focused {
                 person.focus = self.people.of[pick(weights, random)].focus;
             }
             person

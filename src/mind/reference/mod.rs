@@ -7,6 +7,7 @@
 
 pub mod belief_set;
 pub mod conditional_reference;
+pub mod order_focus;
 pub mod person;
 pub mod plausible_looks;
 pub mod reading_effect;

@@ -69,12 +69,6 @@ impl Particle {
         }
     }
 
-    /// Draws which orders the human considers: with the probability `one_order` one of several orders, else all.
-    pub fn choose_focus(&mut self, kitchen: &Kitchen, one_order: f64, random: &mut Stream) {
-        let is_on_one = kitchen.orders.len() > 1 && random.random::<f64>() < one_order;
-        self.focus = is_on_one.then(|| kitchen.orders[random.random_range(0..kitchen.orders.len())]);
-    }
-
     /// Makes the belief certain of a value of an aspect.
     pub fn settle(&mut self, aspect: AspectId, value: usize) {
         let of = &mut self.of[aspect.index()];

@@ -49,6 +49,11 @@ pub struct OutOfRange {
     pub place: Option<Range<usize>>,
 }
 
+/// Whether a setting is 0, in which case files and headers leave it out.
+pub fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
 impl NumberRange {
     /// The allowed range of a decimal number; recordings have the same range as files.
     pub const fn real(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {

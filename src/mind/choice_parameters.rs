@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::belief::Belief;
+use crate::base::number_range::is_zero;
 use crate::base::rng::Stream;
 use crate::kitchen::{Kitchen, WeightedWorlds};
 
@@ -31,11 +32,6 @@ impl Default for ChoiceParameters {
     fn default() -> Self {
         ChoiceParameters { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, one_order: 0.0, cases: 32 }
     }
-}
-
-/// Whether a share is 0, in which case files and headers leave it out.
-fn is_zero(share: &f64) -> bool {
-    *share == 0.0
 }
 
 impl ChoiceParameters {

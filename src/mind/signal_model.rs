@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::base::number_range::is_zero;
 use crate::kitchen::LocationKind;
 
 /// Upper bound of probabilities that a signal is noticed where signals take time: a signal certain to be noticed could
@@ -53,10 +54,6 @@ fn is_usual_following(follows: &f64) -> bool {
 
 fn is_usual_reading(rate_hz: &f64) -> bool {
     *rate_hz == READING_RATE_HZ
-}
-
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 impl Default for SignalModel {

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::participant_settings::GazeSource;
 use super::setting_checks::SettingError;
+use crate::base::number_range::is_zero;
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DroppedInputCounts;
 use crate::gaze::surface::SurfaceHomography;
@@ -65,10 +66,6 @@ impl Default for TrackerSpec {
             gaps: None,
         }
     }
-}
-
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 impl TrackerSpec {

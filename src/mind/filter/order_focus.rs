@@ -4,6 +4,7 @@
 //! evidence of beliefs about the considered orders only. The focus is a discrete variable with a posterior distribution,
 //! updated by every press: each belief sample has one of its values, by systematic sampling.
 
+use super::urn::value_at;
 use crate::kitchen::{Kitchen, OrderContent, State, World};
 
 /// Share of the probabilities that returns to those before the first press, at every press of the human: the human may
@@ -42,12 +43,7 @@ impl OrderFocus {
 
     /// The focus of a belief sample, by its index in a batch: shares of the batch are as the probabilities.
     pub fn of_sample(&self, index: usize, batch: usize) -> u8 {
-        let mut left = (index as f64 + 0.5) / batch as f64;
-        let reached = self.probabilities.iter().position(|p| {
-            left -= p;
-            left < 0.0
-        });
-        reached.unwrap_or(self.count() - 1) as u8
+        value_at(&self.probabilities, (index as f64 + 0.5) / batch as f64)
     }
 
     /// Takes over the probabilities given a press, of which a share returns to those before the first press.

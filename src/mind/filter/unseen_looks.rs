@@ -18,6 +18,7 @@ use super::evidence::{BeliefSampler, Sample, UNDRAWN};
 use super::evidence_model::EvidenceModel;
 use super::look_news::{PossiblyReadSignal, SampleLookEffects, UnseenLooks, ValueSeenByLook};
 use super::order_focus::considered;
+use super::urn::value_at;
 
 impl BeliefSampler {
     /// The probability that the human looks at each location before the next press, averaged over belief samples.
@@ -131,14 +132,4 @@ impl BeliefSampler {
         let looks = self.looks.get(sample).copied().unwrap_or_default();
         (looks.changed, &self.news[looks.news[0]..looks.news[1]])
     }
-}
-
-/// The value at a point, from 0 to 1, of a cumulative distribution.
-fn value_at(distribution: &[f64], point: f64) -> u8 {
-    let mut left = point;
-    let reached = distribution.iter().position(|p| {
-        left -= p;
-        left < 0.0
-    });
-    reached.unwrap_or(distribution.len() - 1) as u8
 }

@@ -161,3 +161,13 @@ impl PolyaUrn {
         (after + 1..self.stays.len()).find(|&draw| self.stays[draw] <= limit).unwrap_or(self.stays.len())
     }
 }
+
+/// The value at a point, from 0 to 1, of a cumulative distribution with these probabilities.
+pub fn value_at(distribution: &[f64], point: f64) -> u8 {
+    let mut left = point;
+    let reached = distribution.iter().position(|p| {
+        left -= p;
+        left < 0.0
+    });
+    reached.unwrap_or(distribution.len() - 1) as u8
+}

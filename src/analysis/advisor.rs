@@ -30,6 +30,8 @@ pub struct AdviceRequest {
     forecast: SignalReadingForecast,
     /// How attentive the human is, as a multiple of the human model's rates.
     attention: f64,
+    /// Probability of each order focus.
+    focus: Vec<f64>,
     /// The signals that can be sent at the time of the request.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
@@ -54,7 +56,8 @@ impl AdviceRequest {
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();
-        let (forecast, attention) = (follower.filter.forecast(), follower.filter.attention().expected());
+        let filter = &follower.filter;
+        let (forecast, attention, focus) = (filter.forecast(), filter.attention().expected(), filter.order_focus());
         AdviceRequest {
             seq,
             time,
@@ -66,6 +69,7 @@ impl AdviceRequest {
             robot_press_s,
             forecast,
             attention,
+            focus,
             signals,
             error,
         }
@@ -84,10 +88,11 @@ impl AdviceRequest {
             robot_press_s,
             forecast,
             attention,
+            ref focus,
             ref signals,
             error,
         } = *self;
-        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast, attention };
+        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast, attention, focus };
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 

@@ -23,12 +23,13 @@ pub fn heading(width: usize) -> String {
     format!("{}\n{}\n", columns("", above), columns("cohort", below))
 }
 
-/// The two rows of one cohort as text: without adaptation, and adapting to the person. The column of cohort names is
+/// The rows of one cohort as text: without adaptation and, where measured, adapting to the person. The column of cohort names is
 /// `width` characters wide.
 pub fn describe_rows(row: &CohortRow, width: usize) -> String {
     let without = format!("{:.1}", row.unassisted.related_per_100);
     let orders = format!("{:.2}, ", row.unassisted.orders_per_minute);
-    describe(&row.cohort, [&without, &orders], &row.usual, width) + &describe(ADAPTING, ["", ""], &row.adapting, width)
+    let usual = describe(&row.cohort, [&without, &orders], &row.usual, width);
+    row.adapting.iter().fold(usual, |text, adapting| text + &describe(ADAPTING, ["", ""], adapting, width))
 }
 
 fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, width: usize) -> String {
@@ -63,8 +64,11 @@ pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(|name| name.chars().count()).max().unwrap_or_default().max(ADAPTING.len()) + 1
 }
 
-/// What adaptation changes, as a table with a row for each cohort.
+/// What adaptation changes, as a table with a row for each cohort; empty where adaptation is left out.
 fn describe_differences(table: &RobustnessTable) -> String {
+    if !is_adapted(table) {
+        return String::new();
+    }
     let heading = "adapting less usual";
     // Every cell begins with a space of its own.
     let width = (name_width(table.cohorts.iter().map(|row| row.cohort.as_str())) - 1).max(heading.len());
@@ -83,7 +87,7 @@ fn describe_differences(table: &RobustnessTable) -> String {
         }
     };
     for row in &table.cohorts {
-        let found = &row.adaptation;
+        let Some(found) = &row.adaptation else { continue };
         let areas =
             [found.auc_locations, found.auc_recipes, found.ece].map(|one| format!(" {:>25}", cell(one, 1.0, 3)));
         text += &format!("{:<width$}{} {:>15}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
@@ -96,11 +100,21 @@ pub fn describe_end(table: &RobustnessTable) -> String {
     describe_differences(table) + &legend(table)
 }
 
+fn is_adapted(table: &RobustnessTable) -> bool {
+    table.cohorts.iter().any(|row| row.adapting.is_some())
+}
+
 fn legend(table: &RobustnessTable) -> String {
+    let rows = match is_adapted(table) {
+        true => {
+            "first row: with the parameters of the human model; adapting: lapse and attention are learned in each trial.\n"
+        }
+        false => "",
+    };
     format!(
         "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
          flags from as many trials of seed {}.\n\
-         first row: with the parameters of the human model; adapting: lapse and attention are learned in each trial.\n\
+         {rows}\
          ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs.\n\
          ECE: expected calibration error, how far its predicted probabilities of a false belief are off.\n\
          flagged: false belief episodes of two or more errors that are flagged before the third; the thresholds allow \

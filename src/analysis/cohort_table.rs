@@ -25,7 +25,8 @@ pub const USUAL: usize = 0;
 /// Of a pair: the estimate that adapts its parameters to the person in each trial.
 pub const ADAPTING: usize = 1;
 
-/// Simulated trials of one cohort. Pairs are of the usual and the adapting estimate.
+/// Simulated trials of one cohort. Pairs are of the usual and the adapting estimate; where adaptation is left out, the
+/// second lists are empty.
 #[derive(Clone, Debug, Default)]
 pub struct CohortTrials {
     /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
@@ -99,7 +100,7 @@ pub struct AdaptationEffect {
     pub saved: Option<AdaptationDifference>,
 }
 
-/// Results of one cohort: two rows of the robustness table.
+/// Results of one cohort: two rows of the robustness table, or one where adaptation is left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CohortRow {
     /// Name of the cohort in the battery file.
@@ -111,10 +112,11 @@ pub struct CohortRow {
     /// Estimate and assistant without adaptation.
     #[serde(flatten)]
     pub usual: CohortPerformance,
-    /// Estimate and assistant that learn lapse and attention of the person in each trial.
-    pub adapting: CohortPerformance,
-    /// What adaptation changes.
-    pub adaptation: AdaptationEffect,
+    /// Estimate and assistant that learn lapse and attention of the person in each trial; null where adaptation is left
+    /// out.
+    pub adapting: Option<CohortPerformance>,
+    /// What adaptation changes; null where adaptation is left out.
+    pub adaptation: Option<AdaptationEffect>,
 }
 
 /// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom robustness`.
@@ -141,8 +143,12 @@ impl CohortRow {
         };
         let pairs = trials.assisted.each_ref().map(errors);
         let scores = trials.judged.each_ref().map(|views| DetectionScores::from_trials(kitchen, views));
+        let is_measured = trials.assisted.each_ref().map(|assisted| !assisted.is_empty());
         let measured = |times: &[f64]| -> [[f64; MEASURES]; 3] {
-            let of = |which: usize| measures(&scores[which], &pairs[which], times);
+            let of = |which: usize| match is_measured[which] {
+                true => measures(&scores[which], &pairs[which], times),
+                false => [f64::NAN; MEASURES],
+            };
             let (usual, adapting) = (of(USUAL), of(ADAPTING));
             [usual, adapting, std::array::from_fn(|index| adapting[index] - usual[index])]
         };
@@ -172,13 +178,13 @@ impl CohortRow {
             trials: count as u64,
             unassisted: CohortRates::from_trials(&trials.unassisted),
             usual: performance(USUAL),
-            adapting: performance(ADAPTING),
-            adaptation: AdaptationEffect {
+            adapting: is_measured[ADAPTING].then(|| performance(ADAPTING)),
+            adaptation: is_measured[ADAPTING].then(|| AdaptationEffect {
                 auc_locations: difference(0),
                 auc_recipes: difference(1),
                 ece: difference(2),
                 saved: difference(3),
-            },
+            }),
         }
     }
 }

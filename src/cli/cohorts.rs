@@ -42,6 +42,9 @@ pub(super) struct RobustnessArgs {
     /// Simulate only this cohort (several: repeat the option).
     #[arg(long, value_name = "NAME")]
     cohort: Vec<String>,
+    /// Leave out the estimate that adapts to the person, which takes three quarters of the time.
+    #[arg(long)]
+    no_adaptation: bool,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     arm: Option<ArmArg>,
@@ -73,7 +76,8 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.battery, found, "another seed than --seed"));
     }
     let width = name_width(battery.cohorts.iter().map(|cohort| cohort.name.get_ref().as_str()));
-    let request = RobustnessRequest { battery, trials: args.trials, seed, choose_seed };
+    let request =
+        RobustnessRequest { battery, trials: args.trials, seed, choose_seed, adaptation: !args.no_adaptation };
     let bar = progress(request.all_trials(), "trials");
     let tell = |text: &str| match args.format {
         OutputFormat::Text => put(text),

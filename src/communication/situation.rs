@@ -21,11 +21,13 @@ pub struct Situation<'a> {
     pub forecast: SignalReadingForecast,
     /// How attentive the human is: factor on the human model's rates of looks in rollouts.
     pub attention: f64,
+    /// Probability of each order focus ([`crate::mind::filter::order_focus`]); one number: the human considers all orders.
+    pub focus: &'a [f64],
 }
 
 impl<'a> Situation<'a> {
     /// A situation in which nothing has just changed, the robot follows its policy, with a press every 2.4 s, and
-    /// signals are believed at once by a human with the human model's rates of looks.
+    /// signals are believed at once by a human who has the human model's rates of looks and considers all orders.
     pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
         let forecast = SignalReadingForecast::default();
         Situation {
@@ -36,6 +38,7 @@ impl<'a> Situation<'a> {
             robot_press_s: 2.4,
             forecast,
             attention: 1.0,
+            focus: &[1.0],
         }
     }
 }

@@ -85,10 +85,23 @@ impl Dirichlet {
         self.set_second(second);
     }
 
-    /// Replaces every belief b by one that is drawn from the Dirichlet with mean b and this precision r: the mean stays,
-    /// and S' = (r S + 1) / (r + 1).
-    pub fn redraw(&mut self, precision: f64) {
-        self.set_second((precision * self.second() + 1.0) / (precision + 1.0));
+    /// Moves every belief b towards the distribution c = `values` by the share q: b' = (1 - q) b + q c, so that m' =
+    /// (1 - q) m + q c, and S' = (1 - q)^2 S + 2 q (1 - q) m c + q^2 c c, where m c and c c are sums over the values.
+    pub fn fade(&mut self, share: f64, values: &[f64]) {
+        let kept = 1.0 - share;
+        let both: f64 = self.mean.iter().zip(values).map(|(m, c)| m * c).sum();
+        let second =
+            kept * kept * self.second() + 2.0 * share * kept * both + share * share * sum_of(values, |c| c * c);
+        for (mean, &value) in self.mean.iter_mut().zip(values) {
+            *mean = kept * *mean + share * value;
+        }
+        self.set_second(second);
+    }
+
+    /// This Dirichlet with every belief b replaced by one that is drawn from the Dirichlet with mean b and this precision
+    /// r: the mean stays, and S' = (r S + 1) / (r + 1).
+    pub fn redrawn(&self, precision: f64) -> Dirichlet {
+        Dirichlet::of_moments(self.mean.clone(), (precision * self.second() + 1.0) / (precision + 1.0))
     }
 
     /// Moves all probability of the value `from` to the value `to`; the result is an exact Dirichlet.

@@ -94,6 +94,9 @@ pub const CONFIDENCE_RAMP: f64 = 0.4;
 pub struct PerceptionModel {
     /// Reading rate lambda at distance 0 and full confidence, in readings per second.
     pub reading_rate_hz: f64,
+    /// Time of a look, at distance 0 and full confidence, after which reading begins, in seconds: gaze that only passes
+    /// reads nothing.
+    pub reading_begins_s: f64,
     /// Radius r of the area around the fixation that is read, in degrees of the visual field.
     pub radius_deg: f64,
     /// Distance from the eyes to the display, in metres.
@@ -117,6 +120,7 @@ impl Default for PerceptionModel {
     fn default() -> Self {
         PerceptionModel {
             reading_rate_hz: 5.0,
+            reading_begins_s: 0.0,
             radius_deg: 2.0,
             viewing_distance_m: 2.0,
             look_alike: 0.04,
@@ -203,13 +207,17 @@ impl LocationReadingRate {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransitionModel {
-    /// Half-life with which a belief about a recipe decays to its prior, in seconds.
+    /// Half-life with which a belief about a recipe decays to its prior, in seconds: of how many people still hold it, or,
+    /// where recipes are recalled, of its distance from the prior's mean while the dish is not ordered.
     pub recipe_half_life_s: f64,
     /// Precision with which a recipe is recalled when its dish is ordered: the belief becomes one that is drawn from a
     /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. Absent: orders do
     /// not change what is held of recipes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recall_precision: Option<f64>,
+    /// Half-life of a recalled recipe while its dish is ordered, in seconds: then the recipe is recalled anew from the
+    /// prior. It has an effect only where `recall_precision` is set.
+    pub recall_half_life_s: f64,
     /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
     /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
     pub foresight: f64,
@@ -217,7 +225,7 @@ pub struct TransitionModel {
 
 impl Default for TransitionModel {
     fn default() -> Self {
-        TransitionModel { recipe_half_life_s: 200.0, recall_precision: None, foresight: 0.2 }
+        TransitionModel { recipe_half_life_s: 200.0, recall_precision: None, recall_half_life_s: 20.0, foresight: 0.2 }
     }
 }
 

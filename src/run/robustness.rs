@@ -34,12 +34,18 @@ pub struct RobustnessRequest {
     pub seed: u64,
     /// Seed of the trials on which the thresholds for flagging false beliefs are chosen.
     pub choose_seed: u64,
+    /// Whether an estimate that adapts its parameters to the person is judged, too.
+    pub adaptation: bool,
 }
 
 impl RobustnessRequest {
     /// Total number of trials that have to be simulated.
     pub fn all_trials(&self) -> u64 {
-        PARTS.len() as u64 * self.trials * self.battery.cohorts.len() as u64
+        self.parts().count() as u64 * self.trials * self.battery.cohorts.len() as u64
+    }
+
+    fn parts(&self) -> impl Iterator<Item = CohortPart> {
+        PARTS.into_iter().filter(|part| self.adaptation || *part != CohortPart::Assisted(Adaptation::On))
     }
 }
 
@@ -68,6 +74,9 @@ const PARTS: [CohortPart; 4] = [
     CohortPart::ChosenOn,
 ];
 
+/// The presses of one trial, by the usual estimate and by one that adapts.
+type BothViews = (TrialBeliefs, Option<TrialBeliefs>);
+
 /// Simulates all cohorts on all processors, and judges estimate and assistant. `done` is called after each trial,
 /// `finished` after each cohort.
 pub fn measure(
@@ -78,15 +87,17 @@ pub fn measure(
     let kitchen = Arc::new(request.battery.session.kitchen.kitchen.clone());
     let workers = WorkerPool::new(KeptCost::default);
     let items: Vec<(CohortPart, u64)> =
-        PARTS.into_iter().flat_map(|part| (0..request.trials).map(move |trial| (part, trial))).collect();
+        request.parts().flat_map(|part| (0..request.trials).map(move |trial| (part, trial))).collect();
     let of_cohort = |cohort: &CohortSpec| {
         let one = |kept: &mut KeptCost, (part, trial): &(CohortPart, u64)| {
             let spec = settings_of_trial(&settings(request, cohort, *part), *trial);
             let (events, follower) = simulate(&kitchen, spec.clone(), *trial, kept.take(&kitchen));
             let summary = TrialSummary::from_follower(&follower);
             let (views, cost) = match part {
-                CohortPart::Assisted(_) => (<[TrialBeliefs; 2]>::default(), follower.cost),
-                CohortPart::ChosenOn | CohortPart::Unassisted => views(spec, *trial, &events, follower),
+                CohortPart::Assisted(_) => ((TrialBeliefs::default(), None), follower.cost),
+                CohortPart::ChosenOn | CohortPart::Unassisted => {
+                    views(request.adaptation, spec, *trial, &events, follower)
+                }
             };
             kept.keep(&kitchen, cost);
             (views, summary)
@@ -112,9 +123,10 @@ pub fn measure(
     RobustnessTable { seed: request.seed, choose_seed: request.choose_seed, cohorts }
 }
 
-/// Adds the presses of one trial, by the usual and by the adapting estimate.
-fn push(trials: &mut [Vec<TrialBeliefs>; 2], views: [TrialBeliefs; 2]) {
-    trials.iter_mut().zip(views).for_each(|(trials, views)| trials.push(views));
+/// Adds the presses of one trial, by the usual and, where there is one, by the adapting estimate.
+fn push(trials: &mut [Vec<TrialBeliefs>; 2], (usual, adapting): BothViews) {
+    trials[USUAL].push(usual);
+    trials[ADAPTING].extend(adapting);
 }
 
 /// Settings of a cohort's trials that are simulated for this purpose.
@@ -149,14 +161,15 @@ fn simulate(
     (events, engine.into_follower())
 }
 
-/// The human's presses of an unassisted trial, by the usual estimate, which is in its events, and by an adapting filter
-/// that observes the same events: without signals the estimate has no influence on a trial.
+/// The human's presses of an unassisted trial, by the usual estimate, which is in its events, and if asked by an adapting
+/// filter that observes the same events: without signals the estimate has no influence on a trial.
 fn views(
+    adaptation: bool,
     mut spec: SessionSpec,
     trial: u64,
     events: &[TimestampedEvent],
     followed: SessionFollower,
-) -> ([TrialBeliefs; 2], CostToGo) {
+) -> (BothViews, CostToGo) {
     let usual: BTreeMap<u64, EstimateBeforePress> = events
         .iter()
         .filter_map(|stamped| match &stamped.event {
@@ -167,19 +180,22 @@ fn views(
     spec.human.adapt = AdaptationSettings::ALL;
     let SessionFollower { session, judged, cost, .. } = followed;
     let kitchen = session.kitchen;
-    let mut adapting = SessionFollower::new(Session::new(kitchen.clone(), spec, trial), cost).without_causes();
+    let observing = SessionFollower::new(Session::new(kitchen.clone(), spec, trial), cost).without_causes();
+    let mut observing = if adaptation { observing } else { observing.without_estimate() };
     let (mut views, mut adapted) = (TrialBeliefCollector::default(), Vec::new());
     let mut judged = judged.iter().peekable();
     for stamped in events {
-        let applied = adapting.apply(stamped).expect("an engine's own events fit its session");
+        let applied = observing.apply(stamped).expect("an engine's own events fit its session");
         let press = judged.next_if(|press| press.seq == stamped.seq);
-        views.add(&adapting.session, press, usual.get(&stamped.seq).cloned(), stamped, &applied.change);
+        views.add(&observing.session, press, usual.get(&stamped.seq).cloned(), stamped, &applied.change);
         if press.is_some() {
-            let estimated = adapting.estimated.as_ref();
+            let estimated = observing.estimated.as_ref();
             adapted.push(estimated.map(|one| EstimateBeforePress::from_witness(&one.witness(&kitchen))));
         }
     }
-    let adapted = views.trial.iter().cloned().zip(adapted);
-    let adapted = adapted.map(|(view, estimate)| BeliefsBeforePress { estimate, ..view }).collect();
-    ([views.trial, adapted], adapting.cost)
+    let adapted = adaptation.then(|| {
+        let adapted = views.trial.iter().cloned().zip(adapted);
+        adapted.map(|(view, estimate)| BeliefsBeforePress { estimate, ..view }).collect()
+    });
+    ((views.trial, adapted), observing.cost)
 }

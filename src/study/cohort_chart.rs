@@ -1,5 +1,5 @@
 //! Chart of the robustness table, as an SVG file: what the assistant saves for each cohort and how well the estimate
-//! finds false beliefs, without and with adaptation to the person.
+//! finds false beliefs, without and, where measured, with adaptation to the person.
 
 use super::report::STYLE;
 use super::svg::{PlotAxis, SvgChart, document};
@@ -58,7 +58,8 @@ pub fn robustness(table: &RobustnessTable) -> String {
                 chart.words("strong", end, value, true, name);
             }
         }
-        for (line, (class, name)) in [("first", "as in the model"), ("second", "adapting")].into_iter().enumerate() {
+        let names = ["as in the model", "adapting"];
+        for (line, ((class, _, _), name)) in both(last).zip(names).enumerate() {
             let y = 0.12 - 0.06 * line as f64;
             chart.point(class, end + BESIDE, y, name);
             chart.words("strong", end + BESIDE, y, true, name);
@@ -67,9 +68,10 @@ pub fn robustness(table: &RobustnessTable) -> String {
     document(&chart.finish("Estimate and assistant for each cohort, without and with adaptation"), STYLE)
 }
 
-/// Both performances of a cohort, each with its class and its place beside the middle of the column.
-fn both(row: &CohortRow) -> [(&'static str, f64, &CohortPerformance); 2] {
-    [("first", -BESIDE, &row.usual), ("second", BESIDE, &row.adapting)]
+/// The performances of a cohort, each with its class and its place beside the middle of the column.
+fn both(row: &CohortRow) -> impl Iterator<Item = (&'static str, f64, &CohortPerformance)> {
+    let adapting = row.adapting.iter().map(|adapting| ("second", BESIDE, adapting));
+    std::iter::once(("first", -BESIDE, &row.usual)).chain(adapting)
 }
 
 /// A cohort's name in lines that are short enough for its column, where its words are.

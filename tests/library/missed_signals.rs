@@ -19,16 +19,16 @@ use tomcom::mind::model::HumanModel;
 use tomcom::mind::signal_model::SignalReadingForecast;
 
 /// Salmon nigiri is wanted and the base is ready; its recipe is taken for another one.
-struct WrongRecipe {
-    kitchen: Arc<Kitchen>,
-    state: State,
-    belief: DirichletBelief,
-    signal: Signal,
+pub struct WrongRecipe {
+    pub kitchen: Arc<Kitchen>,
+    pub state: State,
+    pub belief: DirichletBelief,
+    pub signal: Signal,
     recipe: AspectId,
 }
 
 impl WrongRecipe {
-    fn new() -> WrongRecipe {
+    pub fn new() -> WrongRecipe {
         let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
         let dish = kitchen.dishes.iter().position(|dish| dish.name == "salmon nigiri").expect("a dish");
         let dish = DishId(dish as u8);
@@ -56,7 +56,7 @@ impl WrongRecipe {
         WrongRecipe { kitchen, state, belief, signal, recipe }
     }
 
-    fn moment<'a>(&'a self, forecast: SignalReadingForecast, signals: &'a [Signal]) -> DecisionPoint<'a> {
+    pub fn moment<'a>(&'a self, forecast: SignalReadingForecast, signals: &'a [Signal]) -> DecisionPoint<'a> {
         let robot = RobotIntent::Still;
         let situation = Situation { robot, forecast, ..Situation::new(self.state, &self.belief) };
         DecisionPoint { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals, error: None }

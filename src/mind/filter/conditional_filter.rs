@@ -134,6 +134,11 @@ impl ConditionalFilter {
         if self.model.adapt.lapse { self.lapse.expected() } else { self.model.decision.lapse }
     }
 
+    /// The probability of each order focus.
+    pub fn order_focus(&self) -> &[f64] {
+        self.focus.probabilities()
+    }
+
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of presses only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         let now = self.frozen.unwrap_or(observation.time);

@@ -77,6 +77,15 @@ impl BeliefFilter {
         self.weighted().map(|(p, filter)| p * filter.lapse()).sum()
     }
 
+    /// The probability of each order focus of this person ([`order_focus::OrderFocus`]).
+    pub fn order_focus(&self) -> Vec<f64> {
+        let mut expected = vec![0.0; self.filters[0].order_focus().len()];
+        for (p, filter) in self.weighted() {
+            expected.iter_mut().zip(filter.order_focus()).for_each(|(sum, of)| *sum += p * of);
+        }
+        expected
+    }
+
     /// How attentive this person is.
     pub fn attention(&self) -> &AttentionPosterior {
         &self.attention

@@ -5,7 +5,7 @@
 //! updated by every press: each belief sample has one of its values, by systematic sampling.
 
 use super::urn::value_at;
-use crate::kitchen::{Kitchen, OrderContent, State, World};
+use crate::kitchen::{Kitchen, LocationId, OrderContent, State, World};
 
 /// Share of the probabilities that returns to those before the first press, at every press of the human: the human may
 /// turn to another order.
@@ -46,6 +46,11 @@ impl OrderFocus {
         value_at(&self.probabilities, (index as f64 + 0.5) / batch as f64)
     }
 
+    /// The focus that a human chooses who has none yet; the random number `draw` is uniform in [0, 1).
+    pub fn chosen_anew(&self, draw: f64) -> u8 {
+        value_at(&self.prior, draw)
+    }
+
     /// Takes over the probabilities given a press, of which a share returns to those before the first press.
     pub fn learn(&mut self, given_press: &[f64]) {
         for ((p, given), prior) in self.probabilities.iter_mut().zip(given_press).zip(&self.prior) {
@@ -55,23 +60,30 @@ impl OrderFocus {
 
     /// Releases the focus on orders that differ between two states: who considered such an order alone chooses anew.
     pub fn release(&mut self, kitchen: &Kitchen, before: State, after: State) {
-        for (index, &order) in kitchen.orders.iter().enumerate() {
-            if before.code(order) == after.code(order) {
+        for focus in 1..self.count() {
+            if !is_on_changed(kitchen, focus as u8, before, after) {
                 continue;
             }
-            let Some(p) = self.probabilities.get_mut(index + 1) else { continue };
-            let released = std::mem::take(p);
+            let released = std::mem::take(&mut self.probabilities[focus]);
             self.probabilities.iter_mut().zip(&self.prior).for_each(|(p, prior)| *p += released * prior);
         }
     }
 }
 
+/// The order of a focus on one order.
+fn only_order(kitchen: &Kitchen, focus: u8) -> Option<LocationId> {
+    usize::from(focus).checked_sub(1).and_then(|index| kitchen.orders.get(index)).copied()
+}
+
+/// Whether a focus is on one order, and this order differs between two states.
+pub fn is_on_changed(kitchen: &Kitchen, focus: u8, before: State, after: State) -> bool {
+    only_order(kitchen, focus).is_some_and(|order| before.code(order) != after.code(order))
+}
+
 /// What a human with this focus considers of a believed world: no other orders than the one of the focus, and no recipes
 /// of their dishes. Who believes that nothing is ordered there considers everything.
 pub fn considered(kitchen: &Kitchen, mut world: World, focus: u8) -> World {
-    let Some(&only) = usize::from(focus).checked_sub(1).and_then(|index| kitchen.orders.get(index)) else {
-        return world;
-    };
+    let Some(only) = only_order(kitchen, focus) else { return world };
     let OrderContent::Dish(wanted) = world.state.order(only) else { return world };
     for &order in kitchen.orders.iter().filter(|&&order| order != only) {
         if let OrderContent::Dish(dish) = world.state.order(order)

@@ -1,6 +1,8 @@
 //! A set of explicit beliefs that are updated with the same events: the samples of the reference filter, the particles
 //! of an unprojected filter, or one human simulated from the model.
 
+mod recipe_memory;
+
 use std::sync::Arc;
 
 use rand::RngExt;
@@ -14,9 +16,7 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{
-    Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
-};
+use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State};
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::UnknownGazeTimer;
@@ -265,33 +265,6 @@ impl ParticleSet {
     fn show(&mut self, now: SessionTime, state: State) {
         self.shown = state;
         self.sight.show(now, state);
-    }
-
-    fn forget(&mut self, now: SessionTime, random: &mut Stream) {
-        let Some(last) = self.forgot else { return };
-        self.forgot = Some(now.max(last));
-        let transition = &self.model.transition;
-        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / transition.recipe_half_life_s);
-        let recipe = |index: usize| {
-            let dish = DishId(index as u8);
-            let recalls = transition.recall_precision.filter(|_| self.kitchen.is_ordered(self.shown, dish));
-            (self.kitchen.aspect_of_dish(dish), recalls)
-        };
-        let recipes: Vec<(AspectId, Option<f64>)> = (0..self.kitchen.dishes.len()).map(recipe).collect();
-        for person in &mut self.of {
-            recipes.iter().for_each(|&(aspect, recalls)| person.forget(aspect, &self.prior, (lost, recalls), random));
-        }
-    }
-
-    /// Lets the human of every belief recall the recipes of dishes that are ordered in `after` and not in `before`.
-    fn recall_ordered(&mut self, before: State, after: State, random: &mut Stream) {
-        let Some(precision) = self.model.transition.recall_precision else { return };
-        for dish in (0..self.kitchen.dishes.len()).map(|index| DishId(index as u8)) {
-            if self.kitchen.is_ordered(after, dish) && !self.kitchen.is_ordered(before, dish) {
-                let aspect = self.kitchen.aspect_of_dish(dish);
-                self.of.iter_mut().for_each(|person| person.recall(aspect, precision, random));
-            }
-        }
     }
 
     fn human_pressed(

@@ -76,21 +76,20 @@ impl Particle {
         of[value] = 1.0;
     }
 
-    /// Forgets a recipe with the probability `lost`: the belief is drawn anew from the prior, and from what is recalled
-    /// of it where `recalls` has the precision of recall.
-    pub fn forget(
-        &mut self,
-        aspect: AspectId,
-        prior: &DirichletBelief,
-        (lost, recalls): (f64, Option<f64>),
-        random: &mut Stream,
-    ) {
-        if random.random::<f64>() >= lost {
-            return;
+    /// Forgets a recipe with the probability `lost`, whereupon the belief is drawn anew from the prior; returns whether it
+    /// was forgotten.
+    pub fn forget(&mut self, aspect: AspectId, prior: &Dirichlet, lost: f64, random: &mut Stream) -> bool {
+        let is_forgotten = random.random::<f64>() < lost;
+        if is_forgotten {
+            self.of[aspect.index()] = draw(prior, random);
         }
-        self.of[aspect.index()] = draw(prior.aspect(aspect), random);
-        if let Some(precision) = recalls {
-            self.recall(aspect, precision, random);
+        is_forgotten
+    }
+
+    /// Moves the belief about a recipe towards `values` by the share `faded`.
+    pub fn fade(&mut self, aspect: AspectId, values: &[f64], faded: f64) {
+        for (p, value) in self.of[aspect.index()].iter_mut().zip(values) {
+            *p += faded * (value - *p);
         }
     }
 

@@ -22,14 +22,24 @@ pub struct LocationReading {
     pub reading: Vec<f64>,
 }
 
+/// A look at a location.
+#[derive(Clone, Copy, Debug, Default)]
+struct Look {
+    /// Code of the content that is displayed.
+    code: u8,
+    /// Time of the last sample.
+    last: SessionTime,
+    /// Time of looking, in seconds at full reading rate.
+    looked_s: f64,
+}
+
 /// Tracks looks at locations and the recent states of the display.
 #[derive(Clone, Debug, Default)]
 pub struct LookTracker {
     /// Recent states of the display, each with the session time at which the state appeared.
     shown: Vec<(SessionTime, State)>,
-    /// By location, the code of the content that is displayed in the present look, and the time of the look's last
-    /// sample.
-    looks: Vec<(u8, SessionTime)>,
+    /// The present look at each location.
+    looks: Vec<Look>,
 }
 
 impl LookTracker {
@@ -41,7 +51,7 @@ impl LookTracker {
     /// Moves all times on by a duration for which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.shown.iter_mut().for_each(|(since, _)| *since = *since + by);
-        self.looks.iter_mut().for_each(|(_, last)| *last = *last + by);
+        self.looks.iter_mut().for_each(|look| look.last = look.last + by);
     }
 
     /// The effect at each location of a gaze sample taken at session time `taken`, during which the gaze is known for
@@ -60,21 +70,27 @@ impl LookTracker {
         }
         let Some(state) = self.shown_at(taken, model.history_s) else { return Vec::new() };
         let confidence = sample.confidence.min(1.0);
-        self.looks.resize(kitchen.locations.len(), (0, SessionTime::ZERO));
+        self.looks.resize(kitchen.locations.len(), Look::default());
         let mut glances = Vec::new();
         for index in 0..kitchen.locations.len() {
             let location = LocationId(index as u8);
             let distance_m = kitchen.locations[index].display.distance_m([sample.x, sample.y], kitchen.display_m);
             let rate_hz = model.reading_rate().at(distance_m, confidence);
             let code = state.code(location);
-            let (of_look, last) = &mut self.looks[index];
-            let begins = code != *of_look || taken.secs_since(*last) > model.look_ends_s;
-            *of_look = code;
-            if rate_hz >= ELSEWHERE * model.reading_rate_hz * confidence {
-                *last = taken;
+            let look = &mut self.looks[index];
+            let begins = code != look.code || taken.secs_since(look.last) > model.look_ends_s;
+            if begins {
+                *look = Look { code, looked_s: 0.0, ..*look };
             }
+            if rate_hz >= ELSEWHERE * model.reading_rate_hz * confidence {
+                look.last = taken;
+            }
+            let before_s = look.looked_s;
+            look.looked_s += rate_hz / model.reading_rate_hz * known_s;
+            let begun_s = |looked_s: f64| (looked_s - model.reading_begins_s).max(0.0);
+            let readable_s = begun_s(look.looked_s) - begun_s(before_s);
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
-            let chance = 1.0 - (-rate_hz * known_s).exp();
+            let chance = 1.0 - (-model.reading_rate_hz * readable_s).exp();
             glances.push(LocationReading {
                 location,
                 begins,

@@ -16,7 +16,7 @@ const UNSURE: &str = "a certain belief could not be corrected by any observation
 const PRECISION: &str = "with a lower precision there is no belief, with a higher one the belief is certain";
 const DRAWS: &str = "larger samples take seconds to minutes for each press";
 
-pub(super) const RANGES: [NumberRange; 40] = [
+pub(super) const RANGES: [NumberRange; 42] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
@@ -29,6 +29,7 @@ pub(super) const RANGES: [NumberRange; 40] = [
         "at a lower rate nothing is read, at a higher one everything at once",
     )
     .recorded(ABOVE_0),
+    NumberRange::real("human.perception.reading_begins_s", [0.0, 1.0], "s", "what is looked at for a second is read"),
     NumberRange::real(
         "human.perception.radius_deg",
         [0.1, 40.0],
@@ -80,6 +81,13 @@ pub(super) const RANGES: [NumberRange; 40] = [
     )
     .recorded(ABOVE_0),
     NumberRange::real("human.transition.recall_precision", [0.001, 10_000.0], "", PRECISION).recorded(ABOVE_0),
+    NumberRange::real(
+        "human.transition.recall_half_life_s",
+        [1.0, 1_000_000.0],
+        "s",
+        "half-lives from recalled anew at every press to never",
+    )
+    .recorded(ABOVE_0),
     NumberRange::real("human.transition.foresight", [0.0, 1.0], "", "the setting is a share from 0 to 1"),
     NumberRange::real(
         "human.decision.tau",

@@ -33,7 +33,8 @@ fn battery() -> CohortBattery {
 }
 
 fn table(battery: &CohortBattery, seed: u64) -> RobustnessTable {
-    let request = RobustnessRequest { battery: battery.clone(), trials: TRIALS, seed, choose_seed: 51 };
+    let request =
+        RobustnessRequest { battery: battery.clone(), trials: TRIALS, seed, choose_seed: 51, adaptation: true };
     let mut finished: Vec<CohortRow> = Vec::new();
     let table = measure(&request, || (), |row| finished.push(row.clone()));
     assert_eq!(finished, table.cohorts, "each row is told when it is finished");
@@ -60,12 +61,29 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert!(text.lines().chain(end.lines().take(4)).all(|line| line.chars().count() <= 120), "{text}{end}");
     assert!(one.cohorts.iter().all(|row| row.usual.assisted.signals_per_100 > 0.0), "{text}");
     for row in &one.cohorts {
-        assert_ne!(row.usual.detection.auc_locations, row.adapting.detection.auc_locations, "{}: adapts", row.cohort);
-        assert_eq!(row.usual.detection.flags.episodes, row.adapting.detection.flags.episodes, "{}", row.cohort);
+        let adapting = &row.adapting.as_ref().expect("measured").detection;
+        assert_ne!(row.usual.detection.auc_locations, adapting.auc_locations, "{}: adapts", row.cohort);
+        assert_eq!(row.usual.detection.flags.episodes, adapting.flags.episodes, "{}", row.cohort);
     }
     let picture = robustness(&one);
     assert!(picture.starts_with("<svg ") && picture.contains("ROC, recipes"), "{picture}");
     assert_eq!(picture.matches("<circle").count(), 2 * 2 * 3 + 2, "a point for each value, and two for the colours");
+}
+
+#[test]
+fn leaving_out_adaptation_changes_nothing_else() {
+    let battery = battery();
+    let whole = table(&battery, 45);
+    let request = RobustnessRequest { battery, trials: TRIALS, seed: 45, choose_seed: 51, adaptation: false };
+    let without = measure(&request, || (), |_| ());
+    for (row, whole) in without.cohorts.iter().zip(&whole.cohorts) {
+        assert_eq!((&row.adapting, &row.adaptation), (&None, &None), "{}", row.cohort);
+        assert_eq!((row.unassisted, &row.usual), (whole.unassisted, &whole.usual), "{}", row.cohort);
+    }
+    let text = describe_rows(&without.cohorts[0], 24) + &describe_end(&without);
+    assert!(!text.contains("adapting") && text.contains("3 trials of seed 45"), "{text}");
+    let picture = robustness(&without);
+    assert_eq!(picture.matches("<circle").count(), 2 * 3 + 1, "a point for each value, and one for the colour");
 }
 
 #[test]
@@ -74,11 +92,11 @@ fn an_assistant_that_says_nothing_saves_nothing() {
     battery.session.spec.assistant.cost_of_communication = 1000.0;
     for row in table(&battery, 43).cohorts {
         assert!(row.unassisted.related_per_100 > 0.0, "{}: nothing to save", row.cohort);
-        for of in [&row.usual, &row.adapting] {
+        for of in [&row.usual, row.adapting.as_ref().expect("measured")] {
             assert_eq!(row.unassisted, of.assisted, "{}: pairs are of the same trials", row.cohort);
             assert_eq!((of.saved, of.saved_interval), (Some(0.0), Some([0.0, 0.0])), "{}", row.cohort);
         }
-        let saved = row.adaptation.saved.expect("known");
+        let saved = row.adaptation.and_then(|found| found.saved).expect("known");
         assert_eq!((saved.difference, saved.interval), (0.0, Some([0.0, 0.0])), "{}", row.cohort);
     }
 }
@@ -106,17 +124,18 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
     // The second filter on the same events gives what the recordings of an adapting session have.
     let [(_, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::ALL));
     let check = check_beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
-    assert_eq!(row.adapting.detection, check.detection);
-    assert_eq!(row.adapting.log_likelihood, check.log_likelihood);
+    let found = row.adapting.as_ref().expect("measured");
+    assert_eq!(found.detection, check.detection);
+    assert_eq!(found.log_likelihood, check.log_likelihood);
     // Where each trial counts once, the resampled areas are those of the table.
-    let (usual, adapting) = (&row.usual.detection, &row.adapting.detection);
-    let places = row.adaptation.auc_locations.expect("known").difference;
-    let ece = row.adaptation.ece.expect("known").difference;
+    let (usual, adapting) = (&row.usual.detection, &found.detection);
+    let effect = row.adaptation.expect("measured");
+    let [places, ece] = [effect.auc_locations, effect.ece].map(|found| found.expect("known").difference);
     assert!((places - (adapting.auc_locations.expect("known") - usual.auc_locations.expect("known"))).abs() < 1e-12);
     assert!((ece - (adapting.ece.expect("known") - usual.ece.expect("known"))).abs() < 1e-12);
     for (value, interval) in [
         (usual.auc_locations, row.usual.auc_locations_interval),
-        (adapting.auc_locations, row.adapting.auc_locations_interval),
+        (adapting.auc_locations, found.auc_locations_interval),
         (usual.ece, row.usual.ece_interval),
     ] {
         let (value, [from, to]) = (value.expect("known"), interval.expect("known"));

@@ -1,26 +1,29 @@
-//! Memory of recipes in the estimate: forgetting towards the prior, and recall of one version when a dish is ordered.
+//! Memory of recipes in the estimate: forgetting, and recall of one version while a dish is ordered.
 
 use super::ConditionalFilter;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectKind, State};
 
 impl ConditionalFilter {
-    /// Lets beliefs about recipes decay towards their prior, and beliefs about recipes in use towards what is recalled from
-    /// the prior.
+    /// Lets beliefs about recipes decay to their prior. Where recipes are recalled, each belief fades while its dish is not
+    /// ordered, and some are recalled anew from the prior while it is.
     pub(super) fn forget(&mut self, now: SessionTime) {
         let Some(last) = self.forgot else { return };
         self.forgot = Some(now.max(last));
         let transition = &self.model.transition;
-        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / transition.recipe_half_life_s);
+        let lost = |half_life_s: f64| 1.0 - 0.5_f64.powf(now.secs_since(last) / half_life_s);
+        let (faded, recalled_anew) = (lost(transition.recipe_half_life_s), lost(transition.recall_half_life_s));
         for index in 0..self.kitchen.aspects.len() {
             let AspectKind::Recipe(dish) = self.kitchen.aspects[index].kind else { continue };
-            let mut prior = self.prior.aspects[index].clone();
-            if let Some(precision) = transition.recall_precision.filter(|_| self.kitchen.is_ordered(self.shown, dish)) {
-                prior.redraw(precision);
-            }
-            self.belief.aspects[index].mix(lost, &prior);
-            if let Some(stretch) = &mut self.stretch {
-                stretch.before[index].mix(lost, &prior);
+            let is_ordered = self.kitchen.is_ordered(self.shown, dish);
+            let before = self.stretch.as_mut().map(|stretch| &mut stretch.before[index]);
+            for belief in std::iter::once(&mut self.belief.aspects[index]).chain(before) {
+                let prior = &self.prior.aspects[index];
+                match transition.recall_precision {
+                    None => belief.mix(faded, prior),
+                    Some(_) if !is_ordered => belief.fade(faded, prior.mean()),
+                    Some(precision) => belief.mix(recalled_anew, &prior.redrawn(precision)),
+                }
             }
         }
     }
@@ -31,7 +34,7 @@ impl ConditionalFilter {
         for index in 0..self.kitchen.aspects.len() {
             let AspectKind::Recipe(dish) = self.kitchen.aspects[index].kind else { continue };
             if self.kitchen.is_ordered(after, dish) && !self.kitchen.is_ordered(before, dish) {
-                self.belief.aspects[index].redraw(precision);
+                self.belief.aspects[index] = self.belief.aspects[index].redrawn(precision);
             }
         }
     }

@@ -16,6 +16,7 @@ mod observed;
 mod order_focus;
 mod particles;
 mod proposals;
+mod reading_begins;
 mod recall;
 mod recorded;
 mod signals;

@@ -47,6 +47,7 @@ const SETTINGS: &str = r#"
         one_order = 0.5
         [human.transition]
         recall_precision = 0.5
+        recall_half_life_s = 30.0
         [human.signal]
         follows = 0.5
         highlight_noticed = 0.5

@@ -12,11 +12,11 @@ impl ParticleSet {
         let transition = &self.model.transition;
         let lost = |half_life_s: f64| 1.0 - 0.5_f64.powf(now.secs_since(last) / half_life_s);
         let (faded, recalled_anew) = (lost(transition.recipe_half_life_s), lost(transition.recall_half_life_s));
-        for dish in (0..self.kitchen.dishes.len()).map(|index| DishId(index as u8)) {
-            let aspect = self.kitchen.aspect_of_dish(dish);
-            let prior = self.prior.aspect(aspect);
-            let is_ordered = self.kitchen.is_ordered(self.shown, dish);
-            for person in &mut self.of {
+        let dishes: Vec<DishId> = (0..self.kitchen.dishes.len()).map(|index| DishId(index as u8)).collect();
+        for person in &mut self.of {
+            for &dish in &dishes {
+                let aspect = self.kitchen.aspect_of_dish(dish);
+                let (prior, is_ordered) = (self.prior.aspect(aspect), self.kitchen.is_ordered(self.shown, dish));
                 match transition.recall_precision {
                     None => {
                         person.forget(aspect, prior, faded, random);

@@ -23,8 +23,8 @@ pub fn heading(width: usize) -> String {
     format!("{}\n{}\n", columns("", above), columns("cohort", below))
 }
 
-/// The rows of one cohort as text: without adaptation and, where measured, adapting to the person. The column of cohort names is
-/// `width` characters wide.
+/// The rows of one cohort as text: without adaptation and, where measured, adapting to the person. The column of cohort
+/// names is `width` characters wide.
 pub fn describe_rows(row: &CohortRow, width: usize) -> String {
     let without = format!("{:.1}", row.unassisted.related_per_100);
     let orders = format!("{:.2}, ", row.unassisted.orders_per_minute);
@@ -66,7 +66,7 @@ pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
 
 /// What adaptation changes, as a table with a row for each cohort; empty where adaptation is left out.
 fn describe_differences(table: &RobustnessTable) -> String {
-    if !is_adapted(table) {
+    if !table.is_adapted() {
         return String::new();
     }
     let heading = "adapting less usual";
@@ -100,12 +100,8 @@ pub fn describe_end(table: &RobustnessTable) -> String {
     describe_differences(table) + &legend(table)
 }
 
-fn is_adapted(table: &RobustnessTable) -> bool {
-    table.cohorts.iter().any(|row| row.adapting.is_some())
-}
-
 fn legend(table: &RobustnessTable) -> String {
-    let rows = match is_adapted(table) {
+    let rows = match table.is_adapted() {
         true => {
             "first row: with the parameters of the human model; adapting: lapse and attention are learned in each trial.\n"
         }

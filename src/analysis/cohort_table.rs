@@ -130,6 +130,13 @@ pub struct RobustnessTable {
     pub cohorts: Vec<CohortRow>,
 }
 
+impl RobustnessTable {
+    /// Whether the adapting estimate was measured, too.
+    pub fn is_adapted(&self) -> bool {
+        self.cohorts.iter().any(|row| row.adapting.is_some())
+    }
+}
+
 /// Number of measures with intervals: areas of locations and recipes, calibration error, share of saved errors.
 const MEASURES: usize = 4;
 

@@ -23,7 +23,7 @@ const MEASURES: [ChartedMeasure; 3] = [
     ("errors saved", |of| (of.saved, of.saved_interval)),
 ];
 
-/// The chart of robustness: for each cohort and each measure a point with its interval, without and with adaptation.
+/// The chart of robustness: for each cohort and each measure a point with its interval, without and, where measured, with adaptation.
 pub fn robustness(table: &RobustnessTable) -> String {
     let names: Vec<String> = table.cohorts.iter().map(|row| wrapped(&row.cohort)).collect();
     let lows = table.cohorts.iter().flat_map(both).flat_map(|(_, _, of)| {
@@ -65,7 +65,11 @@ pub fn robustness(table: &RobustnessTable) -> String {
             chart.words("strong", end + BESIDE, y, true, name);
         }
     }
-    document(&chart.finish("Estimate and assistant for each cohort, without and with adaptation"), STYLE)
+    let title = match table.is_adapted() {
+        true => "Estimate and assistant for each cohort, without and with adaptation",
+        false => "Estimate and assistant for each cohort",
+    };
+    document(&chart.finish(title), STYLE)
 }
 
 /// The performances of a cohort, each with its class and its place beside the middle of the column.

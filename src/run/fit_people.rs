@@ -12,7 +12,7 @@ use crate::analysis::fitting::people_search::{PersonTry, ROUNDS, TrialSelection}
 use crate::analysis::fitting::people_summary::{
     HeldOut, HeldOutGain, HeldOutPerson, PeopleSummary, PersonRecordingCount,
 };
-use crate::analysis::fitting::response_surface::points;
+use crate::analysis::fitting::score_surface::points;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::fitting::{FitObservations, TrialLikelihood, likelihood};

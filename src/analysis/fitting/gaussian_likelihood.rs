@@ -8,10 +8,6 @@ use super::response_surface::QuadraticSurface;
 /// Small number added to the diagonal of a matrix that is inverted, as a share of the matrix's largest element;
 /// rounding loses 1e-12 of that element.
 const RIDGE: f64 = 1e-9;
-/// Standard error of the surface's curvature per step squared, in standard deviations of the noise: 2 / sqrt(0.875), as
-/// for five points on a line at -1, -1/2, 0, 1/2 and 1.
-const CURVATURE_NOISE: f64 = 2.14;
-
 /// The log likelihood of one person's presses as -(x - m)' I (x - m) / 2 + const, with the information matrix I and the
 /// maximum m.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,16 +27,11 @@ impl GaussianLikelihood {
     /// Approximates a log likelihood by a surface of its negative around a centre, whose variables are in steps.
     ///
     /// With slope g, curvature H and noise of the slope with covariance S, the covariance of the maximum m is H^-1 +
-    /// H^-1 S H^-1, so that I = H (H + S)^-1 H. Directions in which the surface bends down count by the size of their
-    /// curvature, as in saddle-free Newton methods (Dauphin et al. 2014): there the likelihood rises towards a maximum
-    /// beyond the surface. Curvature that noise alone would cause is subtracted first (positive-part shrinkage), so
-    /// that a likelihood that says nothing gives little information.
+    /// H^-1 S H^-1, so that I = H (H + S)^-1 H. Directions in which the surface does not bend up carry no information.
     pub fn from_surface(surface: &QuadraticSurface, centre: &[f64], steps: &[f64]) -> GaussianLikelihood {
         let n = centre.len();
         let bent = SymmetricEigen::new(surface.curvature.clone());
-        let by_noise = CURVATURE_NOISE * surface.noise;
-        let size = |bend: f64| if bend.abs() > by_noise { bend.abs() - by_noise * by_noise / bend.abs() } else { 0.0 };
-        let sizes = DMatrix::from_diagonal(&bent.eigenvalues.map(size));
+        let sizes = DMatrix::from_diagonal(&bent.eigenvalues.map(|bend| bend.max(0.0)));
         let curvature = &bent.eigenvectors * sizes * bent.eigenvectors.transpose();
         let both = &curvature + &surface.slope_covariance;
         let ridge = DMatrix::identity(n, n) * (RIDGE * both.amax().max(f64::MIN_POSITIVE));
@@ -66,6 +57,7 @@ mod tests {
     use rand::RngExt;
 
     use super::super::response_surface::surface;
+    use super::super::score_surface::{ScoreRegression, TriedPoint, points_around};
     use super::*;
     use crate::base::rng::stream;
 
@@ -92,21 +84,24 @@ mod tests {
         let found = GaussianLikelihood::from_surface(&rough, &centre, &steps);
         let information = found.information[(0, 0)];
         let (bend, noise) = (rough.curvature[(0, 0)], rough.slope_covariance[(0, 0)]);
-        let curvature = bend - (CURVATURE_NOISE * rough.noise).powi(2) / bend;
-        assert!((information - curvature * curvature / (curvature + noise)).abs() < 1e-6 && noise > 0.0, "{found:?}");
+        assert!((information - bend * bend / (bend + noise)).abs() < 1e-6 && noise > 0.0, "{found:?}");
         assert!(information > 0.0 && information < bend, "{found:?}");
     }
 
     #[test]
-    fn a_flat_likelihood_gives_little_information() {
+    fn a_likelihood_of_noise_alone_gives_little_information() {
         let mut random = stream(9827, "noise", 0);
         let mut sum = 0.0;
         for _ in 0..200 {
-            let flat = surface(|_| random.random::<f64>(), &[0.0], &[1.0]).expect("a surface");
+            // 40 presses whose losses, each with variance 1/12, do not depend on the parameter.
+            let noise =
+                points_around(&[0.0], &[1.0]).into_iter().map(|at| (at, (0..40).map(|_| random.random()).collect()));
+            let noise: Vec<(Vec<f64>, Vec<f64>)> = noise.collect();
+            let tried: Vec<TriedPoint<'_>> = noise.iter().map(|(at, losses)| (at.clone(), &losses[..])).collect();
+            let flat = ScoreRegression::new(&tried, &[0.0], &[1.0]).expect("points").surface();
             sum += GaussianLikelihood::from_surface(&flat, &[0.0], &[1.0]).information[(0, 0)];
         }
-        // The mean information is 0.22 over many surfaces of noise; it would be 0.47 if curvatures counted as they are.
-        // The noise is estimated from two residuals only.
-        assert!(sum / 200.0 < 0.3, "{}", sum / 200.0);
+        // The sum of the squared slopes of noise is 40 / 12 / 2 = 1.7 in the mean.
+        assert!(sum / 200.0 < 0.2, "{}", sum / 200.0);
     }
 }

@@ -1,5 +1,5 @@
-//! Searches the parameters of the persons of one population: fits quadratic surfaces to each person's log likelihood,
-//! and estimates the population anew after each round of surfaces.
+//! Searches the parameters of the persons of one population: fits quadratic surfaces to each person's log likelihood, from
+//! the scores of single presses ([`super::score_surface`]), and estimates the population anew after each round of surfaces.
 //!
 //! The surfaces approximate the likelihood alone; the population enters afterwards. So a surface stays right when the
 //! population estimate changes, and a person with few presses needs no maximum of the likelihood. A round costs for
@@ -8,12 +8,13 @@
 use super::gaussian_likelihood::GaussianLikelihood;
 use super::parameter_scale::{bounds_of, is_possible, model_at};
 use super::population_estimate::{PopulationEstimate, estimate};
-use super::response_surface::{REACH, points_around, surface};
+use super::response_surface::REACH;
+use super::score_surface::{ScoreRegression, TriedPoint, points, points_around};
 use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
 
 /// Largest number of rounds of the search.
-pub const ROUNDS: usize = 8;
+pub const ROUNDS: usize = 12;
 /// Step sizes of the surfaces in the first round of the search.
 const FIRST_STEP: f64 = 0.5;
 /// Number of nats by which one step lowers a person's log likelihood, beside the noise of the surface. Step sizes
@@ -23,6 +24,9 @@ const STEP_NATS: f64 = 3.0;
 /// Least and largest size of a step, and the largest factor between the sizes of successive steps.
 const STEPS: [f64; 2] = [0.2, 1.0];
 const STEP_CHANGE: f64 = 2.5;
+/// Share of the way to a person's mode that the centre moves. The likelihood of small shares is flat on one side, so that
+/// whole steps would lead from one side of the mode to the other and back.
+const DAMPING: f64 = 0.5;
 /// The search for a person has settled when the person's mode is within this many steps of the centre of the surface.
 const NEAR: f64 = 0.5;
 
@@ -84,14 +88,15 @@ pub fn search(
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> FoundPeople {
     let bounds = bounds_of(what.parameters);
-    let mut surveys = vec![Survey { centre: start.to_vec(), steps: vec![FIRST_STEP; start.len()] }; what.people];
+    let mut surveys =
+        vec![Survey { centre: start.to_vec(), steps: vec![FIRST_STEP; start.len()], tried: Vec::new() }; what.people];
     let mut tries = 0;
     let mut round = 0;
     loop {
         surveys.iter_mut().for_each(|survey| survey.keep_inside(&bounds));
-        let found = likelihoods_at(what, &surveys, &likelihoods);
-        tries += found.first().map_or(0, Vec::len) as u64;
-        let surfaces = surveys.iter().zip(found).map(|(survey, losses)| survey.gaussian(losses));
+        try_points(what, &mut surveys, &likelihoods);
+        tries += points(start.len()) as u64;
+        let surfaces = surveys.iter().map(Survey::gaussian);
         let (gaussians, noises): (Vec<GaussianLikelihood>, Vec<f64>) = surfaces.unzip();
         let estimate = estimate(&gaussians, start);
         let inside = |at: &[f64]| -> Vec<f64> {
@@ -109,30 +114,26 @@ pub fn search(
     }
 }
 
-/// Negative log likelihoods of every person at the points of the person's survey; infinite where the parameters are
-/// invalid.
-fn likelihoods_at(
+/// Tries the points of every person's survey. Parameters that are invalid have no likelihood.
+fn try_points(
     what: PeopleSearch<'_>,
-    surveys: &[Survey],
+    surveys: &mut [Survey],
     likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
-) -> Vec<Vec<f64>> {
+) {
     let (mut tries, mut places) = (Vec::new(), Vec::new());
-    let mut losses: Vec<Vec<f64>> = Vec::new();
     for (person, survey) in surveys.iter().enumerate() {
-        let points = points_around(&survey.centre, &survey.steps);
-        losses.push(vec![f64::INFINITY; points.len()]);
-        for (point, at) in points.iter().enumerate() {
-            let model = model_at(what.base, what.parameters, at);
+        for at in points_around(&survey.centre, &survey.steps) {
+            let model = model_at(what.base, what.parameters, &at);
             if is_possible(&model) {
                 tries.push(PersonTry { person, part: what.part, model });
-                places.push((person, point));
+                places.push(at);
             }
         }
     }
-    for ((person, point), found) in places.into_iter().zip(likelihoods(&tries)) {
-        losses[person][point] = -found.total();
+    let found = likelihoods(&tries);
+    for ((of, at), found) in tries.iter().zip(places).zip(found) {
+        surveys[of.person].tried.push((at, found.losses()));
     }
-    losses
 }
 
 /// Where the next quadratic surface of a person's log likelihood is fitted: centre and step sizes.
@@ -140,6 +141,8 @@ fn likelihoods_at(
 struct Survey {
     centre: Vec<f64>,
     steps: Vec<f64>,
+    /// All points tried so far, with the loss of each press.
+    tried: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
 impl Survey {
@@ -150,12 +153,14 @@ impl Survey {
         }
     }
 
-    /// The quadratic likelihood that fits these losses, and the standard deviation of their noise.
-    fn gaussian(&self, losses: Vec<f64>) -> (GaussianLikelihood, f64) {
-        let mut losses = losses.into_iter();
-        let next = |_: &[f64]| losses.next().unwrap_or(f64::INFINITY);
-        match surface(next, &self.centre, &self.steps) {
-            Some(found) => (GaussianLikelihood::from_surface(&found, &self.centre, &self.steps), found.noise),
+    /// The quadratic likelihood around the centre, and the standard deviation of the noise of single values.
+    fn gaussian(&self) -> (GaussianLikelihood, f64) {
+        let tried: Vec<TriedPoint<'_>> = self.tried.iter().map(|(at, losses)| (at.clone(), &losses[..])).collect();
+        match ScoreRegression::new(&tried, &self.centre, &self.steps) {
+            Some(regression) => {
+                let found = regression.surface();
+                (GaussianLikelihood::from_surface(&found, &self.centre, &self.steps), found.noise)
+            }
             None => (GaussianLikelihood::flat(self.centre.len()), 0.0),
         }
     }
@@ -174,7 +179,7 @@ impl Survey {
         for (((centre, step), mode), information) in
             self.centre.iter_mut().zip(&mut self.steps).zip(mode).zip(&information)
         {
-            *centre = mode.clamp(*centre - REACH * *step, *centre + REACH * *step);
+            *centre += (mode - *centre).clamp(-REACH * *step, REACH * *step) * DAMPING;
             let wanted = (2.0 * (STEP_NATS + noise) / information).sqrt();
             *step = wanted.clamp(*step / STEP_CHANGE, *step * STEP_CHANGE).clamp(STEPS[0], STEPS[1]);
         }

@@ -6,8 +6,10 @@
 //! press is that given all earlier presses, hence the scores at the true parameters are uncorrelated with mean 0, and the
 //! sum of their outer products estimates the covariance of the log likelihood's slope, which is the information if the
 //! model is right. Noise of the likelihood makes products of a score with itself too large. The regression's residuals
-//! tell of noise that differs from point to point, but not of noise that neighbouring points share. Surfaces from scores
-//! therefore lead the search, and do not give standard errors by themselves.
+//! tell of noise that differs from point to point, but not of noise that neighbouring points share. In a fit of one set
+//! of parameters, surfaces from scores therefore lead the search, and do not give standard errors by themselves. In a fit
+//! of persons they also give what is known of each person ([`super::people_search`]): there are too few presses for the
+//! curvature of the values.
 
 use nalgebra::{DMatrix, DVector};
 

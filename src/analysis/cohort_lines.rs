@@ -1,4 +1,5 @@
-//! The robustness table as text for the terminal, at most 120 characters wide.
+//! The robustness table as text for the terminal: rows of cohorts are at most 120 characters wide, those of what adaptation
+//! changes 125, since few trials give differences of more than 100 points.
 
 use super::cohort_table::{AdaptationDifference, CohortPerformance, CohortRow, RobustnessTable};
 use crate::base::words::decimal;
@@ -73,7 +74,7 @@ fn describe_differences(table: &RobustnessTable) -> String {
     // Every cell begins with a space of its own.
     let width = (name_width(table.cohorts.iter().map(|row| row.cohort.as_str())) - 1).max(heading.len());
     let mut text = format!(
-        "\n{heading:<width$} {:>25} {:>25} {:>25} {:>15}\n",
+        "\n{heading:<width$} {:>25} {:>25} {:>25} {:>19}\n",
         "ROC places", "ROC recipes", "ECE", "saved, points"
     );
     let cell = |one: Option<AdaptationDifference>, scale: f64, digits: usize| {
@@ -90,7 +91,7 @@ fn describe_differences(table: &RobustnessTable) -> String {
         let Some(found) = &row.adaptation else { continue };
         let areas =
             [found.auc_locations, found.auc_recipes, found.ece].map(|one| format!(" {:>25}", cell(one, 1.0, 3)));
-        text += &format!("{:<width$}{} {:>15}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
+        text += &format!("{:<width$}{} {:>19}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
     }
     text
 }

@@ -5,7 +5,7 @@
 //! preserves the mean and the pooled second moment S = sum_k E[b_k^2]; the precision follows as (1 - S) / (S - sum_k
 //! m_k^2).
 
-use super::model::PriorModel;
+use super::model::{HumanModel, PriorModel};
 use crate::kitchen::{AspectId, AspectKind, ContentId, Kitchen, State};
 
 /// Lower bound of a value's expected probability, which lets later evidence still raise the probability.
@@ -185,6 +185,12 @@ impl DirichletBelief {
             }
         };
         DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
+    }
+
+    /// What is left of recipes that are forgotten: the prior with the transition model's probability of a true recipe.
+    pub fn forgotten(kitchen: &Kitchen, model: &HumanModel, state: State) -> DirichletBelief {
+        let recipe_truth = model.transition.forgotten_truth.unwrap_or(model.prior.recipe_truth);
+        DirichletBelief::prior(kitchen, &PriorModel { recipe_truth, ..model.prior.clone() }, state)
     }
 
     /// Mixes each aspect with that of another estimate, which has this share, matching mean and second moment.

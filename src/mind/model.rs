@@ -207,16 +207,20 @@ impl LocationReadingRate {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransitionModel {
-    /// Half-life with which a belief about a recipe decays to its prior, in seconds: of how many people still hold it, or,
-    /// where recipes are recalled, of its distance from the prior's mean while the dish is not ordered.
+    /// Half-life with which a belief about a recipe decays to what is left of a forgotten one, in seconds: of how many
+    /// people still hold it, or, where recipes are recalled, of its distance from that while the dish is not ordered.
     pub recipe_half_life_s: f64,
+    /// Expected probability of the true recipe in what is left of a forgotten recipe: beliefs decay to it. Absent: that of
+    /// the prior ([`PriorModel::recipe_truth`]), as if nothing of the instruction before the trial were forgotten.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub forgotten_truth: Option<f64>,
     /// Precision with which a recipe is recalled when its dish is ordered: the belief becomes one that is drawn from a
     /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. Absent: orders do
     /// not change what is held of recipes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recall_precision: Option<f64>,
-    /// Half-life of a recalled recipe while its dish is ordered, in seconds: then the recipe is recalled anew from the
-    /// prior. It has an effect only where `recall_precision` is set.
+    /// Half-life of a recalled recipe while its dish is ordered, in seconds: then the recipe is recalled anew from what is
+    /// left of it. It has an effect only where `recall_precision` is set.
     pub recall_half_life_s: f64,
     /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
     /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
@@ -225,7 +229,13 @@ pub struct TransitionModel {
 
 impl Default for TransitionModel {
     fn default() -> Self {
-        TransitionModel { recipe_half_life_s: 200.0, recall_precision: None, recall_half_life_s: 20.0, foresight: 0.2 }
+        TransitionModel {
+            recipe_half_life_s: 200.0,
+            forgotten_truth: None,
+            recall_precision: None,
+            recall_half_life_s: 20.0,
+            foresight: 0.2,
+        }
     }
 }
 

@@ -49,8 +49,8 @@ pub struct ConditionalFilter {
     model: HumanModel,
     seed: u64,
     belief: DirichletBelief,
-    /// The prior distribution to which beliefs about recipes decay.
-    prior: DirichletBelief,
+    /// The distribution to which beliefs about recipes decay.
+    forgotten: DirichletBelief,
     reader: GazeBeliefUpdate,
     presence: UnknownGazeTimer,
     /// The probability that the next press needs each location, once it has been computed after the last event.
@@ -86,7 +86,6 @@ impl ConditionalFilter {
     /// A filter with the estimate before the trial's start.
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> ConditionalFilter {
         let shown = kitchen.empty_state();
-        let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let lesson = |action: ButtonAction| match action {
             ButtonAction::Use(location) => Lesson::Exchange(ExchangeUpdate::new(&kitchen, location)),
             ButtonAction::Serve(order) => Lesson::Serving(ServingUpdate::new(&kitchen, order)),
@@ -100,7 +99,8 @@ impl ConditionalFilter {
             stretch: None,
             watched: unknown_gaze::watched(&kitchen),
             choice: ChoiceModel::for_draws(&kitchen, &model.decision, model.inference.states),
-            belief: prior.clone(),
+            belief: DirichletBelief::prior(&kitchen, &model.prior, shown),
+            forgotten: DirichletBelief::forgotten(&kitchen, &model, shown),
             sampler: BeliefSampler::new(&kitchen),
             forgot: None,
             frozen: None,
@@ -112,7 +112,6 @@ impl ConditionalFilter {
             kitchen,
             model,
             seed,
-            prior,
             lessons,
             shown,
             presses: 0,
@@ -172,8 +171,8 @@ impl ConditionalFilter {
     fn update(&mut self, now: SessionTime, what: &ObservedEvidence, cost: &mut CostToGo) {
         match *what {
             ObservedEvidence::Started { state } => {
-                self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
-                self.belief.clone_from(&self.prior);
+                self.belief = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
+                self.forgotten = DirichletBelief::forgotten(&self.kitchen, &self.model, state);
                 self.proposed = ProposedPresses::default();
                 self.signals = SignalReadingHistory::default();
                 self.lapse = LapsePosterior::around(self.model.decision.lapse);

@@ -29,8 +29,10 @@ use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 pub struct ParticleSet {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
-    /// The prior: distribution of the belief at the start, to which beliefs about recipes decay.
+    /// The prior: distribution of the belief at the start.
     pub prior: DirichletBelief,
+    /// The distribution to which beliefs about recipes decay.
+    forgotten: DirichletBelief,
     /// Distribution that replaces a belief after an observation that was impossible under that belief.
     pub doubt: DirichletBelief,
     /// The explicit beliefs of the set.
@@ -60,6 +62,7 @@ impl ParticleSet {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> ParticleSet {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
+        let forgotten = DirichletBelief::forgotten(&kitchen, &model, shown);
         let (doubt, sight, presence) = (prior.clone(), LookTracker::default(), UnknownGazeTimer::new(&model));
         let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
         let (proposed, signals, lapses) =
@@ -68,6 +71,7 @@ impl ParticleSet {
             kitchen,
             model,
             prior,
+            forgotten,
             doubt,
             of,
             sight,
@@ -86,6 +90,7 @@ impl ParticleSet {
     /// Starts the trial in `state` with `count` beliefs drawn from the prior.
     pub fn start(&mut self, now: SessionTime, state: State, count: usize, random: &mut Stream) {
         self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
+        self.forgotten = DirichletBelief::forgotten(&self.kitchen, &self.model, state);
         self.doubt.clone_from(&self.prior);
         self.of = (0..count).map(|_| Particle::draw(&self.kitchen, &self.prior, random)).collect();
         self.forgot = Some(now);

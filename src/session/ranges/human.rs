@@ -16,7 +16,7 @@ const UNSURE: &str = "a certain belief could not be corrected by any observation
 const PRECISION: &str = "with a lower precision there is no belief, with a higher one the belief is certain";
 const DRAWS: &str = "larger samples take seconds to minutes for each press";
 
-pub(super) const RANGES: [NumberRange; 42] = [
+pub(super) const RANGES: [NumberRange; 43] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
@@ -80,6 +80,7 @@ pub(super) const RANGES: [NumberRange; 42] = [
         "half-lives from forgotten at once to never forgotten",
     )
     .recorded(ABOVE_0),
+    NumberRange::real("human.transition.forgotten_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.transition.recall_precision", [0.001, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real(
         "human.transition.recall_half_life_s",

@@ -19,6 +19,7 @@ use super::looks_at_nothing;
 const RECALL: f64 = 0.4;
 const HALF_LIFE_S: f64 = 100.0;
 const ANEW_S: f64 = 40.0;
+const FORGOTTEN: f64 = 0.5;
 
 fn model(recall_precision: Option<f64>) -> HumanModel {
     let mut model = looks_at_nothing();
@@ -90,6 +91,23 @@ fn an_order_makes_one_hold_one_version_as_long_as_it_is_ordered() {
 }
 
 #[test]
+fn a_recipe_fades_to_what_is_left_of_it_and_is_recalled_anew_from_that() {
+    for recall_precision in [Some(RECALL), None] {
+        let mut forgetting = model(recall_precision);
+        let known = forgetting.prior.recipe_truth;
+        forgetting.transition.forgotten_truth = Some(FORGOTTEN);
+        let [start, faded] = [0.0, 90.0].map(|until_s| estimate(&forgetting, until_s)[1].mean()[0]);
+        assert!((start - known).abs() < 1e-9, "the instruction is remembered at the start: {start}");
+        let expected = FORGOTTEN + (known - FORGOTTEN) * 0.5_f64.powf(90.0 / HALF_LIFE_S);
+        assert!((faded - expected).abs() < 1e-6, "{recall_precision:?}: {faded} {expected}");
+        let [ordered, later] = [10.0, 109.0].map(|until_s| estimate(&forgetting, until_s)[0].mean()[0]);
+        let half_life_s = if recall_precision.is_some() { ANEW_S } else { HALF_LIFE_S };
+        let expected = FORGOTTEN + (ordered - FORGOTTEN) * 0.5_f64.powf(99.0 / half_life_s);
+        assert!((later - expected).abs() < 1e-6, "{recall_precision:?}: {later} {expected}");
+    }
+}
+
+#[test]
 fn without_recall_orders_change_nothing_that_is_held_of_recipes() {
     for until_s in [9.0, 10.0, 109.0, 210.0] {
         let [ordered, other] = estimate(&model(None), until_s);
@@ -100,7 +118,8 @@ fn without_recall_orders_change_nothing_that_is_held_of_recipes() {
 #[test]
 fn the_closed_form_is_that_of_people_who_recall() {
     let kitchen = burgers();
-    let model = model(Some(RECALL));
+    let mut model = model(Some(RECALL));
+    model.transition.forgotten_truth = Some(FORGOTTEN);
     let mut random = stream(11, "recall", 0);
     let mut cost = CostToGo::new(kitchen.clone());
     let aspect: AspectId = kitchen.aspect_of_dish(DishId(0));

@@ -46,6 +46,7 @@ const SETTINGS: &str = r#"
         [human.decision]
         one_order = 0.5
         [human.transition]
+        forgotten_truth = 0.7
         recall_precision = 0.5
         recall_half_life_s = 30.0
         [human.signal]

@@ -5,8 +5,8 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{AspectKind, State};
 
 impl ConditionalFilter {
-    /// Lets beliefs about recipes decay to their prior. Where recipes are recalled, each belief fades while its dish is not
-    /// ordered, and some are recalled anew from the prior while it is.
+    /// Lets beliefs about recipes decay to what is left of a forgotten recipe. Where recipes are recalled, each belief fades
+    /// while its dish is not ordered, and some are recalled anew from what is left while it is.
     pub(super) fn forget(&mut self, now: SessionTime) {
         let Some(last) = self.forgot else { return };
         self.forgot = Some(now.max(last));
@@ -18,11 +18,11 @@ impl ConditionalFilter {
             let is_ordered = self.kitchen.is_ordered(self.shown, dish);
             let before = self.stretch.as_mut().map(|stretch| &mut stretch.before[index]);
             for belief in std::iter::once(&mut self.belief.aspects[index]).chain(before) {
-                let prior = &self.prior.aspects[index];
+                let forgotten = &self.forgotten.aspects[index];
                 match transition.recall_precision {
-                    None => belief.mix(faded, prior),
-                    Some(_) if !is_ordered => belief.fade(faded, prior.mean()),
-                    Some(precision) => belief.mix(recalled_anew, &prior.redrawn(precision)),
+                    None => belief.mix(faded, forgotten),
+                    Some(_) if !is_ordered => belief.fade(faded, forgotten.mean()),
+                    Some(precision) => belief.mix(recalled_anew, &forgotten.redrawn(precision)),
                 }
             }
         }

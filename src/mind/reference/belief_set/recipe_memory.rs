@@ -16,14 +16,15 @@ impl ParticleSet {
         for person in &mut self.of {
             for &dish in &dishes {
                 let aspect = self.kitchen.aspect_of_dish(dish);
-                let (prior, is_ordered) = (self.prior.aspect(aspect), self.kitchen.is_ordered(self.shown, dish));
+                let (forgotten, is_ordered) =
+                    (self.forgotten.aspect(aspect), self.kitchen.is_ordered(self.shown, dish));
                 match transition.recall_precision {
                     None => {
-                        person.forget(aspect, prior, faded, random);
+                        person.forget(aspect, forgotten, faded, random);
                     }
-                    Some(_) if !is_ordered => person.fade(aspect, prior.mean(), faded),
+                    Some(_) if !is_ordered => person.fade(aspect, forgotten.mean(), faded),
                     Some(precision) => {
-                        if person.forget(aspect, prior, recalled_anew, random) {
+                        if person.forget(aspect, forgotten, recalled_anew, random) {
                             person.recall(aspect, precision, random);
                         }
                     }

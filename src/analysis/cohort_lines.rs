@@ -1,5 +1,5 @@
-//! The robustness table as text for the terminal: rows of cohorts are at most 120 characters wide, those of what adaptation
-//! changes 125, since few trials give differences of more than 100 points.
+//! The robustness table as text for the terminal: at most 125 characters wide, since few trials give shares beyond
+//! -100 %.
 
 use super::cohort_table::{AdaptationDifference, CohortPerformance, CohortRow, RobustnessTable};
 use crate::base::words::decimal;
@@ -13,7 +13,7 @@ pub fn heading(width: usize) -> String {
     let columns = |first: &str, names: [&str; 11]| {
         let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals, orders] = names;
         let line = format!(
-            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>15}\
+            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>19}\
              {signals:>8}{orders:>11}"
         );
         line.trim_end().to_string()
@@ -48,7 +48,7 @@ fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, wi
     };
     let orders = format!("{orders}{:.2}", of.assisted.orders_per_minute);
     format!(
-        "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6} {saved:>14}{:>8}{orders:>11}\n",
+        "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6} {saved:>18}{:>8}{orders:>11}\n",
         decimal(found.auc_locations, 3),
         decimal(found.auc_recipes, 3),
         decimal(found.ece, 3),

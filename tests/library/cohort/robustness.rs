@@ -58,8 +58,7 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert!(rows[0].starts_with("confident wrong recipes ") && rows[1].starts_with("  adapting "), "{text}");
     let end = describe_end(&one);
     assert!(end.contains("3 trials of seed 41") && end.contains("adapting less usual"), "{end}");
-    let fits = |line: &str, most: usize| line.chars().count() <= most;
-    assert!(text.lines().all(|line| fits(line, 120)) && end.lines().take(4).all(|line| fits(line, 125)), "{text}{end}");
+    assert!(text.lines().chain(end.lines().take(4)).all(|line| line.chars().count() <= 125), "{text}{end}");
     assert!(one.cohorts.iter().all(|row| row.usual.assisted.signals_per_100 > 0.0), "{text}");
     for row in &one.cohorts {
         let adapting = &row.adapting.as_ref().expect("measured").detection;

@@ -215,8 +215,9 @@ pub struct TransitionModel {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub forgotten_truth: Option<f64>,
     /// Precision with which a recipe is recalled when its dish is ordered: the belief becomes one that is drawn from a
-    /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. Absent: orders do
-    /// not change what is held of recipes.
+    /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. The same happens to
+    /// those who find their version wrong, as it could not be served. Absent: orders do not change what is held of
+    /// recipes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recall_precision: Option<f64>,
     /// Half-life of a recalled recipe while its dish is ordered, in seconds: then the recipe is recalled anew from what is

@@ -17,7 +17,7 @@ use super::human_act::{HumanAction, ProposalMixture};
 use super::look_news::UnseenLooks;
 use super::order_focus::OrderFocus;
 use super::perception::GazeBeliefUpdate;
-use super::serving::ServingUpdate;
+use super::serving::{ServingUpdate, VersionRecall};
 use super::signals_so_far::SignalReadingHistory;
 use super::unknown_gaze::{self, UnknownGazePeriod};
 use super::{own_press, robot_press};
@@ -387,7 +387,11 @@ impl ConditionalFilter {
                 own_press::learn_alone(&self.kitchen, &mut self.belief, action, effective);
             }
             Lesson::Exchange(exchange) => exchange.learn(&mut self.belief, effective, draws, random),
-            Lesson::Serving(serving) => serving.learn(&mut self.belief, effective, draws, random),
+            Lesson::Serving(serving) => {
+                let left = &self.forgotten;
+                let recall = self.model.transition.recall_precision.map(|precision| VersionRecall { left, precision });
+                serving.learn(&mut self.belief, effective, recall.as_ref(), draws, random);
+            }
         }
     }
 

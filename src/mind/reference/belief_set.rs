@@ -16,7 +16,9 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State};
+use crate::kitchen::{
+    Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
+};
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::UnknownGazeTimer;
@@ -291,6 +293,8 @@ impl ParticleSet {
         let mut weights = Vec::with_capacity(self.of.len());
         self.pressing.clear();
         let mut likelihoods = vec![0.0; self.lapses.len()];
+        let is_serving = matches!(self.kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_));
+        let is_failed_serving = is_serving && !effective;
         for person in &mut self.of {
             let mut weight = 0.0;
             let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
@@ -304,7 +308,11 @@ impl ParticleSet {
                 weight += p * presses * pressed;
             }
             weights.push(weight);
+            let before = is_failed_serving.then(|| person.of.clone());
             person.pressed(&self.kitchen, &doubt, button, effective);
+            if let Some(before) = before {
+                recipe_memory::recall_others(&self.kitchen, &self.model, person, (&before, &self.forgotten), random);
+            }
         }
         let total: f64 = self.lapses.iter().zip(&likelihoods).map(|((_, p), likelihood)| p * likelihood).sum();
         for ((_, p), likelihood) in self.lapses.iter_mut().zip(&likelihoods) {

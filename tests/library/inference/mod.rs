@@ -5,6 +5,7 @@ mod adaptation;
 mod calibration;
 mod drop_outs;
 mod exact;
+mod failed_serving;
 mod fitting;
 mod fitting_answers;
 mod fitting_intervals;

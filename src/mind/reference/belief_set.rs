@@ -308,10 +308,10 @@ impl ParticleSet {
                 weight += p * presses * pressed;
             }
             weights.push(weight);
-            let before = is_failed_serving.then(|| person.of.clone());
+            let before = person.of.clone();
             person.pressed(&self.kitchen, &doubt, button, effective);
-            if let Some(before) = before {
-                recipe_memory::recall_others(&self.kitchen, &self.model, person, (&before, &self.forgotten), random);
+            if let Some(precision) = self.model.transition.recall_precision.filter(|_| is_failed_serving) {
+                person.recall_others(&self.kitchen, &before, &self.forgotten, precision, random);
             }
         }
         let total: f64 = self.lapses.iter().zip(&likelihoods).map(|((_, p), likelihood)| p * likelihood).sum();

@@ -99,25 +99,27 @@ impl Particle {
         *of = draw(&Dirichlet::new(std::mem::take(of), precision), random);
     }
 
-    /// Gives what the belief about a recipe lost, since it was `before`, to the versions that lost nothing, in proportion to
-    /// `left`, what is left of a forgotten recipe; with a probability as large as that loss one version is recalled anew.
-    pub fn recall_other(
+    /// Gives what the belief about each recipe lost, since it was `before`, to the versions that lost nothing, in proportion
+    /// to what is `left` of a forgotten recipe; with a probability as large as that loss one version is recalled anew.
+    pub fn recall_others(
         &mut self,
-        aspect: AspectId,
-        before: &[f64],
-        left: &[f64],
+        kitchen: &Kitchen,
+        before: &[Vec<f64>],
+        left: &DirichletBelief,
         precision: f64,
         random: &mut Stream,
     ) {
-        let of = &mut self.of[aspect.index()];
-        let others: Vec<usize> = (0..of.len()).filter(|&version| of[version] >= before[version]).collect();
-        let kept: f64 = (0..of.len()).map(|version| of[version].min(before[version])).sum();
-        let left_of_others: f64 = others.iter().map(|&version| left[version]).sum();
-        for version in others {
-            of[version] = before[version] + (1.0 - kept) * left[version] / left_of_others;
-        }
-        if random.random::<f64>() < 1.0 - kept {
-            self.recall(aspect, precision, random);
+        for index in kitchen.locations.len()..kitchen.aspects.len() {
+            let (of, before, left) = (&mut self.of[index], &before[index], left.aspects[index].mean());
+            let others: Vec<usize> = (0..of.len()).filter(|&version| of[version] >= before[version]).collect();
+            let kept: f64 = (0..of.len()).map(|version| of[version].min(before[version])).sum();
+            let left_of_others: f64 = others.iter().map(|&version| left[version]).sum();
+            for version in others {
+                of[version] = before[version] + (1.0 - kept) * left[version] / left_of_others;
+            }
+            if random.random::<f64>() < 1.0 - kept {
+                self.recall(AspectId(index as u8), precision, random);
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, Kitchen, OrderContent, Press, State};
+use tomcom::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, Kitchen, OrderContent, Press};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
@@ -20,7 +20,7 @@ use super::looks_at_nothing;
 fn on_plate(kitchen: &Kitchen) -> (DishId, usize) {
     let contents = &kitchen.aspects[kitchen.plate.index()];
     let wrong = |dish: DishId| {
-        let variants = kitchen.dish(dish).variants.iter().enumerate().skip(1);
+        let mut variants = kitchen.dish(dish).variants.iter().enumerate().skip(1);
         variants.find(|(_, variant)| contents.index_of(variant.0).is_some()).map(|(version, _)| (dish, version))
     };
     let dishes = (0..kitchen.dishes.len()).map(|dish| DishId(dish as u8));

@@ -3,10 +3,7 @@
 use super::ParticleSet;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
-use crate::kitchen::{DishId, Kitchen, State};
-use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::model::HumanModel;
-use crate::mind::reference::person::Particle;
+use crate::kitchen::{DishId, State};
 
 impl ParticleSet {
     pub(super) fn forget(&mut self, now: SessionTime, random: &mut Stream) {
@@ -45,21 +42,5 @@ impl ParticleSet {
                 self.of.iter_mut().for_each(|person| person.recall(aspect, precision, random));
             }
         }
-    }
-}
-
-/// Lets a human, whose belief was `before` when a serving had no effect, recall other versions of the recipes that this
-/// made doubtful, where recipes are recalled.
-pub(super) fn recall_others(
-    kitchen: &Kitchen,
-    model: &HumanModel,
-    person: &mut Particle,
-    (before, forgotten): (&[Vec<f64>], &DirichletBelief),
-    random: &mut Stream,
-) {
-    let Some(precision) = model.transition.recall_precision else { return };
-    for dish in (0..kitchen.dishes.len()).map(|index| DishId(index as u8)) {
-        let aspect = kitchen.aspect_of_dish(dish);
-        person.recall_other(aspect, &before[aspect.index()], forgotten.aspect(aspect).mean(), precision, random);
     }
 }

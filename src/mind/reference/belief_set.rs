@@ -294,7 +294,8 @@ impl ParticleSet {
         self.pressing.clear();
         let mut likelihoods = vec![0.0; self.lapses.len()];
         let is_serving = matches!(self.kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_));
-        let is_failed_serving = is_serving && !effective;
+        // Only a serving without effect makes people recall other versions.
+        let recall = self.model.transition.recall_precision.filter(|_| is_serving && !effective);
         for person in &mut self.of {
             let mut weight = 0.0;
             let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
@@ -308,9 +309,9 @@ impl ParticleSet {
                 weight += p * presses * pressed;
             }
             weights.push(weight);
-            let before = person.of.clone();
+            let before = recall.map(|precision| (precision, person.of.clone()));
             person.pressed(&self.kitchen, &doubt, button, effective);
-            if let Some(precision) = self.model.transition.recall_precision.filter(|_| is_failed_serving) {
+            if let Some((precision, before)) = before {
                 person.recall_others(&self.kitchen, &before, &self.forgotten, precision, random);
             }
         }

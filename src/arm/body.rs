@@ -72,8 +72,9 @@ impl SimulatedArm {
     pub fn next_due(&self, may_press: bool) -> Option<SessionTime> {
         let goes_down = self.arm.phase() == ArmPhase::Hovers && may_press && !self.arm.mode.is_stopped();
         let goes_home = self.idle && self.arm.is_out();
-        let next =
-            (goes_down || goes_home || self.arm.is_busy()).then(|| self.at + SessionTime::from_secs_f64(CYCLE_S));
+        let sets_out = self.next.is_some() && !self.arm.mode.is_stopped();
+        let next = (goes_down || goes_home || sets_out || self.arm.is_busy())
+            .then(|| self.at + SessionTime::from_secs_f64(CYCLE_S));
         next.into_iter().chain(self.hand.next_move(self.at)).min()
     }
 

@@ -11,7 +11,7 @@ use super::clearance::ArmSurroundings;
 use super::kinematics::SerialArm;
 use super::physics::hand_body::HandPose;
 use super::physics::{CYCLE_S, ContactForces, PhysicsWorld};
-use super::reach::{ButtonPoses, UnreachableReason, resting_pose};
+use super::reach::{BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
 use super::report::PressFailure;
 use super::separation::{MARGIN_M, mode_near, speed_limit};
 use super::touch::ContactTracker;
@@ -35,6 +35,9 @@ const FREE_S: f64 = 0.25;
 /// faulty.
 const DEVIATION_RAD: f64 = 0.05;
 const DEVIATION_CYCLES: u32 = 3;
+/// Height of the stick's tip above a button's top, in metres, above which the stick cannot touch the button within one
+/// cycle: in that time the tip moves by 2 mm.
+const MAY_TOUCH_M: f64 = 0.01;
 /// Longest time to wait for the click of a button that the arm pushes down, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
 /// The arm counts as standing still if all joints are slower than this, in radians per second.
@@ -345,9 +348,11 @@ impl ArmController {
         }
     }
 
-    /// Activates the button under the arm's stick in the physics.
+    /// Activates the button under the arm's stick in the physics while the stick is so low that it may touch the button.
     fn aim(&mut self) {
+        let height_m = || self.arm.tip(&self.world.joints().0).translation.z - self.around.table_m - BUTTON_M;
         match self.way.front().map(|leg| leg.kind) {
+            Some(LegKind::Down | LegKind::Up) if height_m() > MAY_TOUCH_M => self.world.aim_at(None),
             Some(LegKind::Down) => self.world.aim_at(self.goal.map(ButtonId::index)),
             Some(LegKind::Over) | None => self.world.aim_at(None),
             Some(LegKind::Up) => {}

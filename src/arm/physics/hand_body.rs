@@ -100,14 +100,27 @@ impl PhysicalHand {
     /// Applies the forces of a physics step to the hand: the spring of the person's arm, and the contact with the robot
     /// (newtons).
     pub fn push(&self, bodies: &mut RigidBodySet, by_robot_n: Vector3<f64>) {
-        let at_m = self.place(bodies).at_m;
-        let away = self.wanted.at_m - at_m;
-        let by_table_n = Vector3::z() * (self.depth_in_table_m(bodies) * STIFFNESS_N_M);
-        let velocity = self.velocity_m_s(bodies);
+        let force = self.held_n(bodies) + by_robot_n;
         let Some(body) = bodies.get_mut(self.body) else { return };
-        let force = away * HELD_N_M - velocity * HELD_NS_M + by_robot_n + by_table_n;
         body.reset_forces(false);
         body.add_force(single(force), true);
+    }
+
+    /// Moves the hand for this many seconds without the physics engine, by the same forces, where nothing can touch it.
+    pub fn swing(&self, bodies: &mut RigidBodySet, takes_s: f32) {
+        let force = single(self.held_n(bodies));
+        let Some(body) = bodies.get_mut(self.body) else { return };
+        let velocity = body.linvel() + force * (takes_s / MASS_KG);
+        let at_m = body.translation() + velocity * takes_s;
+        body.set_linvel(velocity, true);
+        body.set_translation(at_m, true);
+    }
+
+    /// The forces of the person's arm and of the table on the hand, in newtons.
+    fn held_n(&self, bodies: &RigidBodySet) -> Vector3<f64> {
+        let away = self.wanted.at_m - self.place(bodies).at_m;
+        let by_table_n = Vector3::z() * (self.depth_in_table_m(bodies) * STIFFNESS_N_M);
+        away * HELD_N_M - self.velocity_m_s(bodies) * HELD_NS_M + by_table_n
     }
 }
 

@@ -1,7 +1,9 @@
 //! The robot arm, the buttons and the human's hand as bodies in the physics engine rapier.
 //!
-//! A cycle of the controller has a fixed number of physics steps: four of 2 ms where the arm can touch a button or the
-//! hand, else one of 8 ms. The choice follows from the state alone, so a session stays reproducible.
+//! Where the arm can touch a button or the hand, a cycle of the controller has four physics steps of 2 ms. Elsewhere, in
+//! free air, the joints are where the controller commands, and no physics is computed: the drives of an arm without a
+//! fault follow smooth commands closely, and nothing else could tell the difference. The choice follows from the state
+//! alone, so a session stays reproducible.
 //! The arm is a multibody from the URDF; each joint is driven by a motor that follows a commanded angle with no more
 //! torque than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a
 //! spring, which stands for the person's arm. The contact between hand and robot arm is a spring, too, as stiff as a
@@ -18,6 +20,7 @@ use rapier3d::prelude::{
     SoftBodySet, Vector,
 };
 
+use super::clearance::Capsule;
 use super::kinematics::SerialArm;
 use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
@@ -25,10 +28,8 @@ use hand_body::{HandPose, PhysicalHand, double, single};
 
 /// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
 pub const CYCLE_S: f64 = 0.008;
-/// Number of physics steps in a cycle in which the arm can touch something: contacts and buttons need steps of 2 ms.
-const STEPS_AT_CONTACT: usize = 4;
-/// Number of physics steps in a cycle in which the arm moves through free air, with no hand near and above all buttons.
-const STEPS_IN_FREE_AIR: usize = 1;
+/// Number of physics steps in a cycle: contacts and buttons need steps of 2 ms.
+const STEPS: usize = 4;
 /// Number of iterations of the physics solver in each step; few iterations suffice, since the steps are short.
 const ITERATIONS: usize = 2;
 const GRAVITY_M_S2: f32 = -9.81;
@@ -44,8 +45,9 @@ const DAMPING: f32 = 200.0;
 /// radians: the correction compensates the arm's weight.
 const CORRECTED: f64 = 0.1;
 const MOST_CORRECTED_RAD: f64 = 0.05;
-/// Distance in metres beyond which human and robot arm cannot touch within one controller cycle.
-const APART_M: f64 = 0.05;
+/// Distance in metres beyond which human and robot arm cannot touch within one controller cycle: in that time a reaching
+/// hand moves by less than 20 mm, and the arm by less than 10 mm.
+const APART_M: f64 = 0.03;
 
 /// The contact forces measured in one controller cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,11 +63,15 @@ pub struct ContactForces {
 impl SerialArm {
     /// The distance between a hand and the arm at these joint angles, in metres.
     pub fn distance(&self, joints: &JointAngles, hand: &HandPose) -> f64 {
-        let human = hand.capsules();
-        let arm = self.capsules(joints);
-        let pairs = arm.iter().flat_map(|(_, link)| human.iter().map(move |part| link.nearest(part).distance_m));
-        pairs.fold(f64::INFINITY, f64::min)
+        distance(&self.capsules(joints), hand)
     }
+}
+
+/// The distance between a hand and the capsules of an arm's links, in metres.
+fn distance(arm: &[(usize, Capsule)], hand: &HandPose) -> f64 {
+    let human = hand.capsules();
+    let pairs = arm.iter().flat_map(|(_, link)| human.iter().map(move |part| link.nearest(part).distance_m));
+    pairs.fold(f64::INFINITY, f64::min)
 }
 
 /// The simulated world: arm, buttons and hand as bodies of the physics engine.
@@ -91,6 +97,13 @@ pub struct PhysicsWorld {
     active: Option<usize>,
     hand: Option<PhysicalHand>,
     table_m: f64,
+    /// The capsules of all links at the arm's present joint angles, each with its link number.
+    capsules: Vec<(usize, Capsule)>,
+    /// Joint speeds in radians per second while the arm is in free air, where no physics is computed; `None` where physics
+    /// is.
+    free: Option<JointAngles>,
+    /// Whether a joint's motor is disabled, so that the arm does not follow its commands.
+    has_failed: bool,
     /// The last commanded joint angles, and the correction added to them.
     commanded: JointAngles,
     correction: JointAngles,
@@ -118,6 +131,9 @@ impl Clone for PhysicsWorld {
             active: self.active,
             hand: self.hand,
             table_m: self.table_m,
+            capsules: self.capsules.clone(),
+            free: self.free,
+            has_failed: self.has_failed,
             commanded: self.commanded,
             correction: self.correction,
         }
@@ -136,6 +152,7 @@ impl PhysicsWorld {
         let mut world = PhysicsWorld {
             arm: arm.clone(),
             parameters: IntegrationParameters {
+                dt: (CYCLE_S / STEPS as f64) as f32,
                 num_solver_iterations: ITERATIONS,
                 max_ccd_substeps: 0,
                 ..IntegrationParameters::default()
@@ -156,6 +173,9 @@ impl PhysicsWorld {
             active: None,
             hand: None,
             table_m,
+            capsules: arm.capsules(joints),
+            free: None,
+            has_failed: false,
             commanded: *joints,
             correction: [0.0; JOINTS],
         };
@@ -166,13 +186,16 @@ impl PhysicsWorld {
         }
         // In these cycles the motors come to hold the arm's weight.
         for _ in 0..SETTLES {
-            world.cycle(joints, None);
+            world.simulate(joints, false);
         }
         world
     }
 
     /// Joint angles of the arm in radians, and joint speeds in radians per second.
     pub fn joints(&self) -> (JointAngles, JointAngles) {
+        if let Some(speeds) = self.free {
+            return (self.commanded, speeds);
+        }
         let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get(*joint)) else {
             return (self.commanded, [0.0; JOINTS]);
         };
@@ -208,6 +231,7 @@ impl PhysicsWorld {
 
     /// Disables the motor of this joint to simulate a fault; with `None`, restores all motors.
     pub fn fail(&mut self, joint: Option<usize>) {
+        self.has_failed = joint.is_some();
         for (index, (handle, turn)) in self.joints.iter().zip(self.arm.turns()).enumerate() {
             let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
             let torque_nm = if joint == Some(index) { 0.0 } else { turn.torque_nm as f32 };
@@ -220,16 +244,46 @@ impl PhysicsWorld {
     /// Runs a cycle of the controller: the joints move towards the angles in `command` (radians), the hand to the pose
     /// that the person wants.
     pub fn cycle(&mut self, command: &JointAngles, hand: Option<HandPose>) -> ContactForces {
-        let before = self.commanded;
         self.set_hand(hand);
         let near = self.hand().is_some_and(|hand| self.distance(&hand) < APART_M);
-        let mut felt = ContactForces::default();
         let is_on_table = self.hand.is_some_and(|hand| hand.depth_in_table_m(&self.bodies) > 0.0);
-        let is_free = !near && !is_on_table && self.active.is_none();
-        let steps = if is_free { STEPS_IN_FREE_AIR } else { STEPS_AT_CONTACT };
-        self.parameters.dt = (CYCLE_S / steps as f64) as f32;
-        for step in 1..=steps {
-            let share = step as f64 / steps as f64;
+        let touches = near || is_on_table || self.active.is_some() || self.has_failed;
+        let felt = if touches { self.simulate(command, near) } else { self.go_through_air(command) };
+        self.capsules = self.arm.capsules(&self.joints().0);
+        felt
+    }
+
+    /// Moves arm and hand for one cycle in which nothing can be touched.
+    fn go_through_air(&mut self, command: &JointAngles) -> ContactForces {
+        self.free = Some(std::array::from_fn(|joint| (command[joint] - self.commanded[joint]) / CYCLE_S));
+        self.commanded = *command;
+        if let Some(hand) = self.hand {
+            hand.swing(&mut self.bodies, CYCLE_S as f32);
+        }
+        ContactForces::default()
+    }
+
+    /// Puts the arm's bodies where the joints are, after cycles without physics.
+    fn leave_the_air(&mut self) {
+        let Some(speeds) = self.free.take() else { return };
+        let (commanded, (angles, _)) = (self.commanded, self.joints());
+        let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get_mut(*joint)) else {
+            return;
+        };
+        let moved: [f32; JOINTS] = std::array::from_fn(|joint| (commanded[joint] - angles[joint]) as f32);
+        multibody.apply_displacements(&moved);
+        multibody.generalized_velocity_mut().copy_from_slice(&speeds.map(|speed| speed as f32));
+        multibody.forward_kinematics(&self.bodies, false);
+        multibody.update_rigid_bodies(&mut self.bodies, true);
+    }
+
+    /// Runs the physics for one cycle; `near`: the hand is so near that it can touch the arm.
+    fn simulate(&mut self, command: &JointAngles, near: bool) -> ContactForces {
+        self.leave_the_air();
+        let before = self.commanded;
+        let mut felt = ContactForces::default();
+        for step in 1..=STEPS {
+            let share = step as f64 / STEPS as f64;
             self.drive(
                 &std::array::from_fn(|joint| before[joint] + (command[joint] - before[joint]) * share),
                 &before,
@@ -284,7 +338,7 @@ impl PhysicsWorld {
 
     /// The distance between a hand and the arm, in metres.
     pub fn distance(&self, hand: &HandPose) -> f64 {
-        self.arm.distance(&self.joints().0, hand)
+        distance(&self.capsules, hand)
     }
 
     /// Blocks this button, to simulate a fault.

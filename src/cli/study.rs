@@ -90,13 +90,16 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
     let bar = progress(recordings.number() as u64, "recordings");
     if let Some(shard) = args.shard {
         let begun = |number: usize| bar.set_length(number as u64);
+        let found = recordings.number() as u64;
         let number = shards::analyse_shard(&request, recordings, shard, begun, || bar.inc(1))?;
         bar.finish_and_clear();
         let SimulationShard { number: part, of } = shard;
-        put_aside(&format!(
-            "part {part} of {of} of the study was analysed: {}\n",
-            count(number, "recording", "recordings")
-        ));
+        let others = match found - number {
+            0 => String::new(),
+            others => format!("; {others} of other parts {} left out", if others == 1 { "was" } else { "were" }),
+        };
+        let number = count(number, "recording", "recordings");
+        put_aside(&format!("part {part} of {of} of the study was analysed: {number}{others}\n"));
         return Ok(());
     }
     let (figures, report) = study::study(&request, &recordings, || bar.inc(1))?;

@@ -12,6 +12,7 @@ use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::RecordingFacts;
 use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::live_arms::{SignalSenderResults, live_arms};
+use super::missing_trials::MissingTrials;
 use super::preregistration::PreregistrationCheck;
 use super::roc::{ConceptRocCurve, compare};
 use super::statistics::{Correlation, FTest};
@@ -55,6 +56,10 @@ pub struct StudySummary {
     /// Agreement of the study with its frozen (preregistered) plan; absent if no frozen plan was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preregistration: Option<PreregistrationCheck>,
+    /// Trials of the plan without a recording, of participants up to the last with a recording; absent if there are
+    /// none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub missing_trials: Vec<MissingTrials>,
     /// Summary of the trials in each condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
@@ -192,12 +197,10 @@ impl StudySummary {
             trials: counting.len() as u64,
             participants: participants.len() as u64,
             totals: TrialTotals::from_trials(&counting),
-            ended: counting.iter().filter_map(|trial| trial.ended).fold(BTreeMap::new(), |mut ended, reason| {
-                *ended.entry(reason).or_default() += 1;
-                ended
-            }),
+            ended: ended(&counting),
             robot: by_arm(&counting),
             preregistration: None,
+            missing_trials: Vec::new(),
             conditions: conditions(&counting),
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
@@ -238,10 +241,22 @@ impl StudySummary {
         StudySummary { preregistration, ..self }
     }
 
+    /// Adds the trials of the plan that have no recording.
+    pub fn with_missing_trials(self, missing_trials: Vec<MissingTrials>) -> StudySummary {
+        StudySummary { missing_trials, ..self }
+    }
+
     /// Adds the answers to the questions of tutorials, which must be ordered by participant.
     pub fn with_tutorials(self, answers: &[TutorialQuestionRow]) -> StudySummary {
         StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
     }
+}
+
+/// Number of trials by the reason why they ended.
+fn ended(trials: &[&TrialStatistics]) -> BTreeMap<TrialEndReason, u64> {
+    let mut ended = BTreeMap::new();
+    trials.iter().filter_map(|trial| trial.ended).for_each(|reason| *ended.entry(reason).or_default() += 1);
+    ended
 }
 
 /// The measures that are compared in these trials; those of freeze probes only if there are probes.

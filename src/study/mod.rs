@@ -14,6 +14,7 @@
 //! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts in how many of these studies tests find
 //!   an effect, [`power_answer`] says how many participants are needed; [`arm_table`] compares the arms of a pool.
 //! - [`frozen_plan`] is the plan that is frozen before a study; [`preregistration`] compares the study with that plan.
+//! - [`missing_trials`] finds trials of the plan that have no recording.
 //! - [`study_part`] is what a shard of a study's recordings hands to the joined analysis.
 //! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and
 //!   value. Header lines, rows and [`dictionary`] are generated. A measure that is compared between assisted and
@@ -46,6 +47,7 @@ pub mod group_orders;
 pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;
+pub mod missing_trials;
 pub mod negative_binomial_model;
 pub mod pairwise_differences;
 pub mod power;

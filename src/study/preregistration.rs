@@ -14,6 +14,20 @@ pub struct RecordedPlan {
     pub participant: String,
     /// Name and digest of the recording's study plan; `None` for a recording without a plan.
     pub plan: Option<(String, String)>,
+    /// Place of the recording in its plan; `None` for a recording without a plan.
+    pub place: Option<PlaceInPlan>,
+}
+
+/// Place of a recording in its study plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceInPlan {
+    /// Index of the participant in the plan, from 0.
+    pub participant: u32,
+    /// Number of the trial, from 1; `None` for practice.
+    pub period: Option<u32>,
+    /// Number of counted trials per participant; 0 for a recording of the tutorial alone.
+    pub periods: u32,
 }
 
 /// Result of comparing a study with its frozen plan.

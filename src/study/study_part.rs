@@ -30,7 +30,7 @@ use crate::session::header::RecordedFile;
 use crate::session::plan::PlanPosition;
 
 /// Version of the file format of a study's parts.
-pub const PART_FORMAT: u32 = 2;
+pub const PART_FORMAT: u32 = 3;
 
 /// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -71,11 +71,25 @@ fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analys
     // One folder for all jobs is as good as a folder for each; the order of the parts does not matter.
     done(&["simulate", &plan, "--out", &at("together")]);
     for (number, part) in (1..=PARTS).zip(&parts) {
-        done(&["study", &at("together"), "--shard", &format!("{number}/{PARTS}"), "--out", part]);
+        let output = tomcom(&["study", &at("together"), "--shard", &format!("{number}/{PARTS}"), "--out", part]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        let says = format!("part {number} of 8 of the study was analysed: 1 recording; 7 of other parts were left out");
+        assert!(output.status.success() && said.contains(&says), "{output:?}");
     }
     parts.reverse();
     assert_eq!(of(&["study", "--from"], &parts, &["--out", &at("again"), "--format", "json"]), whole);
     assert!(tables == files(&folder.join("again")), "tables or report differ");
+    // A job whose recording is gone writes an empty part, and the join says which trial it was.
+    fs::remove_dir_all(folder.join("together/seed9813-P02-1")).expect("the third trial's recording");
+    done(&["study", &at("together"), "--shard", "3/8", "--out", &at("parts/3.jsonl")]);
+    let less = of(&["study", "--from"], &parts, &["--out", &at("less")]);
+    assert!(less.contains("7 trials of 4 participants"), "{less}");
+    assert!(less.contains("\n1 trial of the plan has no recording: P02 trial 1\n"), "{less}");
+    let report = fs::read_to_string(folder.join("less/report.html")).expect("a report");
+    assert!(report.contains("1 trial of the plan has no recording: P02 trial 1"), "the report says it, too");
+    assert!(!whole.contains("no recording") && !whole.contains("missing_trials"), "{whole}");
+    refused(&["simulate", &plan, "--shard", "1/9", "--out", &at("none")], "--shard of 9 parts, with 8 trials");
+    assert!(!folder.join("none").exists(), "nothing is simulated for too many parts");
 }
 
 #[test]

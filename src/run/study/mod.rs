@@ -38,7 +38,8 @@ use crate::study::dictionary::{DataDictionaryRow, dictionary};
 use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 use crate::study::frozen_plan::FrozenPlan;
-use crate::study::preregistration::{PreregistrationCheck, RecordedPlan};
+use crate::study::missing_trials::missing_trials;
+use crate::study::preregistration::{PlaceInPlan, PreregistrationCheck, RecordedPlan};
 use crate::study::recorded_consent::RecordedConsent;
 use crate::study::report;
 use crate::study::study_part::AnalysedRecording;
@@ -180,7 +181,12 @@ fn analyse(
 /// The study plan to which a recording with these settings belongs.
 fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
     let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
-    RecordedPlan { participant: spec.participant.code.clone(), plan }
+    let place = spec.step.as_ref().map(|step| PlaceInPlan {
+        participant: step.participant,
+        period: step.period,
+        periods: step.periods,
+    });
+    RecordedPlan { participant: spec.participant.code.clone(), plan, place }
 }
 
 /// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
@@ -253,7 +259,7 @@ fn conclude(
     let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
     let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
     let figures = StudySummary::from_trials(&trials, details, &facts, practice).with_tutorials(&tutorials);
-    let figures = figures.with_preregistration(preregistration);
+    let figures = figures.with_preregistration(preregistration).with_missing_trials(missing_trials(&plans));
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     export.remove_kept()?;

@@ -29,7 +29,8 @@ fn frozen() -> FrozenPlan {
 /// A recording of every participant of the plan.
 fn recordings(frozen: &FrozenPlan) -> Vec<RecordedPlan> {
     let plan = Some((frozen.plan.clone(), frozen.plan_digest.clone()));
-    frozen.participants.iter().map(|code| RecordedPlan { participant: code.clone(), plan: plan.clone() }).collect()
+    let recording = |code: &String| RecordedPlan { participant: code.clone(), plan: plan.clone(), place: None };
+    frozen.participants.iter().map(recording).collect()
 }
 
 fn differences(frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Vec<String> {
@@ -94,7 +95,7 @@ fn each_difference_is_told() {
     differs(|plan| plan.plan_digest = "0".to_string(), "20 recordings are of another version of the plan");
     differs(|plan| plan.participants.push("P99".to_string()), "1 participant is without a recording: P99");
     differs(|plan| drop(plan.participants.pop()), "1 participant is not in the frozen plan: P20");
-    let alone = [&all[..], &[RecordedPlan { participant: "P01".to_string(), plan: None }]].concat();
+    let alone = [&all[..], &[RecordedPlan { participant: "P01".to_string(), plan: None, place: None }]].concat();
     assert_eq!(differences(&plan, &alone), ["1 recording is of no plan"]);
 }
 

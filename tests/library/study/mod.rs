@@ -4,6 +4,7 @@ mod arms;
 mod effect;
 mod frozen;
 mod live_arms;
+mod missing_trials;
 mod power;
 mod prevention;
 mod probe_recordings;

@@ -215,7 +215,7 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         swept: vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 0.1 + 0.2, count }],
         probes: Some(one_right_answer(Condition::None)),
     };
-    let plan = RecordedPlan { participant: trial.participant.clone(), plan: None };
+    let plan = RecordedPlan { participant: trial.participant.clone(), plan: None, place: None };
     let practice =
         AnalysedRecording { recording: "practice".to_string(), plan, consent: None, tutorial: Vec::new(), trial: None };
     let recording = AnalysedRecording {

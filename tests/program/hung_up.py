@@ -8,6 +8,7 @@ Needs nothing but Python's own library.
 import json
 import os
 import pty
+import select
 import subprocess
 import sys
 import time
@@ -28,6 +29,9 @@ def main():
     )
     try:
         read_until(screen, asked["see"], process)
+        # The rest of the frame: where its writing fails, the program takes the terminal for closed, and draws no other.
+        while select.select([screen], [], [], 0.1)[0]:
+            os.read(screen, 1 << 16)
         os.close(stdout)
         os.close(screen)
         began = time.monotonic()

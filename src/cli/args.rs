@@ -193,7 +193,7 @@ pub(super) struct SimulateArgs {
 /// whose persons differ.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nExample: tomcom fit recordings/* --people --out sessions/fitted.toml\nMore: docs/human-model.md"
+    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nExample: tomcom fit recordings/* --people --out sessions/human-people.toml\nMore: docs/human-model.md"
 )]
 pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.

@@ -29,7 +29,8 @@ use crate::study::cohort_chart;
 pub(super) struct RobustnessArgs {
     /// Battery file, which names a session file and describes the cohorts.
     battery: PathBuf,
-    /// Number of judged trials of each cohort, and of trials on which the thresholds of its flags are chosen.
+    /// Number of judged trials of each cohort, and of trials on which the thresholds of its flags are chosen; at least
+    /// 2, since intervals draw trials anew.
     #[arg(long, default_value_t = 160, value_parser = clap::value_parser!(u64).range(2..=100_000))]
     trials: u64,
     /// Seed of the judged trials; by default that of the session file.
@@ -62,7 +63,8 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let mut battery = read_battery(&args.battery)?;
     let names: Vec<String> = battery.cohorts.iter().map(|cohort| cohort.name.get_ref().clone()).collect();
     if let Some(unknown) = args.cohort.iter().find(|name| !names.contains(name)) {
-        let remedy = format!("one of the cohorts in the file: {}", names.join(", "));
+        let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        let remedy = format!("one of the cohorts in the file: {}", quoted.join(", "));
         return Err(wrong_argument(&args.battery, format!("--cohort \"{unknown}\""), &remedy));
     }
     battery.cohorts.retain(|cohort| args.cohort.is_empty() || args.cohort.contains(cohort.name.get_ref()));

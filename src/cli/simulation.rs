@@ -5,6 +5,7 @@ use super::failure::{Failure, wrong_argument};
 use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
 use crate::base::features::Feature;
+use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
@@ -42,6 +43,10 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
             trials.unwrap_or(most)
         }
     };
+    if args.shard.of > trials {
+        let found = format!("--shard of {} parts, with {}", args.shard.of, count(trials, "trial", "trials"));
+        return Err(wrong_argument(&args.session, found, "at most as many parts as trials, so that no part is empty"));
+    }
     check_condition(args, files.spec.plan.is_some())?;
     tell_unused(args, &files.spec);
     tell_absent_wizard(args, &files.spec);
@@ -82,9 +87,13 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
         return;
     }
     let acts = args.condition.is_none() && spec.trial.condition == Condition::Assistant;
-    let advises = !args.shadow && spec.assistant.shadow == ShadowMode::On;
-    let unused =
-        [(acts, "condition = \"assistant\"", "--condition assistant"), (advises, "shadow = \"on\"", "--shadow")];
+    // An assistant that acts computes recommendations anyway.
+    let is_asked = args.shadow || args.condition.map(Condition::from) == Some(Condition::Assistant);
+    let advises = !is_asked && spec.assistant.shadow == ShadowMode::On;
+    let unused = [
+        (acts, "condition = \"assistant\"", "--condition assistant"),
+        (advises, "shadow = \"on\" (the default)", "--shadow"),
+    ];
     for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {
         let session = args.session.display();
         put_aside(&format!(

@@ -87,7 +87,7 @@ pub enum IdleReason {
     NoOrder,
     /// No press of the robot reduces the cost to go; the human has to act.
     HumanTurn,
-    /// The wizard skipped the only useful press of the robot a moment ago.
+    /// The only useful press of the robot is left out for the moment: it failed, or the wizard skipped it.
     Skipped,
 }
 

@@ -46,6 +46,8 @@ pub struct PartHeader {
     pub shards: u64,
     /// Number of analysed recordings in the part.
     pub recordings: u64,
+    /// Names of the recordings that were left out, since they belong to other parts.
+    pub left_out: BTreeSet<String>,
     /// With which options the recordings were analysed.
     pub analysis: PartAnalysisOptions,
     /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.

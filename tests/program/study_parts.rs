@@ -79,9 +79,22 @@ fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analys
     parts.reverse();
     assert_eq!(of(&["study", "--from"], &parts, &["--out", &at("again"), "--format", "json"]), whole);
     assert!(tables == files(&folder.join("again")), "tables or report differ");
-    // A job whose recording is gone writes an empty part, and the join says which trial it was.
+    // A recording that is gone is missed by the parts that saw it, and named by the join of those that did not.
     fs::remove_dir_all(folder.join("together/seed9813-P02-1")).expect("the third trial's recording");
-    done(&["study", &at("together"), "--shard", "3/8", "--out", &at("parts/3.jsonl")]);
+    let part = |number: u64| {
+        done(&[
+            "study",
+            &at("together"),
+            "--shard",
+            &format!("{number}/8"),
+            "--out",
+            &at(&format!("parts/{number}.jsonl")),
+        ])
+    };
+    part(3);
+    let arguments: Vec<&str> = ["study", "--from"].into_iter().chain(parts.iter().map(String::as_str)).collect();
+    refused(&[&arguments[..], &["--out", &at("lost")]].concat(), "left out the recording seed9813-P02-1, which no");
+    (1..=PARTS).for_each(|number| drop(part(number)));
     let less = of(&["study", "--from"], &parts, &["--out", &at("less")]);
     assert!(less.contains("7 trials of 4 participants"), "{less}");
     assert!(less.contains("\n1 trial of the plan has no recording: P02 trial 1\n"), "{less}");
@@ -131,6 +144,11 @@ fn parts_that_do_not_make_one_study_are_refused() {
     let other = changed(&two, &folder.join("half.jsonl"), |text| text[..text.len() - 100].to_string());
     join(&[&one, &other], "a line without its end");
     join(&[&one, &plan], "a line that is not a line of a study's part");
+    // Jobs that count from 0 analyse the recordings of other parts, and leave out what no part has.
+    done(&["simulate", &plan, "--shard", "1/2", "--out", &at("own")]);
+    let others = at("others.jsonl");
+    done(&["study", &at("own"), "--shard", "2/2", "--out", &others, "--skip", "concepts"]);
+    join(&[&one, &others], "a part that left out the recording seed9813-P01-2, which no other part has");
     // A part takes no other file's place, but that of the same part.
     refused(&["study", &at("trials"), "--shard", "1/2", "--out", &plan], "a file is there that is not the same part");
     refused(&["study", &at("trials"), "--shard", "1/2", "--out", &two], "a file is there that is not the same part");

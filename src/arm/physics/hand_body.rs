@@ -51,6 +51,13 @@ impl HandPose {
             Capsule { ends_m: [wrist, self.elbow_m], radius_m: FOREARM_M },
         ]
     }
+
+    /// The distance between the hand and the capsules of an arm's links, in metres.
+    pub fn distance_m(&self, arm: &[(usize, Capsule)]) -> f64 {
+        let human = self.capsules();
+        let pairs = arm.iter().flat_map(|(_, link)| human.iter().map(move |part| link.nearest(part).distance_m));
+        pairs.fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// The rigid body of hand and forearm.

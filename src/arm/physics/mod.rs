@@ -2,8 +2,9 @@
 //!
 //! Where the arm can touch a button or the hand, a cycle of the controller has four physics steps of 2 ms. Elsewhere, in
 //! free air, the joints are where the controller commands, and no physics is computed: the drives of an arm without a
-//! fault follow smooth commands closely, and nothing else could tell the difference. The choice follows from the state
-//! alone, so a session stays reproducible.
+//! fault follow smooth commands within a milliradian. An arm that was pushed aside first comes back by the physics. The
+//! choice follows from the state alone, so a session stays reproducible.
+//!
 //! The arm is a multibody from the URDF; each joint is driven by a motor that follows a commanded angle with no more
 //! torque than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a
 //! spring, which stands for the person's arm. The contact between hand and robot arm is a spring, too, as stiff as a
@@ -48,6 +49,8 @@ const MOST_CORRECTED_RAD: f64 = 0.05;
 /// Distance in metres beyond which human and robot arm cannot touch within one controller cycle: in that time a reaching
 /// hand moves by less than 20 mm, and the arm by less than 10 mm.
 const APART_M: f64 = 0.03;
+/// Tracking error of every joint, in radians, below which no physics is needed in free air.
+const FOLLOWS_RAD: f64 = 0.002;
 
 /// The contact forces measured in one controller cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,15 +66,8 @@ pub struct ContactForces {
 impl SerialArm {
     /// The distance between a hand and the arm at these joint angles, in metres.
     pub fn distance(&self, joints: &JointAngles, hand: &HandPose) -> f64 {
-        distance(&self.capsules(joints), hand)
+        hand.distance_m(&self.capsules(joints))
     }
-}
-
-/// The distance between a hand and the capsules of an arm's links, in metres.
-fn distance(arm: &[(usize, Capsule)], hand: &HandPose) -> f64 {
-    let human = hand.capsules();
-    let pairs = arm.iter().flat_map(|(_, link)| human.iter().map(move |part| link.nearest(part).distance_m));
-    pairs.fold(f64::INFINITY, f64::min)
 }
 
 /// The simulated world: arm, buttons and hand as bodies of the physics engine.
@@ -248,9 +244,15 @@ impl PhysicsWorld {
         let near = self.hand().is_some_and(|hand| self.distance(&hand) < APART_M);
         let is_on_table = self.hand.is_some_and(|hand| hand.depth_in_table_m(&self.bodies) > 0.0);
         let touches = near || is_on_table || self.active.is_some() || self.has_failed;
-        let felt = if touches { self.simulate(command, near) } else { self.go_through_air(command) };
+        let felt = if touches || !self.follows() { self.simulate(command, near) } else { self.go_through_air(command) };
         self.capsules = self.arm.capsules(&self.joints().0);
         felt
+    }
+
+    /// Whether every joint is where it was last commanded to be.
+    fn follows(&self) -> bool {
+        let (angles, _) = self.joints();
+        (0..JOINTS).all(|joint| (angles[joint] - self.commanded[joint]).abs() < FOLLOWS_RAD)
     }
 
     /// Moves arm and hand for one cycle in which nothing can be touched.
@@ -338,7 +340,7 @@ impl PhysicsWorld {
 
     /// The distance between a hand and the arm, in metres.
     pub fn distance(&self, hand: &HandPose) -> f64 {
-        distance(&self.capsules, hand)
+        hand.distance_m(&self.capsules)
     }
 
     /// Blocks this button, to simulate a fault.

@@ -302,6 +302,6 @@ fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) ->
 
 fn no_recording(analysis: &AnalysisRequest) -> StudyError {
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
-    let remedy = "a folder with at least one recording".to_string();
+    let remedy = "at least one recording".to_string();
     StudyError::from(FileError::from_finding(path, "no recording".to_string(), remedy))
 }

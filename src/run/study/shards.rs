@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::reading::AnalysisScope;
-use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan};
+use super::{
+    AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording, recorded_plan,
+};
 use crate::edge::export::AnalysisFolder;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
@@ -54,12 +56,14 @@ pub fn analyse_shard(
     done: impl Fn() + Sync,
 ) -> Result<u64, StudyError> {
     let places = parallel::each(&recordings.found, |(path, _)| RecordingPlace::read(path, shard), || ());
-    let (mut own, mut plans) = (Vec::new(), BTreeSet::new());
+    let (mut own, mut plans, mut left_out) = (Vec::new(), BTreeSet::new(), BTreeSet::new());
     for (recording, place) in recordings.found.into_iter().zip(places) {
         let place = place?;
         if place.is_own {
             own.push(recording);
             plans.extend(place.plan);
+        } else {
+            left_out.insert(recording.1);
         }
     }
     begun(own.len());
@@ -70,6 +74,7 @@ pub fn analyse_shard(
         shard: shard.number,
         shards: shard.of,
         recordings: own.len() as u64,
+        left_out,
         analysis: PartAnalysisOptions { concepts, events, raters: analysis.raters.clone() },
         plans,
     };
@@ -97,8 +102,8 @@ pub fn analyse_shard(
 /// the last byte. Returns the summary and the path of the report.
 ///
 /// # Errors
-/// A file is no part of a study; the parts do not make one study; a recording is in two parts; or the results cannot be
-/// written.
+/// A file is no part of a study; the parts do not make one study; a recording is in two parts, or in none although a part
+/// saw it; there is no recording at all; or the results cannot be written.
 pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), StudyError> {
     let frozen = frozen(analysis)?;
     let mut parts = analysis.paths.iter().map(|path| PartReader::open(path)).collect::<FileResult<Vec<_>>>()?;
@@ -128,6 +133,17 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
             }
             keep(&export, extent, index, &recording, &rows)?;
         }
+    }
+    let lost =
+        parts.iter().find_map(|part| Some((part, part.header.left_out.iter().find(|name| !names.contains(*name))?)));
+    if let Some((part, name)) = lost {
+        let found = format!("a part that left out the recording {name}, which no other part has");
+        let remedy = "the number of its own recordings for each part, such as --shard 3/8 for shards/3; parts that were \
+                      made before a recording was deleted are made anew";
+        return Err(FileError::from_finding(part.path(), found, remedy.to_string()).into());
+    }
+    if names.is_empty() {
+        return Err(no_recording(analysis));
     }
     conclude(names.len(), &export, extent, frozen)
 }

@@ -28,6 +28,8 @@ struct Contacts {
     peaks_n: Vec<f64>,
     still_after_s: Vec<f64>,
     light_m_s: Vec<f64>,
+    /// The greatest speed of a joint by its angles, in radians a second.
+    fastest_rad_s: f64,
 }
 
 /// A hand that is put into the arm's way at a random moment: from the human's side to near the tip, as fast as hands go
@@ -55,7 +57,10 @@ fn put_hand(found: &mut Contacts, watches_hands: bool, random: &mut Stream) {
             arm.press();
         }
         let (threshold_n, was_stopped, tip_before) = (arm.mode.threshold_n(), arm.mode.is_stopped(), tip(&arm));
+        let joints_before = arm.joints();
         let ControlCycleResult { report, felt, touched_n, .. } = arm.cycle(Some(hand));
+        let moved = (0..JOINTS).map(|joint| (arm.joints()[joint] - joints_before[joint]).abs() / CYCLE_S);
+        found.fastest_rad_s = moved.fold(found.fastest_rad_s, f64::max);
         if felt.human_n > 0.0 && !was_stopped {
             touched_m_s = touched_m_s.max((tip(&arm) - tip_before).norm() / CYCLE_S);
         }
@@ -97,7 +102,7 @@ fn contacts(count: usize, watches_hands: bool) -> Contacts {
     println!(
         "{how} speed and separation: {} hands put in the way, {} contacts, {} not told; peak force median {median_n:.0} N, \
          95 % {high_n:.0} N, most {most_n:.0} N, {above} above 150 N; {} stopped the arm, {} late, still after at most \
-         {:.3} s, {} restarted; in the {} others the tip moved at most {:.3} m/s",
+         {:.3} s, {} restarted; in the {} others the tip moved at most {:.3} m/s; joints up to {:.2} rad/s",
         found.tried,
         found.peaks_n.len(),
         found.untold,
@@ -107,6 +112,7 @@ fn contacts(count: usize, watches_hands: bool) -> Contacts {
         found.restarted,
         found.light_m_s.len(),
         found.light_m_s.last().copied().unwrap_or(0.0),
+        found.fastest_rad_s,
     );
     found
 }

@@ -17,6 +17,7 @@ fn presses(count: usize) {
     let mut arm = AT_REST.clone();
     let mut random = stream(5, "presses", 0);
     let (mut took_s, mut speed, mut missed) = (Vec::new(), 0.0_f64, 0);
+    let (mut before, mut moved) = (arm.joints(), 0.0_f64);
     let model = SerialArm::ur5();
     for _ in 0..count {
         let button = any_button(&mut random);
@@ -27,6 +28,8 @@ fn presses(count: usize) {
             since_s += took_s;
             let (joints, speeds) = arm.world().joints();
             speed = speed.max(fastest(&speeds));
+            moved = moved.max(fastest(&std::array::from_fn(|joint| (joints[joint] - before[joint]) / took_s)));
+            before = joints;
             assert!(model.is_within_limits(&joints));
             if report.is_some() || since_s > 20.0 {
                 break report;
@@ -40,12 +43,15 @@ fn presses(count: usize) {
     took_s.sort_by(f64::total_cmp);
     let [least, median, most] = [0.0, 0.5, 1.0].map(|share| at(&took_s, share));
     println!(
-        "{count} presses: {missed} missed; {least:.2} to {most:.2} s, median {median:.2} s; joints up to {speed:.3} rad/s"
+        "{count} presses: {missed} missed; {least:.2} to {most:.2} s, median {median:.2} s; joints up to {speed:.3} rad/s, \
+         by their angles {moved:.3} rad/s"
     );
     assert_eq!(missed, 0);
     assert!((2.0..=3.0).contains(&median), "{median} s");
     // On straight legs the tip's speed counts, and the joints stay below it, too.
     assert!(speed < JOINT_SPEED_RAD_S * 1.01, "{speed} rad/s");
+    // Nothing jumps where the physics begins and ends.
+    assert!(moved < JOINT_SPEED_RAD_S * 1.05, "{moved} rad/s");
 }
 
 #[test]

@@ -1,24 +1,9 @@
-//! The documents: how long they may be, and that what they name exists.
+//! What ARCHITECTURE.md names exists.
 
 use std::path::Path;
 
-use crate::imports::Imports;
-use crate::names::named_types;
-use crate::sources::{Source, sources};
-
-/// Documents that have to be read in one go, with the most bytes that they may have.
-const MAX_BYTES: [(&str, usize); 2] = [("ARCHITECTURE.md", 12 << 10), ("README.md", 8 << 10)];
-
 fn read(name: &str) -> String {
     std::fs::read_to_string(name).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
-#[test]
-fn documents_stay_short() {
-    for (name, most) in MAX_BYTES {
-        let bytes = read(name).len();
-        assert!(bytes <= most, "{name}: {bytes} bytes, more than {most}: details of a module stand in its own comment");
-    }
 }
 
 /// Paths in backticks that begin with a folder or file of the repository.
@@ -52,23 +37,4 @@ fn braced(path: &str) -> Vec<String> {
         }
         _ => vec![path.to_string()],
     }
-}
-
-/// Types that the glossary gives with their path, as another crate would write it.
-#[test]
-fn every_type_of_the_glossary_exists() {
-    let (text, sources) = (read("docs/glossary.md"), sources());
-    let imports = Imports::read(&sources);
-    let paths: Vec<&str> = quoted(&text).filter_map(|path| path.strip_prefix("tomcom::")).collect();
-    assert!(paths.len() >= 60, "the glossary names {} types", paths.len());
-    let missing: Vec<&str> = paths.into_iter().filter(|path| !exists(path, &sources, &imports)).collect();
-    assert!(missing.is_empty(), "docs/glossary.md names types that do not exist:\n{}", missing.join("\n"));
-}
-
-/// Whether there is a public type at this path from the crate's root.
-fn exists(path: &str, sources: &[Source], imports: &Imports) -> bool {
-    let names: Vec<String> = path.split("::").map(str::to_string).collect();
-    let Some((file, rest)) = imports.place(&names) else { return false };
-    let source = sources.iter().find(|source| source.path == file).expect("a source file");
-    matches!(&rest[..], [name] if named_types(source).iter().any(|found| found.is_public && found.name == *name))
 }

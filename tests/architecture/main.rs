@@ -1,10 +1,7 @@
-//! The house keeps its own rules: who imports whom, what is not named where, how long files and functions are, what has a name
-//! and a description of its own, and that documents are short and name what exists.
+//! The house keeps its own rules: who imports whom, what is not named where, and that ARCHITECTURE.md names what exists.
 
 mod documents;
 mod imports;
-mod lengths;
-mod names;
 mod outside;
 mod serial;
 mod sources;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use syn::{Attribute, File, Meta};
+use syn::{Attribute, File};
 
 /// A source file.
 pub struct Source {
@@ -15,10 +15,6 @@ impl Source {
     /// The folder or file directly below `src` that it belongs to.
     pub fn room(&self) -> String {
         room(&self.path)
-    }
-
-    pub fn lines(&self) -> usize {
-        self.text.lines().count()
     }
 }
 
@@ -58,11 +54,6 @@ pub fn room(path: &Path) -> String {
 /// `#[cfg(test)]`.
 pub fn is_for_tests(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") && attribute.parse_args::<syn::Ident>().is_ok_and(|name| name == "test")
-}
-
-/// Documentation: `///` or `//!`.
-pub fn is_documentation(attribute: &Attribute) -> bool {
-    attribute.path().is_ident("doc") && matches!(attribute.meta, Meta::NameValue(_))
 }
 
 /// The names and paths in the tokens of a macro call, which are no syntax yet; what stands in strings is none. A macro that is

@@ -161,14 +161,3 @@ fn the_default_population_errs_as_people_do_in_sushi() {
 fn the_default_population_errs_as_people_do_in_burgers() {
     check("burger", 5, 6);
 }
-
-#[test]
-#[ignore = "prints the figures of the default population over many trials; run it in release"]
-fn calibration() {
-    for name in ["sushi", "burger"] {
-        let kitchen = kitchen(name);
-        for seed in [7, 11, 23] {
-            play(&kitchen, seed, 20).print(&format!("{name} {seed}"));
-        }
-    }
-}

@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::each_chosen;
+use super::list::{each_chosen, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
@@ -41,7 +41,7 @@ pub(super) struct CodesArgs {
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
-    let chosen = each_chosen(&args.recordings)?;
+    let chosen = gathered(&each_chosen(&args.recordings)?)?.paths;
     let bar = progress(chosen.len() as u64, "recordings");
     let read = crate::run::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));
     bar.finish_and_clear();

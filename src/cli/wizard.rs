@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::choices::ConceptArg;
 use super::failure::Failure;
-use super::list::{chosen, each_chosen, exists};
+use super::list::{chosen, each_chosen, exists, gathered};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
@@ -118,10 +118,10 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         };
         return Ok(review_console::review(&chosen(recording)?, true, Some(&request(args.window)))?);
     }
-    let paths = each_chosen(&args.paths)?;
+    let recordings = gathered(&each_chosen(&args.paths)?)?;
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
-    let bar = progress((paths.len() * windows.len()) as u64, "recordings");
-    let watch = |window: u32| similarity::watch(&paths, &request(window), || bar.inc(1));
+    let bar = progress((recordings.paths.len() * windows.len()) as u64, "recordings");
+    let watch = |window: u32| similarity::watch(&recordings, &request(window), || bar.inc(1));
     let first = watch(windows[0])?;
     let mut figures = ComparisonSummary::from_recordings(&first);
     for &window in &windows[1..] {

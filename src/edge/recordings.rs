@@ -1,6 +1,6 @@
 //! Overview of a folder of recordings, from their logs alone, without replaying them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{self, BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, read_header, ruling};
+use super::log::{LOG_NAME, log_digest, read_header, ruling};
 use crate::session::header::{FORMAT, PreviousPart};
 use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
-/// count as one recording. Simulated recordings and other files do not count.
+/// count as one recording, and copies of a log once. Simulated recordings and other files do not count.
 ///
 /// # Errors
 /// The folder or a recording in it cannot be read.
@@ -38,9 +38,29 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
             found.insert(name, part);
         }
     }
+    remove_copies(folder, &mut found)?;
     let continued: Vec<String> = found.values().filter_map(|part| part.continues.clone()).collect();
     let last = found.iter().filter(|(name, _)| !continued.contains(name));
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
+}
+
+/// Removes the copies of recordings, such as those that a file manager makes: a copy of a cut recording would be offered
+/// to be continued, instead of the recording.
+fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResult<()> {
+    let place = |part: &Part| (part.code.clone(), part.step.period, part.step.attempt, part.continues.clone());
+    let mut places: BTreeMap<_, Vec<String>> = BTreeMap::new();
+    for (name, part) in &*found {
+        places.entry(place(part)).or_default().push(name.clone());
+    }
+    for names in places.into_values().filter(|names| names.len() > 1) {
+        let mut logs = BTreeSet::new();
+        for name in names {
+            if !logs.insert(log_digest(&folder.join(&name).join(LOG_NAME))?) {
+                found.remove(&name);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Recordings that a path means: the recording itself, or all recordings in the folder, sorted by name. Of a recording

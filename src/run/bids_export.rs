@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::gathered::GatheredRecordings;
 use super::kept_cost::KeptCost;
 use super::{consents, standing};
 use crate::analysis::bids::{
@@ -21,6 +22,7 @@ use crate::session::event::Event;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::{LogHeader, apply};
+use crate::study::planned_trial::{RecordingCopy, copies_in_words};
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
@@ -29,6 +31,8 @@ pub struct BidsSummary {
     pub folder: PathBuf,
     /// Participants' codes that are no valid BIDS labels, each with the label that replaces the code.
     pub changed_codes: Vec<(String, String)>,
+    /// Recordings that are copies of others, and are not exported.
+    pub copies: Vec<RecordingCopy>,
     /// The exported recordings with their places in the data set.
     pub recordings: Vec<BidsRecording>,
     /// Number of exported tables with answers to questionnaires.
@@ -62,8 +66,9 @@ struct Planned {
 /// # Errors
 /// A recording cannot be read or is still being written, or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
-    let named = recordings.iter().map(|path| Ok((path.clone(), header(path)?))).collect::<FileResult<Vec<_>>>()?;
-    let whole = without_parts(named);
+    let GatheredRecordings { paths, copies } = GatheredRecordings::find(recordings)?;
+    let whole =
+        paths.into_iter().map(|path| header(&path).map(|header| (path, header))).collect::<FileResult<Vec<_>>>()?;
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
@@ -94,6 +99,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     Ok(BidsSummary {
         folder: folder.to_path_buf(),
         changed_codes: labels.changed(),
+        copies,
         recordings: told,
         questionnaires: asked.len() / 2,
         words: with_words,
@@ -108,19 +114,6 @@ fn header(recording: &Path) -> FileResult<LogHeader> {
         return Err(FileError::from_finding(recording, "a recording that is still being written".to_string(), remedy));
     }
     Ok(log.header)
-}
-
-/// The recordings, each once, without parts that another recording continues: a later part is read together with all
-/// its earlier parts.
-fn without_parts(named: Vec<(PathBuf, LogHeader)>) -> Vec<(PathBuf, LogHeader)> {
-    let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-    let before = |(path, header): &(PathBuf, LogHeader)| {
-        let folder = if path.is_dir() { place(path) } else { place(path).parent()?.to_path_buf() };
-        Some(folder.parent()?.join(&header.continues.as_ref()?.recording))
-    };
-    let continued: Vec<PathBuf> = named.iter().filter_map(before).collect();
-    let mut seen = BTreeSet::new();
-    named.into_iter().filter(|(path, _)| !continued.contains(&place(path)) && seen.insert(place(path))).collect()
 }
 
 /// Places of the recordings in the data set: by the participant's label, then by plan, date and name of the recording.
@@ -221,6 +214,7 @@ pub fn describe(summary: &BidsSummary) -> String {
         )
     };
     let changed: String = changed.map(line).collect();
+    let copies = copies_in_words(&summary.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     let left = rows(|rows| rows.words_left_out);
     let words = match left {
         0 => String::new(),
@@ -231,7 +225,7 @@ pub fn describe(summary: &BidsSummary) -> String {
     };
     format!(
         "{}: {}\n{recordings}rows: {} events, {} gaze samples, {} fixations and blinks, {} arm samples, {} beliefs; \
-         {}\n{changed}{words}",
+         {}\n{copies}{changed}{words}",
         summary.folder.display(),
         count(summary.recordings.len() as u64, "recording", "recordings"),
         rows(|rows| rows.events),

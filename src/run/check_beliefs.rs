@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_figures::ProbeSummary;
@@ -22,11 +23,16 @@ use crate::session::settings::ParticipantKind;
 /// # Errors
 /// A recording cannot be read or replayed; the recordings are of different kitchens; a recording is both checked and in
 /// `choose_on`; the beliefs in `choose_on` are not known.
-pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheck> {
-    let all: Vec<PathBuf> = recordings.iter().chain(choose_on).cloned().collect();
+pub fn check(
+    recordings: &GatheredRecordings,
+    choose_on: &GatheredRecordings,
+    done: impl Fn() + Sync,
+) -> FileResult<BeliefCheck> {
+    let all = recordings.beside(choose_on)?;
+    let recordings = &recordings.paths;
     let BeliefCheckTrials { kitchen, mut trials, probes } = views(&all, done)?;
     let other = trials.split_off(recordings.len());
-    let thresholds = match choose_on.first() {
+    let thresholds = match choose_on.paths.first() {
         None => None,
         Some(first) => Some(chosen_thresholds(&other, &aspect_groups(&kitchen)).ok_or_else(|| {
             let found =
@@ -57,8 +63,7 @@ pub struct BeliefCheckTrials {
 ///
 /// # Errors
 /// The same errors as those of [`check`].
-pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
-    each_once(recordings)?;
+fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     let results = parallel::each(recordings, |recording| view(recording), done);
     let (mut one_kitchen, mut trials, mut probes) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
     for (result, recording) in results.into_iter().zip(recordings) {

@@ -11,7 +11,7 @@ use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::KitchenWithSources;
 use crate::edge::{frozen_file, recordings};
-use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study};
+use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
 use crate::study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
@@ -138,6 +138,16 @@ pub fn describe(figures: &StudyProgress) -> String {
 fn attempts(progress: &ParticipantProgress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {
+        let is_complete = |attempt: &&TrialAttempt| attempt.outcome == RecordingOutcome::Complete;
+        let complete: Vec<&str> =
+            stand.recordings.iter().filter(is_complete).map(|one| one.recording.as_str()).collect();
+        if let ([_, _, ..], Some(_)) = (&complete[..], stand.slot.period) {
+            let name = slot_name(progress, slot);
+            lines += &format!(
+                "      {name} is done in {}; one of them counts, so leave the others out: tomcom exclude\n",
+                complete.join(" and in ")
+            );
+        }
         for attempt in &stand.recordings {
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
             let how = match &attempt.outcome {

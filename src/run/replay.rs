@@ -1,13 +1,12 @@
 //! Replays a recording: applies its events with the same [`apply`](crate::session::apply()) as the live session.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader};
+use crate::edge::log::LogReader;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, KitchenChange};
 use crate::session::{Event, Session, TimestampedEvent};
@@ -99,28 +98,6 @@ impl RecordingReplay {
     pub fn log(&self) -> &LogReader {
         &self.log
     }
-}
-
-/// Canonical path of a recording's log, the same for every path that leads to the recording.
-pub fn log_place(recording: &Path) -> PathBuf {
-    let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.to_path_buf() };
-    // A recording that does not exist is reported later, when the program opens it.
-    log.canonicalize().unwrap_or(log)
-}
-
-/// Checks that no recording is given twice.
-///
-/// # Errors
-/// A recording is given twice, perhaps by different paths.
-pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
-    let mut known = BTreeSet::new();
-    for recording in recordings {
-        if !known.insert(log_place(recording)) {
-            let remedy = "each recording once".to_string();
-            return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
-        }
-    }
-    Ok(())
 }
 
 /// Checks that all recordings are of one kitchen.

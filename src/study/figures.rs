@@ -13,6 +13,7 @@ use super::facts::RecordingFacts;
 use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::live_arms::{SignalSenderResults, live_arms};
 use super::missing_trials::MissingTrials;
+use super::planned_trial::RecordingCopy;
 use super::preregistration::PreregistrationCheck;
 use super::roc::{ConceptRocCurve, compare};
 use super::statistics::{Correlation, FTest};
@@ -60,6 +61,9 @@ pub struct StudySummary {
     /// none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_trials: Vec<MissingTrials>,
+    /// Recordings that are copies of others, and are not counted; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub copies: Vec<RecordingCopy>,
     /// Summary of the trials in each condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
@@ -201,6 +205,7 @@ impl StudySummary {
             robot: by_arm(&counting),
             preregistration: None,
             missing_trials: Vec::new(),
+            copies: Vec::new(),
             conditions: conditions(&counting),
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
@@ -244,6 +249,11 @@ impl StudySummary {
     /// Adds the trials of the plan that have no recording.
     pub fn with_missing_trials(self, missing_trials: Vec<MissingTrials>) -> StudySummary {
         StudySummary { missing_trials, ..self }
+    }
+
+    /// The summary with the recordings that were left out, since they are copies of others.
+    pub fn with_copies(self, copies: Vec<RecordingCopy>) -> StudySummary {
+        StudySummary { copies, ..self }
     }
 
     /// Adds the answers to the questions of tutorials, which must be ordered by participant.

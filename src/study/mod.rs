@@ -50,6 +50,7 @@ pub mod live_arms;
 pub mod missing_trials;
 pub mod negative_binomial_model;
 pub mod pairwise_differences;
+pub mod planned_trial;
 pub mod power;
 pub mod power_answer;
 pub mod power_chart;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::frozen_plan::FrozenPlan;
 use crate::base::words::count;
+use crate::session::SessionSpec;
 
 /// The study plan to which a recording belongs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -16,6 +17,19 @@ pub struct RecordedPlan {
     pub plan: Option<(String, String)>,
     /// Place of the recording in its plan; `None` for a recording without a plan.
     pub place: Option<PlaceInPlan>,
+}
+
+impl RecordedPlan {
+    /// The study plan to which a recording with these settings belongs.
+    pub fn from_settings(spec: &SessionSpec) -> RecordedPlan {
+        let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
+        let place = spec.step.as_ref().map(|step| PlaceInPlan {
+            participant: step.participant,
+            period: step.period,
+            periods: step.periods,
+        });
+        RecordedPlan { participant: spec.participant.code.clone(), plan, place }
+    }
 }
 
 /// Place of a recording in its study plan.

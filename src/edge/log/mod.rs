@@ -8,6 +8,7 @@ mod guarded;
 mod lock;
 pub mod rater_codes;
 mod reader;
+mod same_log;
 mod simulated_log;
 mod writer;
 
@@ -20,6 +21,7 @@ pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, rulin
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub(super) use reader::read_header;
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
+pub use same_log::{decisions, log_digest};
 pub use simulated_log::{SimulatedLogState, check_simulated};
 pub use writer::{LogWriter, check_continued, is_written_settings};
 

@@ -59,6 +59,11 @@ pub fn read(folder: &Path, rater: &str, codable: &CodableErrors) -> FileResult<R
     Ok(codes)
 }
 
+/// Whether a file of this name in the folder of a recording has a rater's codes.
+pub(super) fn is_codes_file(name: &str) -> bool {
+    name.starts_with("codes-") && name.ends_with(".csv")
+}
+
 /// Names of the raters who have coded the recording in this folder.
 ///
 /// # Errors

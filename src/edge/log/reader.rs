@@ -215,6 +215,11 @@ impl LogReader {
         self.before.as_ref().map_or(&self.path, |before| before.path())
     }
 
+    /// Path of the log that was opened; for a recording of several parts, of the last part's log.
+    pub fn path_of_last_part(&self) -> &Path {
+        &self.path
+    }
+
     /// Folder of the opened recording; for a recording of several parts, the folder of the last part.
     pub fn folder(&self) -> &Path {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))

@@ -311,14 +311,6 @@ fn beliefs(
 fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: ExclusionStatus) -> TrialStatistics {
     let (session, spec) = (&follower.session, &header.session);
     let step = spec.step.as_ref();
-    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
-    let left_out = match standing {
-        ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
-        ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
-        _ if !is_over => Some("cut before the trial's end".to_string()),
-        _ if session.presses == [0, 0] => Some("no press in it".to_string()),
-        _ => None,
-    };
     let between = |times: Vec<SessionTime>| -> Vec<f64> {
         times.windows(2).map(|pair| since(session, pair[0], pair[1])).collect()
     };
@@ -338,7 +330,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
         acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),
-        left_out,
+        left_out: standing.left_out(session),
         ended: None,
         arm: spec.robot.arm,
         robot: RobotEventSummary::default(),

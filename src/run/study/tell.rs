@@ -10,6 +10,7 @@ use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::SignalSenderResults;
 use crate::study::missing_trials::in_words;
+use crate::study::planned_trial::copies_in_words;
 use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 
 /// Summary of a study as lines of text.
@@ -32,6 +33,7 @@ pub fn describe(figures: &StudySummary) -> String {
     );
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &in_words(&figures.missing_trials).map_or(String::new(), |missing| format!("{missing}\n"));
+    text += &copies_in_words(&figures.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
             "belief related errors: {related} ({}), in {} of {} errors each ({} if a sequence may mix aspects), \

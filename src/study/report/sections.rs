@@ -11,6 +11,7 @@ use crate::study::column::CsvTable;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
 use crate::study::missing_trials::in_words;
+use crate::study::planned_trial::copies_in_words;
 use crate::study::trial_statistics::TrialStatistics;
 
 /// Least number of participants with both trials from which on r and p are shown among the main results.
@@ -58,6 +59,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
         }
         @if let Some(missing) = in_words(&figures.missing_trials) { p class="note" { (missing) } "\n" }
+        @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
         @if let Some(found) = &figures.raters { (raters(found, figures)) }
         @for one in &figures.stale_consensus {
             p class="warning" { "Stale consensus, not used: " (one.recording) ": " (one.reason) "." } "\n"

@@ -216,8 +216,14 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         probes: Some(one_right_answer(Condition::None)),
     };
     let plan = RecordedPlan { participant: trial.participant.clone(), plan: None, place: None };
-    let practice =
-        AnalysedRecording { recording: "practice".to_string(), plan, consent: None, tutorial: Vec::new(), trial: None };
+    let practice = AnalysedRecording {
+        recording: "practice".to_string(),
+        digest: String::new(),
+        plan,
+        consent: None,
+        tutorial: Vec::new(),
+        trial: None,
+    };
     let recording = AnalysedRecording {
         recording: trial.recording.clone(),
         trial: Some((trial, details, facts)),

@@ -90,6 +90,7 @@ pub fn main() -> ExitCode {
         CliCommand::Kitchen(args) => kitchen(&args),
         CliCommand::Keys(args) => keys(&args),
         CliCommand::Exclude(args) => exclude(&args),
+        CliCommand::Correct(args) => correct(&args),
         CliCommand::Codes(args) => data::codes(&args),
         CliCommand::Export(args) => exports::export(&args),
         CliCommand::Forget(args) => data::forget(&args),
@@ -213,6 +214,15 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
         ),
     };
     print(args.format, &ruling, || format!("{} {words}\n", recording.display()))
+}
+
+fn correct(args: &CorrectArgs) -> Result<(), Failure> {
+    let recording = list::chosen(&args.recording)?;
+    let correction = log::correct(&recording, args.code.as_deref(), args.why.as_deref().unwrap_or_default())?;
+    print(args.format, &correction, || {
+        let (before, after) = (&correction.before, &correction.after);
+        format!("{} is a recording of {after}, no longer of {before}\n", recording.display())
+    })
 }
 
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::file_error::open_regular;
-use super::log::LOG_NAME;
+use super::log::{LOG_NAME, corrected_code};
 use super::replace_file;
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
@@ -103,9 +103,10 @@ impl ClosedLogHeader {
             return None;
         }
         let SettingsGlance { participant, trial } = header.session;
+        let correction = corrected_code(recording, &participant.code).ok()?;
         Some(ClosedLogHeader {
             digest: tail.digest(),
-            code: participant.code,
+            code: correction.map_or(participant.code, |correction| correction.after),
             condition: trial.condition,
             date: header.started,
         })

@@ -118,6 +118,8 @@ struct PartHeaderGlance {
 #[derive(Debug)]
 struct Part {
     code: String,
+    /// The code in the log, if it was corrected afterwards.
+    recorded_as: Option<String>,
     step: PlanPosition,
     continues: Option<String>,
     consent: bool,
@@ -165,6 +167,7 @@ impl Part {
         };
         let mut part = Part {
             code: header.session.participant.code,
+            recorded_as: header.correction.map(|correction| correction.before),
             step,
             continues: header.continues.map(|before| before.recording),
             consent: false,
@@ -237,6 +240,7 @@ impl Part {
         PlanRecording {
             recording: name.to_string(),
             code: self.code.clone(),
+            recorded_as: self.recorded_as.clone(),
             step: self.step.clone(),
             consent: any(|part| part.consent),
             instructed: any(|part| part.instructed),

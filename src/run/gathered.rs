@@ -157,7 +157,7 @@ fn folder(log: &Path) -> &Path {
 /// The trial of a plan of which a log with this header is a recording.
 pub(super) fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
     let seed = header.started.is_none().then_some(header.session.seed);
-    PlannedTrialKey::new(&RecordedPlan::from_settings(&header.session), seed)
+    PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
 }
 
 /// Digests of the logs that are as long as another log; no other log can equal another one.

@@ -150,14 +150,18 @@ fn attempts(progress: &ParticipantProgress) -> String {
         }
         for attempt in &stand.recordings {
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
+            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.name()));
+            let recorded = attempt.recorded_as.as_ref();
+            let corrected = recorded.map_or(String::new(), |code| format!(", recorded as {code}{arm}"));
             let how = match &attempt.outcome {
-                RecordingOutcome::Complete if attempt.other_version => "done",
+                RecordingOutcome::Complete if attempt.other_version || recorded.is_some() => "done",
                 RecordingOutcome::Complete => continue,
                 RecordingOutcome::Open => "open",
                 RecordingOutcome::Excluded { reason } => &format!("excluded ({reason})"),
                 RecordingOutcome::Void { reason } => reason,
             };
-            lines += &format!("      {} in {}: {how}{version}\n", slot_name(progress, slot), attempt.recording);
+            lines +=
+                &format!("      {} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);
         }
     }
     lines

@@ -23,6 +23,7 @@ pub mod advice_moments;
 pub mod answer_value;
 pub mod apply;
 pub mod battery;
+pub mod code_correction;
 mod condition;
 mod console_settings;
 pub mod event;

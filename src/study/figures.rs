@@ -29,6 +29,7 @@ use crate::measures::belief_basis::BeliefSource;
 use crate::measures::cause_codes::{AgreementTable, RaterAgreement, RaterCodes};
 use crate::measures::matching::{MatchCounts, Similarity};
 use crate::measures::wizard_performance::WizardMeasures;
+use crate::session::code_correction::CodeCorrection;
 use crate::session::event::TrialEndReason;
 use crate::session::settings::ParticipantKind;
 use crate::session::study_arm::StudyArm;
@@ -61,6 +62,9 @@ pub struct StudySummary {
     /// none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_trials: Vec<MissingTrials>,
+    /// Recordings whose participant's code was corrected afterwards; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub corrections: Vec<CorrectedRecording>,
     /// Recordings that are copies of others, and are not counted; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub copies: Vec<RecordingCopy>,
@@ -130,6 +134,23 @@ pub struct StudySummary {
     pub left_out: Vec<ExcludedTrial>,
     /// Number of practice recordings (familiarisations), which are not analysed as trials.
     pub practice: u64,
+}
+
+/// A recording whose participant's code was corrected after it was made.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CorrectedRecording {
+    /// The recording's name in tables.
+    pub recording: String,
+    /// The correction of the participant's code.
+    #[serde(flatten)]
+    pub correction: CodeCorrection,
+}
+
+impl CorrectedRecording {
+    /// The corrected recording in words.
+    pub fn in_words(&self) -> String {
+        format!("code of the participant corrected: {}: {}", self.recording, self.correction.in_words())
+    }
 }
 
 /// Summary of the trials of a study in one condition.
@@ -206,6 +227,7 @@ impl StudySummary {
             preregistration: None,
             missing_trials: Vec::new(),
             copies: Vec::new(),
+            corrections: Vec::new(),
             conditions: conditions(&counting),
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
@@ -249,6 +271,11 @@ impl StudySummary {
     /// Adds the trials of the plan that have no recording.
     pub fn with_missing_trials(self, missing_trials: Vec<MissingTrials>) -> StudySummary {
         StudySummary { missing_trials, ..self }
+    }
+
+    /// The summary with the recordings whose participant's code was corrected.
+    pub fn with_corrections(self, corrections: Vec<CorrectedRecording>) -> StudySummary {
+        StudySummary { corrections, ..self }
     }
 
     /// The summary with the recordings that were left out, since they are copies of others.

@@ -27,6 +27,7 @@ use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_details::TrialDetails;
 use super::trial_statistics::TrialStatistics;
+use crate::session::code_correction::CodeCorrection;
 use crate::session::header::RecordedFile;
 use crate::session::plan::PlanPosition;
 
@@ -82,6 +83,8 @@ pub struct AnalysedRecording {
     pub digest: String,
     /// The study plan to which the recording belongs.
     pub plan: RecordedPlan,
+    /// The correction of the participant's code that holds.
+    pub correction: Option<CodeCorrection>,
     /// The consent with which the recording begins; `None` if it begins without.
     pub consent: Option<RecordedConsent>,
     /// The answers to the questions of the recording's tutorial.

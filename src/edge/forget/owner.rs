@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::edge::log::{LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, is_written_settings};
+use crate::edge::log::{LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, corrected_code, is_written_settings};
 use crate::edge::stream_head;
 use crate::session::header::FORMAT;
 
@@ -43,7 +43,16 @@ impl RecordingOwner {
     pub(super) fn read(folder: &Path) -> RecordingOwner {
         let settings = || read_settings(folder);
         match first_line(folder) {
-            FirstLine::Header { code, began } => RecordingOwner::Participant { code, began },
+            FirstLine::Header { code, began } => match corrected_code(folder, &code) {
+                Ok(correction) => {
+                    let code = correction.map_or(code, |correction| correction.after);
+                    RecordingOwner::Participant { code, began }
+                }
+                Err(_) => RecordingOwner::Unknown(
+                    "a recording that does not say whose it is: correction.toml is damaged; it is to be deleted by hand, if it \
+                     is the participant's",
+                ),
+            },
             FirstLine::Foreign => RecordingOwner::NoRecording,
             FirstLine::Damaged => match settings() {
                 Some((code, _)) => RecordingOwner::Participant { code, began: None },

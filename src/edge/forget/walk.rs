@@ -11,7 +11,8 @@ use crate::edge::bids_tree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::consensus_file::CONSENSUS_NAME;
 use crate::edge::log::{
-    CODES_LOCK, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log,
+    CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
+    is_damaged_log,
 };
 use crate::edge::replace_file::replaced_name;
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
@@ -196,7 +197,16 @@ fn is_of_recording(path: &Path) -> bool {
     let name = replaced_name(name);
     let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
-    let names = [LOG_NAME, SETTINGS_NAME, RRD_NAME, MCAP_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME];
+    let names = [
+        LOG_NAME,
+        SETTINGS_NAME,
+        RRD_NAME,
+        MCAP_NAME,
+        EXCLUSION_NAME,
+        CORRECTION_NAME,
+        CONSENSUS_NAME,
+        RESCUE_NOTE_NAME,
+    ];
     is_lock(path) || is_code_file || is_damaged_log(name) || names.contains(&name) || seal == RRD_NAME
 }
 

@@ -3,6 +3,8 @@
 //! a further part in a folder beside it, whose header names the previous part.
 
 pub mod consensus_file;
+mod correction;
+mod decision_file;
 mod exclusion;
 mod guarded;
 mod lock;
@@ -17,7 +19,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::session::TimestampedEvent;
-pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
+pub(super) use correction::corrected_code;
+pub use correction::{CORRECTION_NAME, correct};
+pub use decision_file::DecisionError;
+pub use exclusion::{EXCLUSION_NAME, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub(super) use reader::read_header;
 pub use reader::{LogEnding, LogLine, LogReader, at_line};

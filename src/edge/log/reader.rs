@@ -6,6 +6,7 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::correction::correct_header;
 use super::{LOG_NAME, RecordingLock};
 use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
@@ -320,10 +321,12 @@ fn json_message(error: &serde_json::Error) -> String {
     message.split(" at line ").next().unwrap_or(&message).to_string()
 }
 
-/// Parses the header of the log at this path from the log's first line.
+/// Parses the header of the log at this path from the log's first line. Every reader of a recording gets the
+/// participant's code from here, as corrections beside the log say it.
 ///
 /// # Errors
-/// The line is no header of a log, or of a format version that this program does not read.
+/// The line is no header of a log, or of a format version that this program does not read; or the file with corrections
+/// is damaged.
 pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
     let wrong = |column: usize, found: String, remedy: String| at_line(path, 1, text, column, found, remedy);
     let is_log = "the folder of a recording, or the events.jsonl in it, as tomcom wrote it".to_string();
@@ -342,10 +345,13 @@ pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
             return Err(wrong(0, found, remedy));
         }
     }
-    let header: LogHeader = serde_json::from_str(text)
+    let mut header: LogHeader = serde_json::from_str(text)
         .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
     match header.session.check_recorded() {
-        Ok(()) => Ok(header),
+        Ok(()) => {
+            correct_header(path.parent().unwrap_or(Path::new("")), &mut header)?;
+            Ok(header)
+        }
         Err(error) => Err(wrong(text.find(error.key()).unwrap_or(0), error.found, error.remedy.into_owned())),
     }
 }

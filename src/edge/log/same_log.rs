@@ -7,9 +7,9 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::EXCLUSION_NAME;
 use super::consensus_file::CONSENSUS_NAME;
 use super::rater_codes::is_codes_file;
+use super::{CORRECTION_NAME, EXCLUSION_NAME};
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 
 const REMEDY: &str = "a readable recording";
@@ -25,7 +25,7 @@ pub fn log_digest(log: &Path) -> FileResult<String> {
     Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// The files with later decisions in the folder of a recording, by name: exclusion, raters' codes and their consensus.
+/// The files with later decisions in the folder of a recording, by name: exclusion, correction, raters' codes and their consensus.
 ///
 /// # Errors
 /// The folder or one of the files cannot be read.
@@ -35,7 +35,7 @@ pub fn decisions(folder: &Path) -> FileResult<BTreeMap<String, Vec<u8>>> {
     for entry in fs::read_dir(folder).map_err(|reason| unreadable(folder, reason))? {
         let path = entry.map_err(|reason| unreadable(folder, reason))?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if name == EXCLUSION_NAME || name == CONSENSUS_NAME || is_codes_file(&name) {
+        if [EXCLUSION_NAME, CORRECTION_NAME, CONSENSUS_NAME].contains(&name.as_str()) || is_codes_file(&name) {
             let mut bytes = Vec::new();
             let read = open_regular(&path).and_then(|mut file| io::copy(&mut file, &mut bytes));
             read.map_err(|reason| unreadable(&path, reason))?;

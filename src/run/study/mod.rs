@@ -35,7 +35,7 @@ use crate::study::column::CsvTable;
 use crate::study::detail_totals::DetailTotals;
 use crate::study::dictionary::{DataDictionaryRow, dictionary};
 use crate::study::facts::RecordingFacts;
-use crate::study::figures::StudySummary;
+use crate::study::figures::{CorrectedRecording, StudySummary};
 use crate::study::frozen_plan::FrozenPlan;
 use crate::study::missing_trials::missing_trials;
 use crate::study::planned_trial::RecordingCopy;
@@ -160,7 +160,7 @@ fn analyse(
     kept: &mut KeptCost,
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
     let log = LogReader::open(path)?;
-    let plan = RecordedPlan::from_settings(&log.header.session);
+    let (plan, correction) = (RecordedPlan::from_header(&log.header), log.header.correction.clone());
     let digest = log_digest(log.path_of_last_part())?;
     let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
     let (mut trial, mut rows) = (None, Default::default());
@@ -168,7 +168,7 @@ fn analyse(
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }
-    Ok((AnalysedRecording { recording: name.clone(), digest, plan, consent, tutorial, trial }, rows))
+    Ok((AnalysedRecording { recording: name.clone(), digest, plan, correction, consent, tutorial, trial }, rows))
 }
 
 /// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
@@ -194,6 +194,7 @@ struct CollectedRecordings {
     /// By the name of each trial's recording, the number under which the recording is kept.
     kept: BTreeMap<String, usize>,
     plans: Vec<RecordedPlan>,
+    corrections: Vec<CorrectedRecording>,
     /// Consents, each with its recording's name.
     consents: Vec<(String, RecordedConsent)>,
     tutorials: Vec<TutorialQuestionRow>,
@@ -212,6 +213,9 @@ impl CollectedRecordings {
     /// Adds the recording that is kept under this number.
     fn add(&mut self, index: usize, recording: AnalysedRecording) {
         self.plans.push(recording.plan);
+        let name = recording.recording.clone();
+        self.corrections
+            .extend(recording.correction.map(|correction| CorrectedRecording { recording: name, correction }));
         self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
         self.tutorials.extend(recording.tutorial);
         if let Some((trial, _, facts)) = recording.trial {
@@ -231,19 +235,23 @@ fn conclude(
     frozen: Option<(String, FrozenPlan)>,
     copies: Vec<RecordingCopy>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings { mut trials, facts, kept, plans, mut consents, mut tutorials } =
+    let CollectedRecordings { mut trials, facts, kept, plans, mut corrections, mut consents, mut tutorials } =
         CollectedRecordings::read(export, number)?;
     arrange(&mut trials);
     let practice = (plans.len() - trials.len()) as u64;
     consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
     let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
+    corrections.sort_by(|a, b| a.recording.cmp(&b.recording));
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
     let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
     let figures = StudySummary::from_trials(&trials, details, &facts, practice).with_tutorials(&tutorials);
-    let figures =
-        figures.with_preregistration(preregistration).with_missing_trials(missing_trials(&plans)).with_copies(copies);
+    let figures = figures
+        .with_preregistration(preregistration)
+        .with_missing_trials(missing_trials(&plans))
+        .with_copies(copies)
+        .with_corrections(corrections);
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     export.remove_kept()?;

@@ -41,7 +41,7 @@ impl RecordingPlace {
     fn read(recording: &Path, shard: SimulationShard) -> FileResult<RecordingPlace> {
         let header = LogReader::open(recording)?.header;
         let is_own = trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1;
-        Ok(RecordingPlace { is_own, plan: RecordedPlan::from_settings(&header.session).plan })
+        Ok(RecordingPlace { is_own, plan: RecordedPlan::from_header(&header).plan })
     }
 }
 

@@ -33,6 +33,9 @@ pub fn describe(figures: &StudySummary) -> String {
     );
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &in_words(&figures.missing_trials).map_or(String::new(), |missing| format!("{missing}\n"));
+    for one in &figures.corrections {
+        text += &format!("{}\n", one.in_words());
+    }
     text += &copies_in_words(&figures.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(

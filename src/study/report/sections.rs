@@ -59,6 +59,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
         }
         @if let Some(missing) = in_words(&figures.missing_trials) { p class="note" { (missing) } "\n" }
+        @for one in &figures.corrections { p class="note" { (one.in_words()) "." } "\n" }
         @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
         @if let Some(found) = &figures.raters { (raters(found, figures)) }
         @for one in &figures.stale_consensus {

@@ -220,6 +220,7 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         recording: "practice".to_string(),
         digest: String::new(),
         plan,
+        correction: None,
         consent: None,
         tutorial: Vec::new(),
         trial: None,

@@ -20,7 +20,7 @@ use crate::measures::wizard_performance::TrainingCriterion;
 use crate::run::similarity;
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
-use crate::session::settings::is_code;
+use crate::session::person_code;
 
 /// Compares a wizard's signals with those that assistants would have sent.
 ///
@@ -198,9 +198,10 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
 
 /// Parses a wizard's code.
 fn code_of(text: &str) -> Result<String, Failure> {
-    let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"W1\"; never a name";
-    match is_code(text) {
-        true => Ok(text.to_string()),
-        false => Err(Failure::Wrong(miette::miette!(help = remedy, "found --wizard \"{text}\""))),
+    match person_code::fault(text) {
+        None => Ok(text.to_string()),
+        Some(fault) => {
+            Err(Failure::Wrong(miette::miette!(help = person_code::REMEDY, "found --wizard \"{text}\": {fault}")))
+        }
     }
 }

@@ -19,9 +19,10 @@ use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::RecordedFile;
+use crate::session::person_code;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
-use crate::session::settings::{SettingError, is_code};
+use crate::session::settings::SettingError;
 use crate::session::wall_display::RobotDepiction;
 use crate::wizard::settings::WizardKind;
 
@@ -89,7 +90,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
     }
-    spec.check().and_then(|()| spec.check_participant_codes()).map_err(|error| wrong_setting(path, &text, error))?;
+    spec.check().map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
         let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
@@ -202,9 +203,9 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModelFile> {
 /// Checks the parameters of persons, each in a human model that is otherwise that of the population.
 fn check_people(path: &Path, text: &str, population: &HumanModel, people: Option<&FittedPeople>) -> FileResult<()> {
     for (code, own) in people.iter().flat_map(|people| &people.0) {
-        if !is_code(code) {
-            let found = format!("the code \"{code}\"");
-            let remedy = "codes of 1 to 32 letters, digits, - and _, such as [people.P07]; never names".to_string();
+        if let Some(fault) = person_code::fault(code) {
+            let found = format!("the code \"{code}\": {fault}");
+            let remedy = person_code::REMEDY.to_string();
             return Err(FileError::at(path, text, place_of(text, "people", 0), found, remedy));
         }
         for (parameter, value) in own {

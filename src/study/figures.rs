@@ -25,9 +25,11 @@ use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
+use crate::base::words::count;
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::{AgreementTable, RaterAgreement, RaterCodes};
+use crate::measures::cause_codes::{AgreementTable, RaterAgreement};
 use crate::measures::matching::{MatchCounts, Similarity};
+use crate::measures::rater_choice::RaterPair;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::code_correction::CodeCorrection;
 use crate::session::event::TrialEndReason;
@@ -124,6 +126,13 @@ pub struct StudySummary {
     pub probes: Option<ProbeSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<RaterAgreement>,
+    /// Number of trials by the pair of raters ("R1+R2") whose codes or consensus determine the causes of errors; absent
+    /// without raters.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub rater_pairs: BTreeMap<String, u64>,
+    /// Trials in which both raters gave the same codes to all errors; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub identical_codes: Vec<IdenticalCodes>,
     /// Agreement of the two raters about the false beliefs from which episodes follow.
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
@@ -173,6 +182,28 @@ pub struct StudyConditionSummary {
     pub mean_press_s: Option<f64>,
     /// Number of error sequences by their length: sequences with 1, 2, 3, … errors.
     pub sequence_lengths: Vec<u64>,
+}
+
+/// A trial in which two raters gave the same codes to all errors: perhaps one file with codes is a copy of the other.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct IdenticalCodes {
+    /// The recording's name in tables.
+    pub recording: String,
+    /// The two raters: "R1+R2".
+    pub raters: String,
+    /// Number of errors that both coded alike.
+    pub errors: u64,
+}
+
+impl IdenticalCodes {
+    /// The warning of identical codes in words.
+    pub fn in_words(&self) -> String {
+        let raters = self.raters.replace('+', " and ");
+        format!(
+            "{raters} gave the same codes to all {} errors of {}: make sure that one is no copy of the other",
+            self.errors, self.recording
+        )
+    }
 }
 
 /// A consensus of two raters that no longer holds, since one of them changed a code.
@@ -256,6 +287,8 @@ impl StudySummary {
             probes: ProbeSummary::from_trials(details.probes.iter().map(|(code, probes)| (code.as_str(), probes))),
             raters: agreement(&counting),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
+            rater_pairs: rater_pairs(&counting),
+            identical_codes: counting.iter().filter_map(|trial| identical_codes(trial)).collect(),
             consensus: consensus(&counting),
             stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),
             left_out: left_out.collect(),
@@ -347,15 +380,38 @@ fn consensus(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
     settled
 }
 
+/// Pairs of raters in words: "R1 and R2", with their numbers of trials if there are several pairs.
+pub fn pairs_in_words(pairs: &BTreeMap<String, u64>) -> String {
+    let word = |(pair, trials): (&String, &u64)| match pairs.len() {
+        1 => pair.replace('+', " and "),
+        _ => format!("{} in {}", pair.replace('+', " and "), count(*trials, "trial", "trials")),
+    };
+    pairs.iter().map(word).collect::<Vec<String>>().join("; ")
+}
+
 fn stale(trial: &TrialStatistics) -> Option<StaleConsensus> {
     let reason = trial.stale_consensus.clone()?;
     Some(StaleConsensus { recording: trial.recording.clone(), reason })
 }
 
+/// Number of trials by the pair of raters whose codes or consensus determine the causes of errors.
+fn rater_pairs(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
+    let mut pairs = BTreeMap::new();
+    for pair in trials.iter().filter_map(|trial| trial.raters.as_ref()) {
+        *pairs.entry(pair.name()).or_default() += 1;
+    }
+    pairs
+}
+
+fn identical_codes(trial: &TrialStatistics) -> Option<IdenticalCodes> {
+    let pair = trial.raters.as_ref().filter(|pair| pair.is_identical(trial.errors as usize))?;
+    Some(IdenticalCodes { recording: trial.recording.clone(), raters: pair.name(), errors: trial.errors })
+}
+
 /// Agreement of the raters' codes over all trials.
 fn agreement(trials: &[&TrialStatistics]) -> Option<RaterAgreement> {
     let mut table = AgreementTable::default();
-    let coded: Vec<&[RaterCodes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
-    coded.iter().for_each(|[one, other]| table.add(one, other));
+    let coded: Vec<&RaterPair> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
+    coded.iter().for_each(|pair| table.add(&pair.codes[0], &pair.codes[1]));
     (!coded.is_empty()).then(|| table.agreement())
 }

@@ -9,8 +9,8 @@ use super::robot_tally::RobotEventSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_record::ProbedTrialStatistics;
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::RaterCodes;
 use crate::measures::cause_kinds::BeliefErrorCounts;
+use crate::measures::rater_choice::RaterPair;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::TrialEndReason;
@@ -97,8 +97,8 @@ pub struct TrialStatistics {
     pub wizard: Option<WizardMeasures>,
     /// Whether the wizard saw the assistant's recommendations, by the settings or from some time of the trial on.
     pub wizard_saw_advice: bool,
-    /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
-    pub raters: Option<[RaterCodes; 2]>,
+    /// The two raters with their codes, if these codes or the raters' consensus determine the causes of errors.
+    pub raters: Option<RaterPair>,
     /// Agreement of the two raters about false beliefs.
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// The two raters whose consensus determines the causes of errors.

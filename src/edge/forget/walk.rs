@@ -10,13 +10,13 @@ use super::subject::ForgetSubject;
 use crate::edge::bids_tree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::consensus_file::CONSENSUS_NAME;
+use crate::edge::log::rater_codes::is_codes_file;
 use crate::edge::log::{
     CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
     is_damaged_log,
 };
 use crate::edge::replace_file::replaced_name;
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
-use crate::session::settings::is_code;
 
 /// Why an unknown file in the folder of a recording is kept.
 const STRANGE: &str = "in the folder of one of the participant's recordings, and tomcom did not write it; it is to be deleted or \
@@ -195,7 +195,7 @@ fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
 fn is_of_recording(path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else { return false };
     let name = replaced_name(name);
-    let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
+    let is_code_file = is_codes_file(name);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
     let names = [
         LOG_NAME,

@@ -11,7 +11,7 @@ use crate::edge::clock::WallTime;
 use crate::edge::file_error::FileResult;
 use crate::session::LogHeader;
 use crate::session::code_correction::CodeCorrection;
-use crate::session::participant_code;
+use crate::session::person_code;
 
 /// Name of the file with corrections in the folder of a recording.
 pub const CORRECTION_NAME: &str = "correction.toml";
@@ -65,8 +65,8 @@ pub fn correct(recording: &Path, code: Option<&str>, why: &str) -> Result<CodeCo
     let locks = folders.iter().map(|folder| RecordingLock::take(folder)).collect::<Result<Vec<_>, _>>()?;
     check_continued(log.folder())?;
     let wrong = |found: String, remedy: &str| Err(DecisionError::Code { found, remedy: remedy.to_string() });
-    if let Some((code, fault)) = code.and_then(|code| Some((code, participant_code::fault(code)?))) {
-        return wrong(format!("the code \"{code}\": {fault}"), participant_code::REMEDY);
+    if let Some((code, fault)) = code.and_then(|code| Some((code, person_code::fault(code)?))) {
+        return wrong(format!("the code \"{code}\": {fault}"), person_code::REMEDY);
     }
     let parts = parts.iter().map(|log| Ok(LogReader::open(log)?.header)).collect::<FileResult<Vec<LogHeader>>>()?;
     // Later parts of a recording that was corrected before it was continued have the corrected code in their logs.

@@ -1,6 +1,7 @@
 //! Files beside a closed log with later decisions about the recording. The log of a closed recording is never changed.
 //! All decisions of a file are kept, and the last one holds.
 
+use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -54,6 +55,8 @@ pub(super) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), Decis
 
 /// Reads a file with decisions; empty decisions if there is no such file. `remedy`: what the file should contain.
 pub(super) fn read<Decisions: DeserializeOwned + Default>(path: &Path, remedy: &str) -> FileResult<Decisions> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    check_single(path.parent().unwrap_or(Path::new("")), &name)?;
     let text = match read_regular(path) {
         Ok(text) => text,
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
@@ -63,6 +66,27 @@ pub(super) fn read<Decisions: DeserializeOwned + Default>(path: &Path, remedy: &
     };
     toml::from_str(&text)
         .map_err(|error| FileError::at(path, &text, error.span(), error.message().to_string(), remedy.to_string()))
+}
+
+/// Checks that the folder of a recording has no copy of the file with this name, such as those that file managers and
+/// sync programs make: it could have another content, and what it says would be lost.
+///
+/// # Errors
+/// There is such a copy.
+pub(super) fn check_single(folder: &Path, name: &str) -> FileResult<()> {
+    // A folder that cannot be read is reported by the reader of the file.
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    for entry in entries.flatten() {
+        let other = entry.file_name().to_string_lossy().to_ascii_lowercase();
+        if other != name && other.contains(stem) && other.ends_with(&format!(".{extension}")) {
+            let remedy =
+                format!("{name} alone: compare the two, keep the one that holds, and move the other elsewhere");
+            let found = format!("what looks like a copy of {name}, which is not read");
+            return Err(FileError::from_finding(&entry.path(), found, remedy));
+        }
+    }
+    Ok(())
 }
 
 /// Writes a file with decisions, completely or not at all.

@@ -190,7 +190,7 @@ pub fn read(
     };
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters)) {
-        trial.shared_beliefs = coded.raters.as_ref().map(RaterFalseBeliefAgreement::count);
+        trial.shared_beliefs = coded.raters.as_ref().map(|pair| RaterFalseBeliefAgreement::count(&pair.codes));
         trial.raters = coded.raters;
     }
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));

@@ -77,7 +77,7 @@ impl<'a> TrialPressAnalyses<'a> {
             sequence: sequence.map(|number| number + 1),
             by_estimate: estimated.map(|(_, cause)| *cause),
             codes: match &self.coded.raters {
-                Some(raters) => raters.each_ref().map(|codes| codes.0.get(&seq)),
+                Some(pair) => pair.codes.each_ref().map(|codes| codes.0.get(&seq)),
                 None => [None, None],
             },
             shared: self.coded.consensus.as_ref().and_then(|codes| codes.0.get(&seq)),

@@ -7,7 +7,7 @@ use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::TrialEndReason;
 use crate::study::arm_comparison::StudyArmComparison;
 use crate::study::effect::AssistanceEffect;
-use crate::study::figures::StudySummary;
+use crate::study::figures::{StudySummary, pairs_in_words};
 use crate::study::live_arms::SignalSenderResults;
 use crate::study::missing_trials::in_words;
 use crate::study::planned_trial::copies_in_words;
@@ -56,7 +56,8 @@ pub fn describe(figures: &StudySummary) -> String {
     };
     if let Some(found) = &figures.raters {
         text += &format!(
-            "two raters: same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
+            "two raters ({}): same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
+            pairs_in_words(&figures.rater_pairs),
             found.same_cause,
             found.errors,
             number(found.kappa_cause),
@@ -64,6 +65,9 @@ pub fn describe(figures: &StudySummary) -> String {
             found.beliefs,
             number(found.kappa_aspect)
         );
+    }
+    for one in &figures.identical_codes {
+        text += &format!("{}\n", one.in_words());
     }
     if let (Some(shared), Some(episodes)) = (&figures.shared_beliefs, totals.false_belief_episodes) {
         text += &format!(

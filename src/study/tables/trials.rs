@@ -87,6 +87,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(false_beliefs())
         .chain(probed())
         .chain(arm_columns::arms())
+        .chain(coded())
 }
 
 fn kind_of_trial() -> Vec<TrialColumn> {
@@ -393,6 +394,16 @@ fn false_beliefs() -> Vec<TrialColumn> {
         wizard("wizard_hits", "episodes", "episodes with a signal of the wizard in time", |wizard| wizard.hits),
         wizard("wizard_omissions", "episodes", "episodes without one", |wizard| wizard.omissions),
     ]
+}
+
+/// Columns about raters' codes.
+fn coded() -> Vec<TrialColumn> {
+    vec![plain(
+        "raters",
+        "",
+        "the two raters, as R1+R2, whose codes or consensus determine the causes of errors; empty: nobody's",
+        |t| t.raters.as_ref().map(|pair| pair.name()).into(),
+    )]
 }
 
 /// Columns about answers to freeze probes.

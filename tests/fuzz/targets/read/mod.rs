@@ -126,7 +126,7 @@ fn exclusion(bytes: &[u8]) {
 /// Codes of one rater beside a log, and of several in an export.
 fn codes(bytes: &[u8]) {
     let path = file("codes-R1.csv", bytes);
-    shown(rater_codes::read(&folder(), "R1", &codable()).map(drop));
+    shown(rater_codes::read_all(&folder(), &codable()).map(drop));
     shown(rater_codes::read_export(&path).map(drop));
 }
 

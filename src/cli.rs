@@ -186,6 +186,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         if !args.follow || !replay.log().is_cut() {
             break;
         }
+        replay.log().check_there()?;
         std::thread::sleep(FOLLOW_INTERVAL);
     }
     let standing = standing::exclusion_status(replay.session(), replay.log())?;

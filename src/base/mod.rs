@@ -1,4 +1,4 @@
-//! Basics that every module may use: session time, random streams, bit sets, words, printable text, number ranges, the
+//! Basics that every module may use: session time, random streams, bit sets, words, printable text, cells of tables, number ranges, the
 //! beta distribution.
 
 pub mod bits;
@@ -7,5 +7,6 @@ pub mod incomplete_beta;
 pub mod number_range;
 pub mod printable;
 pub mod rng;
+pub mod spreadsheet;
 pub mod time;
 pub mod words;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, log_digest, read_header, ruling};
+use super::log::{LOG_NAME, RecordingLock, log_digest, read_header, ruling};
 use crate::session::header::{FORMAT, PreviousPart};
 use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
@@ -134,6 +134,8 @@ struct Part {
     /// Whether an event excludes the recording from the analysis or includes it again, and the reason of an exclusion.
     excluded: Option<Option<String>>,
     ended: bool,
+    /// Whether a program is writing the log at present.
+    running: bool,
 }
 
 impl Part {
@@ -180,6 +182,7 @@ impl Part {
             aborted: None,
             excluded: None,
             ended: false,
+            running: path.parent().is_some_and(|folder| RecordingLock::holder(folder).is_some()),
         };
         while next(&mut line)? {
             if !is_sample(&line)
@@ -226,7 +229,9 @@ impl Part {
         let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.aborted.as_ref());
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
-        let outcome = if !self.ended {
+        let outcome = if !self.ended && self.running {
+            RecordingOutcome::Running
+        } else if !self.ended {
             RecordingOutcome::Open
         } else if let Some(reason) = aborted {
             void(&format!("aborted ({reason})"))

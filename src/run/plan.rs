@@ -157,6 +157,7 @@ fn attempts(progress: &ParticipantProgress) -> String {
                 RecordingOutcome::Complete if attempt.other_version || recorded.is_some() => "done",
                 RecordingOutcome::Complete => continue,
                 RecordingOutcome::Open => "open",
+                RecordingOutcome::Running => "being recorded",
                 RecordingOutcome::Excluded { reason } => &format!("excluded ({reason})"),
                 RecordingOutcome::Void { reason } => reason,
             };

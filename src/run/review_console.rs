@@ -258,8 +258,9 @@ impl Review {
         }
         if !self.film.is_cut() {
             self.grows = false;
+            return Ok(());
         }
-        Ok(())
+        Ok(self.film.replay.log().check_there()?)
     }
 }
 

@@ -7,6 +7,7 @@ pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVis
 use super::fitted_parameters::ParameterSource;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
+use super::person_code;
 use super::plan::{PlanPosition, PlanSpec};
 pub use super::probe_settings::ProbeSpec;
 use super::ranges;
@@ -119,6 +120,10 @@ impl SessionSpec {
     /// An error names the first invalid setting.
     pub fn check_recorded(&self) -> Result<(), SettingError> {
         ranges::check_recorded(self)?;
+        let code = &self.participant.code;
+        if !is_code(code) {
+            return Err(SettingError::new("participant.code", format!("code = \"{code}\""), person_code::REMEDY));
+        }
         self.check_rules()
     }
 

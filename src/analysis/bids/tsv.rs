@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value, json};
 
+use crate::base::spreadsheet::without_formula;
 use crate::base::time::SessionTime;
 
 /// Text of a cell in a BIDS table that has no value.
@@ -105,10 +106,11 @@ pub(super) fn line<'a>(cells: impl IntoIterator<Item = impl Into<Cow<'a, str>>>)
     cells.join("\t") + "\n"
 }
 
-/// Text of one table cell: tabs and line ends become spaces, and text that contains quotation marks is quoted.
+/// Text of one table cell: tabs and line ends become spaces, text that a spreadsheet would compute gets a `'` in front,
+/// and text that contains quotation marks is quoted.
 fn cell(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    match plain.trim() {
+    match &*without_formula(plain.trim()) {
         "" => NOTHING.to_string(),
         trimmed if trimmed.contains('"') => format!("\"{}\"", trimmed.replace('"', "\"\"")),
         trimmed => trimmed.to_string(),

@@ -22,6 +22,8 @@ const ATTEMPTS: usize = 8;
 pub struct RecordingLock {
     file: File,
     path: PathBuf,
+    /// Folder that was made for the lock alone; it goes with the lock if nothing was recorded in it.
+    made: Option<PathBuf>,
 }
 
 /// The program that writes a recording at present, as far as the lock file tells.
@@ -70,6 +72,25 @@ impl RecordingLock {
         })
     }
 
+    /// Takes the right to record a participant of a study plan in this folder, from before the first question until the
+    /// last recording is closed. The folder is made if it does not exist.
+    ///
+    /// # Errors
+    /// Another program has that right, or the folder cannot be written to.
+    pub fn take_for_participant(folder: &Path, plan: &str, code: &str) -> Result<RecordingLock, RecordingWriteError> {
+        let made = (!folder.exists()).then(|| folder.to_path_buf());
+        fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
+        let path = folder.join(format!("{LOCK_NAME}-{plan}-{code}"));
+        let mut lock = RecordingLock::take_file(path, folder).map_err(|error| match error {
+            RecordingWriteError::InUse { folder, pid } => {
+                RecordingWriteError::Attended { folder, plan: plan.to_string(), code: code.to_string(), pid }
+            }
+            other => other,
+        })?;
+        lock.made = made;
+        Ok(lock)
+    }
+
     fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
         let failed = |reason| RecordingWriteError::unwritable(&path, reason);
         // Taking the lock empties the lock file, which must therefore not be the target of a link; and opening a named
@@ -95,7 +116,7 @@ impl RecordingLock {
             // no effect.
             if is_same(&file, &path) {
                 file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
-                return Ok(RecordingLock { file, path });
+                return Ok(RecordingLock { file, path, made: None });
             }
         }
         Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid: None })
@@ -124,6 +145,10 @@ impl Drop for RecordingLock {
         if is_same(&self.file, &self.path) {
             // A lock file that cannot be removed does no harm.
             let _ = fs::remove_file(&self.path);
+        }
+        if let Some(folder) = &self.made {
+            // A folder with recordings is not empty, and stays.
+            let _ = fs::remove_dir(folder);
         }
     }
 }
@@ -164,6 +189,21 @@ mod tests {
         assert_eq!(RecordingLock::holder(&folder), None);
         fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
         assert_eq!(RecordingLock::holder(&folder), None, "what a killed program left behind is held by nobody");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn one_program_at_a_time_records_a_participant_of_a_plan() {
+        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-plan-lock-{}", std::process::id())).unwrap();
+        let first = RecordingLock::take_for_participant(&folder, "main-study", "P02").unwrap();
+        let refusal = RecordingLock::take_for_participant(&folder, "main-study", "P02").unwrap_err().to_string();
+        let told = format!("another program (process {}) records P02 of the plan main-study", std::process::id());
+        assert!(refusal.contains(&told), "{refusal}");
+        let _others =
+            ["P01", "P03"].map(|code| RecordingLock::take_for_participant(&folder, "main-study", code).unwrap());
+        let _rehearsal = RecordingLock::take_for_participant(&folder, "rehearsal", "P02").unwrap();
+        drop(first);
+        drop(RecordingLock::take_for_participant(&folder, "main-study", "P02").unwrap());
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -89,6 +89,21 @@ pub enum RecordingWriteError {
         /// Process id of the program that codes the errors; `None` if not known.
         pid: Option<u32>,
     },
+    /// Another program is recording this participant of a study plan.
+    #[error("{}: another program{} records {code} of the plan {plan}", folder.display(), process(.pid))]
+    #[diagnostic(help(
+        "go on there, or quit that program first; tomcom replay RECORDING --follow watches its session"
+    ))]
+    Attended {
+        /// Folder with the recordings of the study.
+        folder: PathBuf,
+        /// Name of the study plan.
+        plan: String,
+        /// Code of the participant.
+        code: String,
+        /// Process id of the program that records the participant; `None` if not known.
+        pid: Option<u32>,
+    },
     /// The recording has already been continued.
     #[error("{}: this recording was continued already", folder.display())]
     #[diagnostic(help("continue its next part, if that was cut: tomcom operate --continue {}", part.display()))]

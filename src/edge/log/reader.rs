@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::correction::correct_header;
+use super::lock::is_same;
 use super::{LOG_NAME, RecordingLock};
 use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
@@ -183,6 +184,25 @@ impl LogReader {
         // After the last line end comes nothing, or a line that is not complete.
         lines.next();
         Ok(lines.next().and_then(|line| serde_json::from_slice(line).ok()))
+    }
+
+    /// Checks that the log that is being read is still at its path: an open file can be read even after it was deleted,
+    /// but nothing is added to it any more.
+    ///
+    /// # Errors
+    /// The log was removed, moved or replaced, or its folder was.
+    pub fn check_there(&self) -> FileResult<()> {
+        if is_same(self.input.get_ref(), &self.path) {
+            return Ok(());
+        }
+        let found = match self.path.exists() {
+            true => "another file in the place of the log that was followed".to_string(),
+            false => "no log any more: it was removed or moved while it was followed".to_string(),
+        };
+        let remedy = "the folder in which the recording is now, if its session goes on; the session's own console says where \
+                      what was recorded is saved"
+            .to_string();
+        Err(FileError::from_finding(&self.path, found, remedy))
     }
 
     /// Whether the events read so far lack the session's end.

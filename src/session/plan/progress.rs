@@ -15,6 +15,8 @@ pub enum RecordingOutcome {
     Complete,
     /// The recording is unfinished: cut off or left early, so that it can be continued.
     Open,
+    /// A program is making the recording at present.
+    Running,
     /// The recording is finished and excluded from the analysis, but not repeated.
     Excluded {
         /// Why the recording is excluded.
@@ -68,6 +70,13 @@ pub enum NextRecording {
         /// The number of the new attempt if the trial is repeated, counted from 1.
         attempt: u32,
     },
+    /// A program is making this recording at present.
+    Running {
+        /// Name of the folder of the recording that is being made.
+        recording: String,
+        /// The index of the planned trial in the participant's series.
+        slot: usize,
+    },
     /// No recording is needed: the participant has completed the series.
     Finished,
 }
@@ -76,7 +85,9 @@ impl NextRecording {
     /// Index of the planned trial that comes next; `None` when all trials are done.
     pub fn slot(&self) -> Option<usize> {
         match self {
-            NextRecording::Begin { slot, .. } | NextRecording::Choose { slot, .. } => Some(*slot),
+            NextRecording::Begin { slot, .. }
+            | NextRecording::Choose { slot, .. }
+            | NextRecording::Running { slot, .. } => Some(*slot),
             NextRecording::Finished => None,
         }
     }
@@ -215,6 +226,9 @@ impl PlannedTrialProgress {
             _ if self.is_done => None,
             Some(last) if last.outcome == RecordingOutcome::Open => {
                 Some(NextRecording::Choose { recording: last.recording.clone(), slot, attempt })
+            }
+            Some(last) if last.outcome == RecordingOutcome::Running => {
+                Some(NextRecording::Running { recording: last.recording.clone(), slot })
             }
             _ => Some(NextRecording::Begin { slot, attempt }),
         }

@@ -3,6 +3,7 @@
 use super::trial_column::TrialColumn::{self, Compared};
 use super::trial_column::plain;
 use crate::analysis::offer_summary::OfferSummary;
+use crate::base::spreadsheet::GUARDED;
 use crate::measures::cause_kinds::BeliefErrorCounts;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
@@ -101,7 +102,7 @@ fn kind_of_trial() -> Vec<TrialColumn> {
         plain("condition", "", "who sends signals: none, wizard or assistant", |t| t.condition.name().into()),
         plain("assisted", "", "whether the wizard or the assistant sends signals", |t| t.is_assisted().into()),
         plain("counts", "", "whether the trial counts; false: left out of all statistics", |t| t.counts().into()),
-        plain("left_out", "", "reason for leaving the trial out", |t| t.left_out.as_ref().into()),
+        plain("left_out", "", format!("reason for leaving the trial out; {GUARDED}"), |t| t.left_out.as_ref().into()),
         plain(
             "ended",
             "",

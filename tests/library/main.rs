@@ -6,6 +6,7 @@ mod cohort;
 mod connection_table;
 mod considered_orders;
 mod console;
+mod corrections;
 mod cost_to_go;
 mod display;
 mod display_clock;

@@ -153,7 +153,9 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     assert!(told.contains("recording.rrd"), "{told}");
     // What a kill before the log leaves behind, of a later part.
     lab.put("seed1-P01-1-part2/session.toml", lab.text("seed1-P01-1/session.toml"));
-    lab.put("seed1-P01-1/codes-R1.csv", "press,cause,aspect\n");
+    lab.put("seed1-P01-1/codes-R1.csv", "rater,press,cause,aspect\n");
+    lab.put("seed1-P01-1/codes-R1 (1).csv", "rater,press,cause,aspect\n");
+    lab.put("seed1-P01-1/correction.toml", "");
     // What a kill while codes or tables were written leaves behind.
     lab.put("seed1-P01-1/codes-R1.csv.tomcom-77.new", "press,cause,aspect\n");
     lab.put("study/trials.csv.tomcom-77.new", lab.text("study/trials.csv"));

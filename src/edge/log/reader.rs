@@ -199,9 +199,10 @@ impl LogReader {
             true => "another file in the place of the log that was followed".to_string(),
             false => "no log any more: it was removed or moved while it was followed".to_string(),
         };
-        let remedy = "the folder in which the recording is now, if its session goes on; the session's own console says where \
+        let remedy =
+            "the folder in which the recording is now, if its session goes on; the session's own console says where \
                       what was recorded is saved"
-            .to_string();
+                .to_string();
         Err(FileError::from_finding(&self.path, found, remedy))
     }
 

@@ -51,7 +51,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {
         let codes = code_exchange::read(&recordings, file)?;
-        if !codes.new_raters.is_empty() && !args.yes && !are_meant(&codes)? {
+        if !codes.new_raters.is_empty() && !are_meant(&codes, args.yes)? {
             put_aside("nothing was imported\n");
             return Err(Failure::No);
         }
@@ -66,11 +66,14 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
 
 /// Tells which raters in a table are new, and asks whether they are meant: a code that was typed wrong, or changed by a
 /// spreadsheet, would make a rater of its own.
-fn are_meant(codes: &ImportableCodes) -> Result<bool, Failure> {
+fn are_meant(codes: &ImportableCodes, is_agreed: bool) -> Result<bool, Failure> {
     let (new, known) = (codes.new_raters.join(", "), codes.known_raters.join(", "));
     let known = if known.is_empty() { "no rater".to_string() } else { known };
     put_aside(&format!("new raters in the table: {new}; so far these recordings have codes of: {known}\n"));
     let input = std::io::stdin();
+    if is_agreed {
+        return Ok(true);
+    }
     if !input.is_terminal() {
         let help = "--yes if they are meant, or the table with the raters' codes put right";
         return Err(Failure::Wrong(miette::miette!(
@@ -194,7 +197,7 @@ impl ForgetSummary<'_> {
 pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     let code = &args.code;
     if !is_code(code) {
-        let help = "a code of 1 to 32 letters, digits, - and _, such as P07";
+        let help = "the code of a participant, such as P07";
         return Err(Failure::Wrong(miette::miette!(help = help, "found the participant's code \"{code}\"")));
     }
     let found = forget::find(&args.folder, &std::env::temp_dir(), code)?;

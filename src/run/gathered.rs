@@ -11,7 +11,7 @@ use super::{parallel, standing};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, decisions, log_digest};
 use crate::edge::recordings;
-use crate::session::LogHeader;
+use crate::session::{LogHeader, person_code};
 use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
 use crate::study::preregistration::RecordedPlan;
 
@@ -32,6 +32,8 @@ struct FoundRecording {
     path: PathBuf,
     /// Logs of the recording's parts, the last part last.
     logs: Vec<LogPlace>,
+    /// The participant's code.
+    code: String,
     trial: Option<PlannedTrialKey>,
 }
 
@@ -42,7 +44,8 @@ impl GatheredRecordings {
     ///
     /// # Errors
     /// A path is neither a recording nor a folder with recordings; a recording has no readable header; two recordings
-    /// count for one trial of a plan; or a copy has other decisions beside its log.
+    /// count for one trial of a plan; the codes of two participants differ in capital letters only; or a copy has other
+    /// decisions beside its log.
     pub fn find(paths: &[PathBuf]) -> FileResult<GatheredRecordings> {
         let mut found = Vec::new();
         for path in paths {
@@ -63,6 +66,7 @@ impl GatheredRecordings {
             let alike = one.earlier().iter().filter_map(|(log, _)| Some((digests.get(log)?, folder(log))));
             logs.extend(alike.map(|(digest, folder)| (digest, (index, folder))));
         }
+        check_codes(&opened)?;
         let (mut places, mut trials) = (BTreeSet::new(), BTreeMap::new());
         let (mut kept, mut copies) = (BTreeSet::new(), Vec::new());
         for index in order {
@@ -126,7 +130,8 @@ impl FoundRecording {
             Ok((log.canonicalize().map_err(unreadable)?, length))
         };
         let logs = log.logs().into_iter().map(place).collect::<FileResult<Vec<LogPlace>>>()?;
-        Ok(FoundRecording { path: path.to_path_buf(), logs, trial: planned_trial(&log.header) })
+        let code = log.header.session.participant.code.clone();
+        Ok(FoundRecording { path: path.to_path_buf(), logs, code, trial: planned_trial(&log.header) })
     }
 
     /// The log of the recording's last part.
@@ -158,6 +163,22 @@ fn folder(log: &Path) -> &Path {
 pub(super) fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
     let seed = header.started.is_none().then_some(header.session.seed);
     PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
+}
+
+/// Checks that no two codes differ in capital letters only: one of them was probably typed wrong, and other programs
+/// would make one person of them, or two.
+fn check_codes(opened: &[FoundRecording]) -> FileResult<()> {
+    let mut codes: BTreeMap<&str, &Path> = BTreeMap::new();
+    for one in opened {
+        if let Some(other) = person_code::differing_in_case(&one.code, codes.keys().copied()) {
+            let first = codes[other].display();
+            let found = format!("a recording of {}, beside {first}, which is one of {other}", one.code);
+            let remedy = "one code of one participant: tomcom correct RECORDING --code CODE --why …".to_string();
+            return Err(FileError::from_finding(&one.path, found, remedy));
+        }
+        codes.entry(&one.code).or_insert(&one.path);
+    }
+    Ok(())
 }
 
 /// Digests of the logs that are as long as another log; no other log can equal another one.

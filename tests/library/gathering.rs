@@ -131,6 +131,9 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
         });
         assert_eq!(number(&both), 2);
     }
+    record(&second, &log, |header| header["session"]["participant"]["code"] = json!("p01"));
+    let told = refusal(&both);
+    assert!(told.contains("a recording of P01, beside") && told.contains("which is one of p01"), "{told}");
     // Another version of the plan is the same plan; simulated people of another seed are others.
     record(&second, &log, |header| header["session"]["step"]["digest"] = json!("another"));
     assert!(refusal(&both).contains("a second recording"));

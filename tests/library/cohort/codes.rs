@@ -288,7 +288,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
 #[test]
 fn one_rater_does_not_become_two_by_copies_of_a_file() {
     let out = folder("copied-codes");
-    let made = run(&paper(120), 1, SimulationShard::WHOLE, &out);
+    let made = run(&paper(304), 1, SimulationShard::WHOLE, &out);
     let recording = PathBuf::from(&made.recordings[0]);
     let coded = || CodedRecording::open(&recording).expect("a recording");
     let slips = RaterCodes(coded().codable.errors.iter().map(|press| (*press, ErrorCauseCode::Slip)).collect());
@@ -350,7 +350,7 @@ fn one_rater_does_not_become_two_by_copies_of_a_file() {
 #[test]
 fn new_raters_in_a_table_are_known_before_it_is_imported() {
     let out = folder("new-raters");
-    let made = run(&paper(120), 1, SimulationShard::WHOLE, &out);
+    let made = run(&paper(304), 1, SimulationShard::WHOLE, &out);
     let recording = PathBuf::from(&made.recordings[0]);
     let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];
     let (name, press) = (coded[0].name(), coded[0].codable.errors[0]);

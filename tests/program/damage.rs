@@ -3,7 +3,7 @@
 //! they were skipped.
 
 use std::fs::{self, File};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -347,4 +347,28 @@ fn an_error_about_codes_names_the_row_that_is_wrong() {
         assert!(told.contains(says), "{says:?} is not in\n{told}");
     }
     assert!(!Path::new(&recording).join("codes-R1.csv").exists(), "nothing is taken of a table that is wrong");
+}
+
+#[test]
+#[serial]
+fn who_follows_a_log_that_vanishes_is_told_and_does_not_wait_for_ever() {
+    let out = folder("vanished");
+    let recording = out.join("running");
+    fs::create_dir_all(&recording).expect("a folder");
+    let text = fs::read_to_string("tests/golden/format-1-hand.jsonl").expect("a golden log");
+    let lines: Vec<&str> = text.lines().collect();
+    fs::write(recording.join(LOG_NAME), lines[..lines.len() - 1].join("\n") + "\n").expect("written");
+    let mut child = start(&["replay", &recording.display().to_string(), "--follow"]);
+    // The first lines are printed when the log is open.
+    let mut printed = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut line = String::new();
+    printed.read_line(&mut line).expect("a heading");
+    printed.read_line(&mut line).expect("an event");
+    fs::rename(&recording, out.join("moved")).expect("moved");
+    let rest = std::thread::spawn(move || std::io::read_to_string(printed));
+    let output = end("replay --follow", child);
+    rest.join().expect("read").expect("text");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("it was removed or moved while it was followed"), "{told}");
 }

@@ -134,3 +134,13 @@ pub(super) const YES_NO: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 pub(super) fn yes(is: bool) -> String {
     u8::from(is).to_string()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_somebody_typed_is_one_cell_that_no_spreadsheet_computes() {
+        assert_eq!(line(["=1+1", "-0.5", "a\tb\nc", "", "@x \"y\""]), "'=1+1\t-0.5\ta b c\tn/a\t\"'@x \"\"y\"\"\"\n");
+    }
+}

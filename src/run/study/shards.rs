@@ -182,15 +182,15 @@ impl JoinedRecordings {
             self.copies.insert(RecordingCopy { recording: place, copy_of: first_place.clone() });
             return Ok(false);
         }
-        if !self.names.insert(recording.recording.clone()) {
-            let found = format!("the recording {}, which is in another part, too", recording.recording);
-            return wrong((found, "each recording once".to_string()));
-        }
         if let Some(trial) = recording.counted_trial() {
             if let Some(first) = self.trials.get(&trial) {
                 return wrong(trial.counted_twice(first));
             }
             self.trials.insert(trial, place.clone());
+        }
+        if !self.names.insert(recording.recording.clone()) {
+            let found = format!("the recording {}, which is in another part, too", recording.recording);
+            return wrong((found, "each recording once".to_string()));
         }
         self.logs.insert(recording.digest.clone(), (self.number, place));
         self.number += 1;

@@ -3,6 +3,7 @@
 //! a further part in a folder beside it, whose header names the previous part.
 
 pub mod consensus_file;
+mod correcting;
 mod correction;
 mod decision_file;
 mod exclusion;
@@ -19,8 +20,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::session::TimestampedEvent;
+pub use correcting::correct;
+pub use correction::CORRECTION_NAME;
 pub(super) use correction::corrected_code;
-pub use correction::{CORRECTION_NAME, correct};
 pub use decision_file::DecisionError;
 pub use exclusion::{EXCLUSION_NAME, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};

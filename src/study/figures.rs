@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
-use super::arm_comparison::{StudyArmComparison, compare_arms};
+use super::arm_analysis::{ArmAnalysis, ArmDeviation, StudyConditionSummary};
+use super::arm_comparison::StudyArmComparison;
 use super::arm_group::{RobotArmTotals, by_arm};
 use super::detail_totals::{DetailTotals, WizardAssistantSimilarity};
-use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
+use super::effect::AssistanceEffect;
 use super::facts::RecordingFacts;
 use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::live_arms::{SignalSenderResults, live_arms};
@@ -16,10 +17,8 @@ use super::missing_trials::MissingTrials;
 use super::preregistration::PreregistrationCheck;
 use super::roc::{ConceptRocCurve, compare};
 use super::statistics::{Correlation, FTest};
-use super::tables::probe_table::PROBES_WRONG;
-use super::tables::trials::measures;
 use super::tables::tutorial_answers::TutorialQuestionRow;
-use super::trial_statistics::{TrialStatistics, mean};
+use super::trial_statistics::TrialStatistics;
 use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::OfferSummary;
@@ -30,7 +29,6 @@ use crate::measures::matching::{MatchCounts, Similarity};
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::TrialEndReason;
 use crate::session::settings::ParticipantKind;
-use crate::session::study_arm::StudyArm;
 
 /// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;
@@ -73,6 +71,13 @@ pub struct StudySummary {
     /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
     /// arms.
     pub arms: Option<StudyArmComparison>,
+    /// Trials that were carried out in another arm than the planned one, under which they count; absent if there are
+    /// none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub deviations: Vec<ArmDeviation>,
+    /// The same analysis with each trial in the arm in which it was carried out; absent without deviations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub as_carried_out: Option<ArmAnalysis>,
     /// The receiver operating characteristic (ROC) of each communication concept.
     pub roc: Vec<ConceptRocCurve>,
     /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
@@ -128,28 +133,6 @@ pub struct StudySummary {
     pub practice: u64,
 }
 
-/// Summary of the trials of a study in one condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StudyConditionSummary {
-    /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
-    pub condition: StudyArm,
-    /// Number of trials in the condition.
-    pub trials: u64,
-    /// Sums and means over the trials of the condition.
-    #[serde(flatten)]
-    pub totals: TrialTotals,
-    /// Mean number of the human's errors per trial.
-    pub mean_errors: Option<f64>,
-    /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
-    pub mean_order_s: Option<f64>,
-    /// Mean over trials of the summed regret of both agents per served order.
-    pub mean_additional_presses_per_order: Option<f64>,
-    /// Mean over trials of the median time between presses of the human, in seconds.
-    pub mean_press_s: Option<f64>,
-    /// Number of error sequences by their length: sequences with 1, 2, 3, … errors.
-    pub sequence_lengths: Vec<u64>,
-}
-
 /// A consensus of two raters that no longer holds, since one of them changed a code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StaleConsensus {
@@ -180,8 +163,9 @@ impl StudySummary {
     ) -> StudySummary {
         let counting: Vec<&TrialStatistics> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
-        let effects: Vec<AssistanceEffect> =
-            compared(trials).map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
+        let ArmAnalysis { conditions, effects, arms } = ArmAnalysis::from_trials(trials, SEED);
+        let deviations: Vec<ArmDeviation> =
+            counting.iter().filter_map(|trial| ArmDeviation::from_trial(trial)).collect();
         let comparison = compare(&details.concepts, SEED);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
@@ -201,12 +185,14 @@ impl StudySummary {
             robot: by_arm(&counting),
             preregistration: None,
             missing_trials: Vec::new(),
-            conditions: conditions(&counting),
+            conditions,
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
             permutation_p: effects[0].permutation_p,
             effects,
-            arms: compare_arms(&counting),
+            arms,
+            as_carried_out: (!deviations.is_empty()).then(|| ArmAnalysis::as_carried_out(trials, SEED)),
+            deviations,
             live: live_arms(&counting, &comparison.concepts),
             roc: comparison.concepts,
             roc_beliefs_from: details.concepts_beliefs_from,
@@ -259,12 +245,6 @@ fn ended(trials: &[&TrialStatistics]) -> BTreeMap<TrialEndReason, u64> {
     ended
 }
 
-/// The measures that are compared in these trials; those of freeze probes only if there are probes.
-fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
-    let has_probes = trials.iter().any(|trial| trial.probes.is_some());
-    measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
-}
-
 /// The least reliable source of participants' beliefs among these trials.
 fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> Option<BeliefSource> {
     trials.filter_map(|trial| trial.beliefs.as_ref()).map(|beliefs| beliefs.basis).max()
@@ -278,27 +258,6 @@ fn title(facts: &RecordingFacts, trials: &[TrialStatistics], simulated: bool) ->
         (true, true) => format!("{kitchen}: a study of people and simulated participants"),
         (false, _) => format!("{kitchen}: a study"),
     }
-}
-
-fn conditions(trials: &[&TrialStatistics]) -> Vec<StudyConditionSummary> {
-    let of = |condition: StudyArm| {
-        let trials: Vec<&TrialStatistics> =
-            trials.iter().copied().filter(|trial| trial.study_arm == condition).collect();
-        let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
-        let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
-        lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
-        (!trials.is_empty()).then(|| StudyConditionSummary {
-            condition,
-            trials: trials.len() as u64,
-            totals: TrialTotals::from_trials(&trials),
-            mean_errors: mean(trials.iter().map(|trial| trial.errors as f64)),
-            mean_order_s: mean(trials.iter().filter_map(|trial| trial.order_s)),
-            mean_additional_presses_per_order: mean(trials.iter().filter_map(|one| one.additional_presses_per_order)),
-            mean_press_s: mean(trials.iter().filter_map(|trial| trial.press_s)),
-            sequence_lengths,
-        })
-    };
-    StudyArm::ALL.into_iter().filter_map(of).collect()
 }
 
 /// Number of trials that use the consensus of two raters, by pair of raters.

@@ -42,8 +42,8 @@ pub struct TrialStatistics {
     pub condition: Condition,
     /// Study arm of the trial as it was carried out.
     pub study_arm: StudyArm,
-    /// Study arm that the plan gave to the trial, if it belongs to a plan with arms.
-    pub planned_arm: Option<StudyArm>,
+    /// Study arm under which the trial counts: assigned by the plan or, without a plan, by the settings.
+    pub planned_arm: StudyArm,
     /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
     /// Information that the wizard was allowed to see on the console.
@@ -200,16 +200,9 @@ impl TrialStatistics {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
 
-    /// Why the trial does not fit the study arm that the plan gave to it, in words; `None` if the trial fits.
-    pub fn misfit(&self) -> Option<String> {
-        let planned = self.planned_arm.filter(|planned| *planned != self.study_arm)?;
-        let (planned, done) = (planned.title(), self.study_arm.title());
-        Some(format!("planned: {planned}; done: {done}, in which the wizard saw {}", self.wizard_sees.title()))
-    }
-
-    /// Whether signals could be sent in the trial.
+    /// Whether the trial was planned with signals.
     pub fn is_assisted(&self) -> bool {
-        self.condition != Condition::None
+        self.planned_arm != StudyArm::None
     }
 }
 

@@ -11,8 +11,9 @@ use crate::sources::{Source, sources, words};
 use crate::{EDGE, floor_of};
 
 /// Names that stand for the outside, for time or chance that no seed decides, or for an order that is not fixed. The maps of
-/// rustc-hash have no random seed: their order is the same in every run.
-const BANNED_BELOW_EDGE: [&str; 21] = [
+/// rustc-hash have no random seed: their order is the same in every run. How `rand` shuffles and samples may change with its
+/// version; `base::rng::shuffle` is ours.
+const BANNED_BELOW_EDGE: [&str; 22] = [
     "std::fs",
     "std::net",
     "std::env",
@@ -33,6 +34,7 @@ const BANNED_BELOW_EDGE: [&str; 21] = [
     "rand::rng",
     "rand::random",
     "thread_rng",
+    "rand::seq",
     "static mut",
 ];
 

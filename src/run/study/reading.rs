@@ -334,7 +334,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         is_planned: step.is_some(),
         condition: spec.trial.condition,
         study_arm: session.study_arm(),
-        planned_arm: step.and_then(|step| step.arm),
+        planned_arm: session.planned_arm(),
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
         acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),

@@ -6,7 +6,7 @@ use crate::measures::belief_basis::BeliefSource;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::TrialEndReason;
 use crate::study::arm_comparison::StudyArmComparison;
-use crate::study::effect::AssistanceEffect;
+use crate::study::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::SignalSenderResults;
 use crate::study::missing_trials::in_words;
@@ -101,6 +101,14 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     text += &figures.effects.first().map_or(String::new(), of_effect);
     text += &figures.arms.as_ref().map_or(String::new(), describe_arms);
+    for one in &figures.deviations {
+        text += &format!("counted in the planned condition: {}\n", one.describe());
+    }
+    if let Some(carried_out) = &figures.as_carried_out {
+        text += "by the conditions as carried out:\n";
+        text += &carried_out.effects.first().map_or(String::new(), of_effect);
+        text += &carried_out.arms.as_ref().map_or(String::new(), describe_arms);
+    }
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
@@ -202,10 +210,23 @@ fn of_effect(effect: &AssistanceEffect) -> String {
             100.0 * found.high
         )
     });
+    let [second, first] = effect.groups;
     format!(
-        "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n",
-        test.df[0], test.df[1], test.f, test.p, pearson.r
+        "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n  \
+         {} participants: {second} assisted in the second trial, {first} in the first{}\n",
+        test.df[0],
+        test.df[1],
+        test.f,
+        test.p,
+        pearson.r,
+        second + first,
+        left_out_of(&effect.left_out),
     )
+}
+
+/// Participants whom a test leaves out, as the end of a line.
+fn left_out_of(left_out: &[LeftOutParticipant]) -> String {
+    left_out_in_words(left_out).map_or(String::new(), |who| format!("; left out: {who}"))
 }
 
 /// A p value as text: "p = 0.123", or "p < 0.001".
@@ -216,10 +237,11 @@ fn p_value(p: f64) -> String {
 /// Contrasts of the primary outcome between study arms, as text.
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
-        "{} per press of the human, by condition (linear mixed model of {} trials of {}):\n",
+        "{} per press of the human, by condition (linear mixed model of {} trials of {}{}):\n",
         found.outcome.title(),
         found.trials,
-        count(found.participants as u64, "participant", "participants")
+        count(found.participants as u64, "participant", "participants"),
+        left_out_of(&found.left_out),
     );
     for one in &found.contrasts {
         let [low, high] = one.interval;

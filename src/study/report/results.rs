@@ -43,6 +43,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     // A study without the test, such as one with more than two conditions, has no result to compare with the paper's.
     if let Some(test) = figures.anova {
         rows.extend([
+            row("assistance: participants with both trials", test.n.to_string(), "14"),
             row("assistance: p of the mixed ANOVA", p_value(Some(test.p)), "0.014"),
             row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
             row("assistance: p of r", p_value(figures.pearson.map(|found| found.p)), "0.014"),

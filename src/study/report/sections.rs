@@ -123,7 +123,7 @@ fn counting(captions: &mut Captions, trials: &[TrialStatistics]) -> Markup {
         ("participant", |trial| trial.participant.render()),
         ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
         ("trial", |trial| count(trial.period.map(u64::from)).render()),
-        ("condition", |trial| trial.study_arm.title().render()),
+        ("condition", |trial| trial.planned_arm.title().render()),
         ("ended by", |trial| trial.ended.map_or(UNKNOWN, TrialEndReason::name).render()),
         ("presses, human", |trial| trial.human_presses.render()),
         ("robot", |trial| trial.robot_presses.render()),

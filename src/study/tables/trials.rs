@@ -98,7 +98,9 @@ fn kind_of_trial() -> Vec<TrialColumn> {
         plain("group", "", "as in participants", |t| t.group.as_ref().into()),
         plain("period", "", "1: the participant's first trial, 2: the second", |t| t.period.into()),
         plain("condition", "", "who sends signals: none, wizard or assistant", |t| t.condition.name().into()),
-        plain("assisted", "", "whether the wizard or the assistant sends signals", |t| t.is_assisted().into()),
+        plain("assisted", "", "whether the planned arm has signals, of the wizard or the assistant", |t| {
+            t.is_assisted().into()
+        }),
         plain("counts", "", "whether the trial counts; false: left out of all statistics", |t| t.counts().into()),
         plain("left_out", "", "reason for leaving the trial out", |t| t.left_out.as_ref().into()),
         plain(

@@ -53,7 +53,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         is_planned: true,
         condition,
         study_arm: StudyArm::from_settings(condition, ConceptName::TomCom, false),
-        planned_arm: None,
+        planned_arm: StudyArm::from_settings(condition, ConceptName::TomCom, false),
         aims: None,
         wizard_sees: WizardVisibility::State,
         acting: SignalSenderWithParameter::from_settings(

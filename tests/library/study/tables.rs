@@ -92,6 +92,7 @@ fn pair() -> [TrialStatistics; 2] {
         period: Some(2),
         condition: Condition::Wizard,
         study_arm: StudyArm::Wizard,
+        planned_arm: StudyArm::Wizard,
         left_out: None,
         order_s: Some(20.0),
         presses_per_order: Some(16.5),
@@ -103,6 +104,7 @@ fn pair() -> [TrialStatistics; 2] {
         period: Some(1),
         condition: Condition::None,
         study_arm: StudyArm::None,
+        planned_arm: StudyArm::None,
         errors: second.errors * 2,
         order_s: Some(31.25),
         ..second.clone()

@@ -77,9 +77,9 @@ pub(super) struct ReplayArgs {
     /// presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
-    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, which has another seed
-    /// (several: repeat the option). Without it, each half of the recordings is judged with the thresholds of the other
-    /// half.
+    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, of another participant
+    /// (several: repeat the option). Without it, each half of the participants is judged with the thresholds of the
+    /// other half.
     #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
     pub(super) choose_on: Vec<PathBuf>,
     /// Measure computing times of inference and planning.

@@ -44,6 +44,11 @@ impl GazeSample {
         GazeSample { x, y, confidence, device_ns: None, taken_ns: None }
     }
 
+    /// Session time at which the sample was taken, for a sample that arrived at `arrived`: no later than its arrival.
+    pub fn taken(&self, arrived: SessionTime) -> SessionTime {
+        self.taken_ns.map_or(arrived, |taken| taken.min(arrived))
+    }
+
     /// The gaze sample as it is recorded: position to a hundred thousandth of the display (15 um on a wall display, far
     /// below what any tracker resolves), confidence to a thousandth.
     pub fn rounded(self) -> GazeSample {

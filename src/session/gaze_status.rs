@@ -12,8 +12,11 @@ pub struct GazeStatus {
     pub arrived: Option<SessionTime>,
     /// The newest usable gaze sample that lies on the display, and its arrival time.
     pub last: Option<(SessionTime, GazeSample)>,
-    /// Time of the participant's last look at each location (gaze inside the location's area).
+    /// Time at which the last gaze sample inside each location's area was taken: the participant's last look there.
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
+    /// Locations in whose areas the latest gaze sample lies, as a bit set; empty if that sample is faulty or unusable, or
+    /// was taken while the kitchen was not on the display.
+    pub here: u32,
     /// Number of all gaze samples; samples with low confidence or outside the display are also counted in `unusable`.
     pub samples: u64,
     /// Number of gaze samples with too low a confidence or outside of the display.

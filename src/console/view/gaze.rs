@@ -110,7 +110,7 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
         }
     }
     let mut labels: Vec<Rect> = Vec::new();
-    let latest = session.gaze.last.map(|(at, _)| at);
+    let latest = session.gaze.last.map(|(at, sample)| sample.taken(at));
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());

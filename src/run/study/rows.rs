@@ -116,7 +116,7 @@ impl RowCollector {
             Event::ParticipantBelieves(witness) => self.witness = Some(witness.clone()),
             Event::Gaze(sample) if was_running && session.gaze.fault.is_none() => {
                 let sample = session.corrected(*sample);
-                let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
+                let taken = sample.taken(stamped.time);
                 let point = [sample.x, sample.y];
                 let inside = sample.confidence >= MIN_CONFIDENCE;
                 let nearest =

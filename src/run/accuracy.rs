@@ -44,7 +44,7 @@ pub fn measure(
     Ok(bench.summary(&steps))
 }
 
-/// The requests for advice that the assistant gets after the presses of a recording.
+/// The requests for advice that the assistant gets in a recording.
 fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
     let session = replay.log().session();
     let mut questions = Vec::new();

@@ -354,6 +354,11 @@ impl SessionFollower {
         self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
     }
 
+    /// Number of the human's presses so far whose judgement rests on a cost to go that is not proven.
+    pub fn unproven(&self) -> usize {
+        self.judged.iter().filter(|press| !press.verdict.is_proven).count()
+    }
+
     /// The number of the human's errors so far.
     pub fn errors(&self) -> usize {
         self.judged.iter().filter(|press| press.verdict.error).count()

@@ -177,6 +177,8 @@ pub struct ConsoleModel {
     pub display: Option<ParticipantDisplayHealth>,
     /// Session times of the human's errors, in ascending order.
     pub errors: Vec<SessionTime>,
+    /// Number of the human's presses whose judgement rests on a cost to go that is not proven.
+    pub unproven: u64,
     /// Judgement of each signal of the trial at the time when the signal was sent (hit, late or needless).
     pub signals: SignalJudge,
     /// History of the estimate of the participant's beliefs.
@@ -239,6 +241,7 @@ impl ConsoleModel {
             gaze_pairing: None,
             display: None,
             errors: Vec::new(),
+            unproven: 0,
             signals: SignalJudge::default(),
             belief: BeliefHistory::default(),
             belief_focus: None,

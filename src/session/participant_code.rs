@@ -331,6 +331,7 @@ pub const FILE_WORDS: &[&str] = &[
     "unassisted",
     "unblinded",
     "unknown",
+    "unproven",
     "wizard",
     "yes",
 ];

@@ -7,7 +7,7 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Regret, error",
         "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of both \
-         agents until all orders are served. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
+         agents until all orders are served, proven to be the least; presses for which the proof exceeded its budget are counted. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
          unless the cost of an active order fell and the excess is at most 2. In about 2 % of presses no press of the human \
          helps (least regret 1); the excess is counted from there. An ineffective press is judged like any other.",
     ),

@@ -66,6 +66,8 @@ pub struct TrialStatistics {
     pub errors: u64,
     /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
+    /// Number of human presses whose judgement rests on a cost to go that is not proven.
+    pub unproven: u64,
     /// Statistics of errors from false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<FalseBeliefErrors>,
     /// Number of orders served in the trial.

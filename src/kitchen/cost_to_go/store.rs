@@ -123,7 +123,7 @@ impl CostToGo {
         Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
     }
 
-    /// Cache key of a state's exact cost to go.
+    /// Cache key of a state's searched cost to go.
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &CompactState) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
     }

@@ -59,6 +59,7 @@ impl Live {
         let judged = self.engine.judged();
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
         self.model.errors.extend(new);
+        self.model.unproven += judged[self.judged..].iter().filter(|press| !press.verdict.is_proven).count() as u64;
         self.judged = judged.len();
         if let Some(viewing) = &mut self.viewing {
             viewing.view(events, &self.engine);

@@ -346,6 +346,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         robot_presses: u64::from(session.presses[Agent::Robot.index()]),
         errors: follower.errors() as u64,
         races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
+        unproven: follower.unproven() as u64,
         beliefs: None,
         orders: session.served.len() as u64,
         order_s: median(order_times(session)),

@@ -30,6 +30,12 @@ pub fn describe(figures: &StudySummary) -> String {
         percent(totals.error_rate),
         percent(totals.error_rate_human),
     );
+    if totals.unproven > 0 {
+        text += &format!(
+            "{} judged by a cost to go that is not proven to be the least\n",
+            count(totals.unproven, "press of the human is", "presses of the human are")
+        );
+    }
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &in_words(&figures.missing_trials).map_or(String::new(), |missing| format!("{missing}\n"));
     text += &match (totals.belief_related_errors, totals.sequences) {

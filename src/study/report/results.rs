@@ -25,6 +25,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         row("presses of both agents", totals.actions.to_string(), "8515"),
         row("presses per trial", number(per_trial, 0), "304"),
         row("errors of the human", totals.errors.to_string(), "587"),
+        row("presses of the human judged by unproven costs to go", totals.unproven.to_string(), UNKNOWN),
         row("errors per press of both", percent(totals.error_rate), "6.9 %"),
         row("errors per press of the human", percent(totals.error_rate_human), "about 11 to 13 %"),
         row("belief related errors", count(totals.belief_related_errors), "481"),

@@ -2,7 +2,8 @@
 
 use super::trial_column::{TrialColumn, plain};
 
-/// Columns for the arm as carried out, the planned arm, what the wizard could see, and the contents of signals.
+/// Columns for the arm as carried out, the planned arm, what the wizard could see, the contents of signals, and presses
+/// whose judgement is not proven.
 pub(super) fn arms() -> Vec<TrialColumn> {
     vec![
         plain(
@@ -29,6 +30,12 @@ pub(super) fn arms() -> Vec<TrialColumn> {
             "contents",
             "contents of the signals: a proposal of k presses has k, any other signal one",
             |t| t.signal_contents.into(),
+        ),
+        plain(
+            "unproven",
+            "presses",
+            "human presses whose judgement rests on a cost to go that is not proven to be the least",
+            |t| t.unproven.into(),
         ),
     ]
 }

@@ -68,6 +68,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         robot_presses: 100,
         errors,
         races: 0,
+        unproven: 0,
         beliefs: Some(FalseBeliefErrors {
             basis: BeliefSource::Recorded,
             errors: related,

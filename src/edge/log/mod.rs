@@ -19,7 +19,7 @@ use crate::session::TimestampedEvent;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub(super) use reader::read_header;
-pub use reader::{LogEnding, LogLine, LogReader, at_line};
+pub use reader::{LogEnding, LogLine, LogPlace, LogReader, at_line};
 pub use simulated_log::{SimulatedLogState, check_simulated};
 pub use writer::{LogWriter, check_continued, is_written_settings};
 

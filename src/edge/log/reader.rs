@@ -34,6 +34,40 @@ pub struct LogLine {
     pub stamped: TimestampedEvent,
 }
 
+/// Place of an event in the files of a recording, from which events can be read again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogPlace {
+    path: Arc<Path>,
+    /// Number of bytes of the file before the event's line.
+    offset: u64,
+}
+
+impl LogPlace {
+    /// Whether two events are in the same file of a recording.
+    pub fn is_in_file_of(&self, other: &LogPlace) -> bool {
+        self.path == other.path
+    }
+
+    /// Reads this number of events again, all of which are in one file and were read from there before.
+    ///
+    /// # Errors
+    /// The file cannot be read any more, or has changed.
+    pub fn read_again(&self, number: usize) -> FileResult<Vec<TimestampedEvent>> {
+        let unreadable =
+            |reason| FileError::unreadable(&self.path, reason, "the recording as it was when it was opened");
+        let mut file = open_regular(&self.path).map_err(unreadable)?;
+        file.seek(SeekFrom::Start(self.offset)).map_err(unreadable)?;
+        let mut input = BufReader::with_capacity(1 << 16, file);
+        let mut line = Vec::new();
+        let mut read = || {
+            line.clear();
+            input.by_ref().take(MAX_LINE as u64).read_until(b'\n', &mut line).map_err(unreadable)?;
+            serde_json::from_slice(&line).map_err(|error| unreadable(io::Error::new(io::ErrorKind::InvalidData, error)))
+        };
+        (0..number).map(|_| read()).collect()
+    }
+}
+
 /// How a recording ends, as far as its events have been read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogEnding {
@@ -53,7 +87,9 @@ pub struct LogReader {
     pub header: LogHeader,
     /// Kitchen that the recording's header describes.
     pub kitchen: Arc<Kitchen>,
-    path: PathBuf,
+    path: Arc<Path>,
+    /// Number of bytes of the file before the next line.
+    offset: u64,
     /// Previous part of the recording, until all of its continued events are read.
     before: Option<Box<LogReader>>,
     input: BufReader<File>,
@@ -98,7 +134,8 @@ impl LogReader {
         let layout = (Path::new(&header.layout.path), header.layout.text.clone());
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
-        Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
+        let (path, offset, partial) = (Arc::from(path), line.len() as u64, Vec::new());
+        Ok(LogReader { header, kitchen, path, offset, before, input, number: 1, next_seq, partial, ended: false })
     }
 
     /// The first number in the header that is outside the range which settings files may have today; `None` if there is
@@ -141,6 +178,7 @@ impl LogReader {
                 _ => Ok(None),
             };
         }
+        self.offset += self.partial.len() as u64;
         self.partial.pop();
         self.number += 1;
         let bytes = std::mem::take(&mut self.partial);
@@ -201,8 +239,16 @@ impl LogReader {
     /// Paths of the logs of all parts of the recording, first part first; to be called before any event was read.
     pub fn logs(&self) -> Vec<PathBuf> {
         let mut logs = self.before.as_ref().map_or_else(Vec::new, |before| before.logs());
-        logs.push(self.path.clone());
+        logs.push(self.path.to_path_buf());
         logs
+    }
+
+    /// Place of the next event.
+    pub fn place(&self) -> LogPlace {
+        match self.before.as_ref().filter(|before| before.events() < self.next_seq) {
+            Some(before) => before.place(),
+            None => LogPlace { path: self.path.clone(), offset: self.offset },
+        }
     }
 
     /// Number of events that the reader has read so far.

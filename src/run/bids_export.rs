@@ -8,8 +8,8 @@ use serde::Serialize;
 use super::kept_cost::KeptCost;
 use super::{consents, standing};
 use crate::analysis::bids::{
-    BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
-    RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
+    BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, LongTable, LongTableFacts, PressOutcome,
+    QuestionnairePhenotypes, RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
 use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
@@ -71,15 +71,9 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let mut sessions: BTreeMap<String, Vec<BidsSessionRow>> = BTreeMap::new();
     let mut told = Vec::new();
     for one in &planned {
-        let (files, row, counts) = read(one, with_words, &mut cost, &mut phenotypes)?;
-        let task = letters_and_digits(&row.1);
-        let (sub, ses) = (format!("sub-{}", one.label), format!("ses-{}", one.session));
-        let place = format!("{sub}/{ses}/beh/{sub}_{ses}_task-{task}");
-        for file in files {
-            tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
-        }
-        sessions.entry(one.label.clone()).or_default().push(row.0);
-        told.push(BidsRecording { recording: one.recording.clone(), place, rows: counts });
+        let (row, recording) = read(one, with_words, &mut cost, &mut phenotypes, &tree)?;
+        sessions.entry(one.label.clone()).or_default().push(row);
+        told.push(recording);
         done();
     }
     for (label, rows) in &sessions {
@@ -139,18 +133,26 @@ fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabelMap) -> Vec<Plan
     all.into_iter().map(place).collect()
 }
 
-/// Reads a recording: its files, its row of the table of sessions (with the kitchen's name), and its numbers of rows.
+/// Reads a recording and writes its files. Returns its row of the table of sessions.
 fn read(
     one: &Planned,
     with_words: bool,
     cost: &mut KeptCost,
     phenotypes: &mut QuestionnairePhenotypes,
-) -> FileResult<(Vec<BidsFile>, (BidsSessionRow, String), BidsRowCounts)> {
+    tree: &BidsTree,
+) -> FileResult<(BidsSessionRow, BidsRecording)> {
     let mut log = LogReader::open(&one.recording)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
     let cost = cost.for_kitchen(&kitchen);
     let (mut judge, mut tables) = (PressJudge::new(kitchen.clone()), RecordingTables::new(&session, with_words));
+    let (sub, ses) = (format!("sub-{}", one.label), format!("ses-{}", one.session));
+    let place = format!("{sub}/{ses}/beh/{sub}_{ses}_task-{}", letters_and_digits(&kitchen.name));
+    let begin = |table: LongTable| {
+        let (name, heading) = tables.long_table(table);
+        Ok((table, tree.begin(&format!("{place}_{name}"), heading)?))
+    };
+    let mut long = LongTable::ALL.into_iter().map(begin).collect::<FileResult<Vec<_>>>()?;
     while let Some(line) = log.next_line()? {
         let change = apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?.change;
         let error = judge.note(cost, line.stamped.time, &change).map(|verdict| verdict.error);
@@ -163,6 +165,11 @@ fn read(
             _ => None,
         };
         tables.note(&line.stamped, &session, outcome);
+        for row in tables.take_rows() {
+            if let Some((_, file)) = long.iter_mut().find(|(table, _)| *table == row.table) {
+                file.add(row)?;
+            }
+        }
         if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
             phenotypes.note(&one.label, &one.session, &session);
         }
@@ -172,8 +179,15 @@ fn read(
     let name = one.recording.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let labels = (one.session.as_str(), name.as_str());
     let row = BidsSessionRow::new(labels, &one.header, &session, tables.ended(), [is_complete, counts]);
-    let (files, rows) = tables.into_files(&session);
-    Ok((files, (row, kitchen.name.clone()), rows))
+    let mut facts = [LongTableFacts::default(); 3];
+    for (facts, (_, file)) in facts.iter_mut().zip(long) {
+        *facts = file.finish()?;
+    }
+    let (files, rows) = tables.into_files(&session, &facts);
+    for file in files {
+        tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
+    }
+    Ok((row, BidsRecording { recording: one.recording.clone(), place, rows }))
 }
 
 fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {

@@ -196,6 +196,7 @@ pub const TABLE_WORDS: &[&str] = &[
     "truth",
     "tutorial",
     "unit",
+    "unproven",
     "useful_signals",
     "useless",
     "useless_signals",
@@ -331,7 +332,6 @@ pub const FILE_WORDS: &[&str] = &[
     "unassisted",
     "unblinded",
     "unknown",
-    "unproven",
     "wizard",
     "yes",
 ];

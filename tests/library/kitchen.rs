@@ -291,11 +291,12 @@ fn of_eight_contents(places: usize, plate: &str) -> Result<Kitchen, String> {
     let accepts = format!("accepts = [\"{plate}\"]");
     let mut layout = read("tests/kitchens/tiny.toml").replace("accepts = [\"dishes\"]", &accepts);
     layout = layout.replace("ingredient = \"salami\"", "ingredient = \"cheese\"");
+    layout = layout.replace("width_m = 1.5", "width_m = 6.0").replace("height_m = 0.84375", "height_m = 3.375");
     for (index, key) in (0..places).zip("dfghjkvbnm".chars()) {
         let column = index as f64;
         layout += &format!(
             "\n[[place]]\nname = \"shelf_{index}\"\naccepts = [\"anything\"]\n\
-             display = {{ x = {:.2}, y = 0.7, w = 0.05, h = 0.05 }}\n\
+             display = {{ x = {:.2}, y = 0.62, w = 0.05, h = 0.05 }}\n\
              button = {{ at_m = [{:.2}, 0.0], key = \"{key}\" }}\n",
             0.1 + 0.08 * column,
             0.3 + 0.05 * column,

@@ -151,13 +151,13 @@ fn thresholds_are_judged_on_the_other_half_of_the_participants() {
     let kitchen = kitchen("sushi");
     let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let zero = "0".repeat(64);
-    let one = |estimates: &str| {
+    let one = |doubted: &str, estimates: &str| {
         let quiet = ".".repeat(60);
-        let text = [&format!("{quiet}EEw."), &".".repeat(64), &format!("{}{estimates}", "0".repeat(60)), &zero];
+        let text = [&format!("{quiet}EEw."), &".".repeat(64), &format!("{doubted:0<60}{estimates}"), &zero];
         trial(&kitchen, place, recipe, text.map(String::as_str))
     };
-    // The first participant's episodes are found from 0.7 on, the second's from 0.2 on.
-    let (high, low) = (one("0700"), one("0200"));
+    // The first participant's episodes are found from 0.7 on, and right beliefs are doubted with 0.3; the second's from 0.2 on.
+    let (high, low) = (one("0333", "0700"), one("", "0200"));
     let flags = |trials: &[TrialBeliefs], choice: ThresholdChoice| {
         FalseBeliefDetection::from_trials(&kitchen, trials, Some(choice)).flags
     };

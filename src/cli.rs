@@ -44,6 +44,7 @@ use crate::analysis::kitchen_summary::{self, KitchenSummary};
 use crate::analysis::recording_summary::RecordingSummary;
 use crate::analysis::{event_lines, timing_summary};
 use crate::base::number_range::OutOfRange;
+use crate::base::printable::printable;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
@@ -66,7 +67,7 @@ const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 pub fn main() -> ExitCode {
     // Lines of messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
-    let cli = Cli::try_parse().unwrap_or_else(|error| command_hint::add(error).exit());
+    let cli = Cli::try_parse().unwrap_or_else(|error| command_hint::add(printable_error(error)).exit());
     let command = cli.command.unwrap_or(CliCommand::Operate(operate::OperateArgs {
         session: None,
         recording: None,
@@ -105,6 +106,14 @@ pub fn main() -> ExitCode {
     };
     put_error(report);
     ExitCode::from(code)
+}
+
+/// The message about wrong arguments, in which their control characters are escaped. The message quotes arguments in many
+/// places, so it is made again, from escaped arguments.
+fn printable_error(error: clap::Error) -> clap::Error {
+    let escaped = std::env::args_os().map(|argument| printable(&argument.to_string_lossy()).into_owned());
+    // Arguments that are wrong only because they are not UTF-8 are not quoted.
+    Cli::try_parse_from(escaped).err().unwrap_or(error)
 }
 
 fn show_plan(args: &PlanArgs) -> Result<(), Failure> {

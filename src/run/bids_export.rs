@@ -11,6 +11,7 @@ use crate::analysis::bids::{
     BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
     RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
+use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
 use crate::edge::file_error::{FileError, FileResult};
@@ -26,7 +27,7 @@ use crate::session::{LogHeader, apply};
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
     /// Folder of the BIDS data set.
-    pub folder: PathBuf,
+    pub folder: PathText,
     /// Participants' codes that are no valid BIDS labels, each with the label that replaces the code.
     pub changed_codes: Vec<(String, String)>,
     /// The exported recordings with their places in the data set.
@@ -41,7 +42,7 @@ pub struct BidsSummary {
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsRecording {
     /// Folder of the recording.
-    pub recording: PathBuf,
+    pub recording: PathText,
     /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
     /// Numbers of rows in the recording's BIDS tables.
@@ -79,7 +80,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
             tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
         }
         sessions.entry(one.label.clone()).or_default().push(row.0);
-        told.push(BidsRecording { recording: one.recording.clone(), place, rows: counts });
+        told.push(BidsRecording { recording: one.recording.clone().into(), place, rows: counts });
         done();
     }
     for (label, rows) in &sessions {
@@ -92,7 +93,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let root = dataset_files(&plans, &participants(&planned)?, with_words);
     asked.iter().chain(&root).try_for_each(|file| tree.write(file))?;
     Ok(BidsSummary {
-        folder: folder.to_path_buf(),
+        folder: folder.to_path_buf().into(),
         changed_codes: labels.changed(),
         recordings: told,
         questionnaires: asked.len() / 2,

@@ -1,12 +1,13 @@
 //! Command `tomcom plan`: participants, groups, progress and next recordings of a study.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{slot_name, stands};
+use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::KitchenWithSources;
@@ -69,7 +70,7 @@ pub struct FrozenPlanSummary {
     /// Number of recordings of the plan that existed already.
     pub recordings_before: u64,
     /// Path of the frozen plan's file.
-    pub file: PathBuf,
+    pub file: PathText,
 }
 
 impl FrozenPlanSummary {
@@ -103,7 +104,7 @@ pub fn freeze(
     let recordings_before = steps.map(|step| step.recordings.len() as u64).sum();
     let frozen = FrozenPlan::new(study, [&kitchen.layout.text, &kitchen.recipes.text], recordings_before);
     let digest = frozen_file::freeze(file, &frozen)?;
-    Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf() })
+    Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf().into() })
 }
 
 /// Progress of the study as text for the terminal.

@@ -1,6 +1,6 @@
 //! Commands about raters' codes (`tomcom codes`) and the deletion of a participant's data (`tomcom forget`).
 
-use std::io::{BufRead, IsTerminal};
+use std::io::{BufRead, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -16,6 +16,9 @@ use crate::run::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
 use crate::session::participant_code;
 use crate::session::settings::is_code;
+
+/// Longest answer to a question, in bytes; no code of a participant is as long.
+const MAX_ANSWER: u64 = 1 << 12;
 
 /// Prints raters' codes of errors, their agreement, and where they disagree.
 ///
@@ -217,7 +220,7 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
         args.code
     ));
     let mut answer = String::new();
-    input.lock().read_line(&mut answer)?;
+    input.lock().take(MAX_ANSWER).read_line(&mut answer)?;
     Ok(answer.trim() == args.code)
 }
 

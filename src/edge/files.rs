@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::file_error::{FileError, FileResult, missing, read_text};
+use super::file_error::{FileError, FileResult, missing, read_regular, read_text};
 use super::key_file::check_keys;
 use super::language::read_words;
 use super::overwrite;
@@ -61,11 +61,16 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         spec.display.language = language.to_string();
     }
     let folder = path.parent().unwrap_or(Path::new("."));
-    if let Some(file) = &mut spec.tracker.file {
-        *file = folder.join(&*file).display().to_string();
-    }
-    if let Some(library) = spec.lsl.as_mut().and_then(|lsl| lsl.library.as_mut()) {
-        *library = folder.join(&*library).display().to_string();
+    let library = spec.lsl.as_mut().and_then(|lsl| lsl.library.as_mut());
+    for (key, file) in [("tracker.file", spec.tracker.file.as_mut()), ("lsl.library", library)] {
+        let Some(file) = file else { continue };
+        // A recording's header has its settings as text.
+        let beside = folder.join(&*file).into_os_string().into_string().map_err(|beside| {
+            let found = format!("{}, no UTF-8", Path::new(&beside).display());
+            let remedy = "a session file in a folder whose path is UTF-8".to_string();
+            FileError::at(path, &text, place_of(&text, key, 0), found, remedy)
+        })?;
+        *file = beside;
     }
     if let Some(file) = &spec.human_model {
         if spec.human != HumanModel::default() {
@@ -123,7 +128,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
 fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<RecordedFile>> {
     let Some(name) = &spec.console.keys else { return Ok(None) };
     let path = session.parent().unwrap_or(Path::new(".")).join(name);
-    let keys = std::fs::read_to_string(&path).map_err(|reason| {
+    let keys = read_regular(&path).map_err(|reason| {
         let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
         missing(session, text, ("console.keys", 0, name), reason, remedy)
     })?;
@@ -272,7 +277,7 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileRes
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
     let recipes_path = folder.join(layout.recipes.get_ref());
-    let recipes_text = std::fs::read_to_string(&recipes_path).map_err(|reason| {
+    let recipes_text = read_regular(&recipes_path).map_err(|reason| {
         let found = format!("recipes = \"{}\", which cannot be read: {reason}", layout.recipes.get_ref());
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)

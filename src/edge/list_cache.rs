@@ -15,7 +15,7 @@ use std::time::UNIX_EPOCH;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::file_error::open_regular;
+use super::file_error::{open_regular, read_regular};
 use super::log::LOG_NAME;
 use super::replace_file;
 use crate::session::settings::Condition;
@@ -160,7 +160,7 @@ impl ListCache {
     /// The cache in this folder. Lines of the cache file that cannot be read are skipped.
     pub fn in_folder(folder: &Path) -> ListCache {
         let path = folder.join("lists.jsonl");
-        let text = open_regular(&path).and_then(io::read_to_string).unwrap_or_default();
+        let text = read_regular(&path).unwrap_or_default();
         let lines = text.lines().filter_map(|line| serde_json::from_str::<KeptLine>(line).ok());
         let kept = lines.map(|line| (line.log, line.figures)).collect();
         ListCache { path: Some(path), kept }

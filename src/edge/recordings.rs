@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, BufRead, BufReader, ErrorKind};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, read_header, ruling};
+use super::log::{LOG_NAME, MAX_LINE, first_line, read_header, ruling};
 use crate::session::header::{FORMAT, PreviousPart};
 use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
@@ -77,10 +77,9 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     for path in &found {
         let log = path.join(LOG_NAME);
         let file = open_regular(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
-        let mut line = String::new();
         // An invalid header is reported when the recording is read.
-        let read = BufReader::new(file).read_line(&mut line).ok();
-        let header = read.and_then(|_| serde_json::from_str::<PartHeaderGlance>(&line).ok());
+        let line = first_line(&mut BufReader::new(file)).unwrap_or_default();
+        let header = serde_json::from_slice::<PartHeaderGlance>(&line).ok();
         continued.extend(header.and_then(|header| header.continues).map(|before| folder.join(before.recording)));
     }
     found.retain(|path| !continued.contains(path));
@@ -127,7 +126,7 @@ impl Part {
         let mut line = Vec::new();
         let mut next = |line: &mut Vec<u8>| {
             line.clear();
-            let read = lines.read_until(b'\n', line);
+            let read = lines.by_ref().take(MAX_LINE as u64).read_until(b'\n', line);
             let read = read.map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
             // A last line of the log without a line end was cut off, or is still being written.
             Ok::<bool, FileError>(read > 0 && line.last() == Some(&b'\n'))

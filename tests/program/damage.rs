@@ -281,6 +281,77 @@ fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
 
 #[test]
 #[serial]
+fn what_is_no_regular_file_of_usual_size_is_refused_by_every_reader_of_settings() {
+    let home = folder("no-file");
+    let pipe = home.join("pipe.toml").display().to_string();
+    if !Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
+        eprintln!("skipped: pipes need mkfifo");
+        return;
+    }
+    let large = home.join("large.toml").display().to_string();
+    File::create(&large).and_then(|file| file.set_len((16 << 20) + 1)).expect("a sparse file");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let whole = format!("layout = \"{root}/layouts/sushi.toml\"\n");
+    let study = "[plan]\nname = \"study\"\nparticipants = 2\nconditions = [\"none\"]\n";
+    let recording = home.join("recording").display().to_string();
+    let simulated = tomcom(&["simulate", &short_session(&home)[0], "--out", &recording]);
+    assert!(simulated.status.success(), "{simulated:?}");
+    let recording = format!("{recording}/seed3-S001");
+    let layout = fs::read_to_string(format!("{root}/layouts/sushi.toml")).expect("a layout");
+    for (place, says) in [
+        (pipe.as_str(), "it is no regular file"),
+        ("/dev/zero", "it is no regular file"),
+        (large.as_str(), "it has more than 16 MB"),
+    ] {
+        let file = |name: &str, text: String| {
+            let path = home.join(name);
+            fs::write(&path, text).expect("written");
+            path.display().to_string()
+        };
+        let session = |name: &str, text: String| file(&format!("session-{name}.toml"), text);
+        let with_recipes = layout.replacen("recipes = \"../recipes/sushi.toml\"", &format!("recipes = \"{place}\""), 1);
+        assert_ne!(with_recipes, layout);
+        let planned = format!("{whole}{study}");
+        let cases: Vec<Vec<String>> = [
+            vec!["keys", place],
+            vec!["kitchen", place],
+            vec!["kitchen", &file("layout.toml", with_recipes)],
+            vec!["keys", &session("layout", format!("layout = \"{place}\"\n"))],
+            vec!["keys", &session("keys", format!("{whole}[console]\nkeys = \"{place}\"\n"))],
+            vec!["keys", &session("language", format!("{whole}[display]\nlanguage = \"{place}\"\n"))],
+            vec!["keys", &session("model", format!("human_model = \"{place}\"\n{whole}"))],
+            vec![
+                "plan",
+                &session("asks", format!("{planned}[[plan.questionnaire]]\nfile = \"{place}\"\nafter = [1]\n")),
+            ],
+            vec!["plan", &session("tutorial", format!("{planned}tutorial = \"{place}\"\n"))],
+            vec!["robustness", place],
+            vec!["robustness", &file("battery.toml", format!("session = \"{place}\"\n[[cohort]]\nname = \"a\"\n"))],
+            vec!["codes", &recording, "--import", place],
+            vec!["study", &recording, "--frozen", place],
+        ]
+        .into_iter()
+        .map(|case| case.into_iter().map(str::to_string).collect())
+        .collect();
+        for arguments in cases {
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let output = end(&arguments.join(" "), start(&arguments));
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.code() == Some(2) && told.contains(says), "{arguments:?}: {told}");
+        }
+    }
+    for arguments in [
+        &["arms", "sessions/study.toml", "--from", "/dev/zero"][..],
+        &["study", "--from", &pipe, "--out", &home.join("study").display().to_string()],
+    ] {
+        let output = end(&arguments.join(" "), start(arguments));
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && told.contains("it is no regular file"), "{arguments:?}: {told}");
+    }
+}
+
+#[test]
+#[serial]
 fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
     let home = folder("stream");
     let [session, out] = short_session(&home);

@@ -12,6 +12,8 @@ use crate::edge::file_error::open_regular;
 pub const LOCK_NAME: &str = "lock";
 /// Prefix of the lock file's name while raters' codes are written; the names of the raters follow the prefix.
 pub const CODES_LOCK: &str = "lock-codes-";
+/// Number of bytes of a lock file that are read; process id and address are shorter.
+const MAX_BYTES: u64 = 1 << 12;
 /// Number of attempts to take the lock again because the lock's holder removed the file meanwhile.
 const ATTEMPTS: usize = 8;
 
@@ -37,7 +39,7 @@ impl LockHolder {
     fn read(file: &mut File) -> LockHolder {
         let mut text = String::new();
         // A lock file that cannot be read still counts as held.
-        let _ = file.read_to_string(&mut text);
+        let _ = file.take(MAX_BYTES).read_to_string(&mut text);
         let mut lines = text.lines();
         let pid = lines.next().and_then(|line| line.trim().parse().ok());
         LockHolder { pid, viewers: lines.next().map(str::to_string) }
@@ -148,48 +150,47 @@ pub fn is_same(_: &File, path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::temporary::new_folder;
 
     #[test]
     fn a_lock_tells_who_writes_and_where_viewers_look_on_until_it_is_dropped() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-lock-{}", std::process::id())).unwrap();
-        assert_eq!(RecordingLock::holder(&folder), None);
-        let mut lock = RecordingLock::take(&folder).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        assert_eq!(RecordingLock::holder(folder), None);
+        let mut lock = RecordingLock::take(folder).unwrap();
         let pid = Some(std::process::id());
-        assert_eq!(RecordingLock::holder(&folder), Some(LockHolder { pid, viewers: None }));
+        assert_eq!(RecordingLock::holder(folder), Some(LockHolder { pid, viewers: None }));
         lock.announce("rerun+http://127.0.0.1:9876/proxy").unwrap();
         let viewers = Some("rerun+http://127.0.0.1:9876/proxy".to_string());
-        assert_eq!(RecordingLock::holder(&folder), Some(LockHolder { pid, viewers }));
+        assert_eq!(RecordingLock::holder(folder), Some(LockHolder { pid, viewers }));
         drop(lock);
-        assert_eq!(RecordingLock::holder(&folder), None);
+        assert_eq!(RecordingLock::holder(folder), None);
         fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
-        assert_eq!(RecordingLock::holder(&folder), None, "what a killed program left behind is held by nobody");
-        fs::remove_dir_all(folder).unwrap();
+        assert_eq!(RecordingLock::holder(folder), None, "what a killed program left behind is held by nobody");
     }
 
     #[test]
     fn one_program_at_a_time_codes_as_one_rater() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-codes-lock-{}", std::process::id())).unwrap();
-        let first = RecordingLock::take_for_codes(&folder, &["R1"]).unwrap();
-        let refusal = RecordingLock::take_for_codes(&folder, &["R1"]).unwrap_err().to_string();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let first = RecordingLock::take_for_codes(folder, &["R1"]).unwrap();
+        let refusal = RecordingLock::take_for_codes(folder, &["R1"]).unwrap_err().to_string();
         assert!(refusal.contains("codes its errors as R1"), "{refusal}");
-        let _other = RecordingLock::take_for_codes(&folder, &["R2"]).unwrap();
-        let _recording = RecordingLock::take(&folder).unwrap();
+        let _other = RecordingLock::take_for_codes(folder, &["R2"]).unwrap();
+        let _recording = RecordingLock::take(folder).unwrap();
         drop(first);
-        drop(RecordingLock::take_for_codes(&folder, &["R1"]).unwrap());
-        fs::remove_dir_all(folder).unwrap();
+        drop(RecordingLock::take_for_codes(folder, &["R1"]).unwrap());
     }
 
     #[cfg(unix)]
     #[test]
     fn a_file_that_a_link_leads_to_is_left_as_it_is() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-lock-link-{}", std::process::id())).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
         let other = folder.join("notes.txt");
         fs::write(&other, "of somebody else").unwrap();
         std::os::unix::fs::symlink(&other, folder.join(LOCK_NAME)).unwrap();
-        let refusal = RecordingLock::take(&folder).unwrap_err().to_string();
+        let refusal = RecordingLock::take(folder).unwrap_err().to_string();
         assert!(refusal.contains("a link"), "{refusal}");
         assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
-        fs::remove_dir_all(folder).unwrap();
     }
 }

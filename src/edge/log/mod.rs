@@ -18,10 +18,10 @@ use std::path::{Path, PathBuf};
 use crate::session::TimestampedEvent;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
-pub(super) use reader::read_header;
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
+pub(super) use reader::{MAX_LINE, first_line, read_header};
 pub use simulated_log::{SimulatedLogState, check_simulated};
-pub use writer::{LogWriter, check_continued, is_written_settings};
+pub use writer::{LogWriter, check_continued, is_begun, is_written_settings};
 
 /// File name of the log in the folder of a recording.
 pub const LOG_NAME: &str = "events.jsonl";

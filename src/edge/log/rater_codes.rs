@@ -3,12 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::RecordingWriteError;
 use crate::base::words::count;
-use crate::edge::file_error::{FileError, FileResult, open_regular};
+use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::edge::overwrite;
 use crate::edge::replace_file;
 use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
@@ -42,9 +42,8 @@ pub struct RaterCodeRow {
 /// The file exists but cannot be read, or contains something that cannot be about this recording.
 pub fn read(folder: &Path, rater: &str, codable: &CodableErrors) -> FileResult<RaterCodes> {
     let path = path(folder, rater);
-    let mut bytes = Vec::new();
-    match open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes)) {
-        Ok(_) => {}
+    let bytes = match read_bytes(&path, MAX_TEXT) {
+        Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(RaterCodes::default()),
         Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
     };
@@ -105,7 +104,7 @@ pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), Recor
 /// # Errors
 /// The file cannot be read, or is no export of raters' codes.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
-    let bytes = fs::read(path);
+    let bytes = read_bytes(path, MAX_TEXT);
     let bytes =
         bytes.map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))?;
     let text = text_of(path, bytes)?;

@@ -17,7 +17,7 @@ use crate::session::ranges;
 use crate::session::{Event, LogHeader, Session, TimestampedEvent};
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
-const MAX_LINE: usize = 1 << 24;
+pub const MAX_LINE: usize = 1 << 24;
 /// Number of bytes at the end of a log among which the last event is searched.
 const TAIL: u64 = 1 << 16;
 /// Largest number of parts of a recording.
@@ -292,7 +292,7 @@ pub(super) fn ends_in_header(line: &[u8]) -> bool {
 }
 
 /// The first line of a log, including its line end if it has one.
-pub(super) fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
+pub fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }

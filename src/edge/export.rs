@@ -263,6 +263,9 @@ fn begin_table(path: &Path, table: CsvTable) -> io::Result<Replacement> {
 /// Removes the folder of temporary files that an analysis has left. Files that this program did not write stay, and
 /// then the folder stays, too.
 fn remove_parts(folder: &Path) -> io::Result<()> {
+    if fs::symlink_metadata(folder).is_ok_and(|data| !data.is_dir()) {
+        return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is no folder, but a link or a file"));
+    }
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(reason) if reason.kind() == io::ErrorKind::NotFound => return Ok(()),

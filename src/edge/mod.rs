@@ -44,7 +44,7 @@ pub mod pool_file;
 pub mod power_files;
 pub mod pupil;
 pub mod recordings;
-mod replace_file;
+pub mod replace_file;
 #[cfg(feature = "rerun")]
 pub mod rerun;
 pub mod rescue;
@@ -54,7 +54,6 @@ pub mod rrd;
 pub mod stream;
 pub mod stream_head;
 pub mod study_part_file;
-pub mod temporary;
 pub mod terminal;
 mod tracker_folder;
 pub mod training;

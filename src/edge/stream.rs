@@ -143,13 +143,12 @@ mod tests {
     use super::*;
     use crate::base::time::SessionTime;
     use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
-    use crate::edge::temporary::new_folder;
     use crate::scene::EntityData;
 
     #[test]
     fn what_is_told_is_in_the_file_when_the_stream_is_closed_and_a_taken_port_is_no_trouble() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-stream-{}", std::process::id())).unwrap();
-        let path = folder.join(RRD_NAME);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(RRD_NAME);
         let other = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let taken = other.local_addr().unwrap();
         let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string() };

@@ -152,9 +152,11 @@ impl ForgetWalk {
 
     /// Searches recordings that were rescued from a folder below the folder `home`.
     fn enter_rescued(&mut self, home: &Path, temporary: &Path) {
+        // The note names the original folder as text.
+        let home = PathBuf::from(home.to_string_lossy().into_owned());
         for (folder, _) in entries(temporary).unwrap_or_default().iter().filter(is_rescued) {
             for (recording, kind) in entries(folder).unwrap_or_default() {
-                let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(home));
+                let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(&home));
                 if kind == EntryKind::Folder && is_from_here {
                     // The folder of rescued recordings is also removed once it is empty.
                     self.own_folders.push(folder.clone());
@@ -214,7 +216,7 @@ fn is_rescued((path, kind): &&(PathBuf, EntryKind)) -> bool {
 /// Whether this file is a Rerun stream that `tomcom review` left in the system's folder for temporary files.
 fn is_stream((path, kind): &(PathBuf, EntryKind)) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    *kind == EntryKind::File && name.starts_with("tomcom-") && (name.ends_with(".rrd") || name.ends_with(".rrd.new"))
+    *kind == EntryKind::File && name.starts_with("tomcom-") && replaced_name(&name).ends_with(".rrd")
 }
 
 fn canonical(path: &Path) -> PathBuf {

@@ -5,9 +5,6 @@ use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-#[cfg(unix)]
-use crate::edge::temporary::new_file;
-
 /// Length of the log's end that every check compares with the guarding copy, in bytes (some seconds of gaze).
 const TAIL: u64 = 64 << 10;
 /// Length of the further stretch that every check compares with the guarding copy, in bytes; consecutive checks go
@@ -52,7 +49,7 @@ impl GuardedFile {
 
     /// A log file with a guarding copy, which is in the system's folder for temporary files, or else in this folder.
     pub(super) fn guarded(file: File, folder: &Path) -> GuardedFile {
-        let copy = nameless(&std::env::temp_dir()).or_else(|_| nameless(folder)).ok();
+        let copy = tempfile::tempfile().or_else(|_| tempfile::tempfile_in(folder)).ok();
         GuardedFile { copy, ..GuardedFile::unguarded(file) }
     }
 
@@ -130,32 +127,18 @@ impl GuardedFile {
     }
 }
 
-/// A new file without a name, which only this process can reach.
-#[cfg(unix)]
-fn nameless(folder: &Path) -> io::Result<File> {
-    let (path, file) = new_file(folder, &format!(".tomcom-{}", std::process::id()), "")?;
-    std::fs::remove_file(path).map(|()| file)
-}
-
-/// Files without a name are not available on this operating system.
-#[cfg(not(unix))]
-fn nameless(_folder: &Path) -> io::Result<File> {
-    Err(io::Error::from(io::ErrorKind::Unsupported))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::temporary::new_folder;
 
     /// Test: damages a guarded log of this length, and compares the reported damage and the saved log with the expected
     /// ones.
     fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
-        let name_of_folder = format!("tomcom-guarded-{}-{name}", std::process::id());
-        let folder = new_folder(&std::env::temp_dir(), &name_of_folder).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
         let path = folder.join("log");
         let file = File::options().read(true).write(true).create_new(true).open(&path).unwrap();
-        let mut log = GuardedFile::guarded(file, &folder);
+        let mut log = GuardedFile::guarded(file, folder);
         log.write_all(&vec![b'x'; bytes]).unwrap();
         assert_eq!(log.damage(), None);
         harm(&path);
@@ -168,8 +151,7 @@ mod tests {
         let saved = folder.join("saved");
         log.save(damage.is_some(), &mut File::create(&saved).unwrap()).unwrap();
         assert_eq!(std::fs::read(saved).unwrap(), [&vec![b'x'; bytes][..], b"more\n"].concat(), "{name}");
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "{name}: the copy has no name");
-        std::fs::remove_dir_all(folder).unwrap();
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 2, "{name}: the copy has no name");
     }
 
     fn overwrite(path: &Path, at: u64, with: &[u8]) {

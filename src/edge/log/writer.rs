@@ -1,6 +1,6 @@
 //! Writer of recordings: creates the folder, the settings file and the log, and appends events to the log.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -12,6 +12,7 @@ use super::lock::{LOCK_NAME, RecordingLock, is_same};
 use super::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::base::time::SessionTime;
 use crate::edge::file_error::read_regular;
+use crate::edge::replace_file::{self, new_beside, replaced_name};
 use crate::edge::rescue::{RescueNote, new_rescue_folder};
 use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 
@@ -73,15 +74,13 @@ impl LogWriter {
         let path = folder.join(LOG_NAME);
         let failed = |reason| RecordingWriteError::unwritable(&path, reason);
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
-        fs::write(folder.join(SETTINGS_NAME), &settings).map_err(failed)?;
-        let begun = folder.join(format!("{LOG_NAME}.new"));
+        replace_file::put(&folder.join(SETTINGS_NAME), settings.as_bytes()).map_err(failed)?;
         // The log file is opened for reading, too, since it has to be read if its folder vanishes.
-        let file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&begun).map_err(failed)?;
+        let (file, begun) = new_beside(&path).map_err(failed)?.into_parts();
         let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
         let mut out = BufWriter::with_capacity(1 << 16, file);
         write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
-        fs::rename(&begun, &path).map_err(failed)?;
+        begun.persist(&path).map_err(|error| failed(error.error))?;
         let home = fs::canonicalize(&folder).unwrap_or_else(|_| folder.clone());
         Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, home, lock })
     }
@@ -149,19 +148,15 @@ impl LogWriter {
         let elsewhere = new_rescue_folder().ok()?.join(name);
         self.save_to(&elsewhere, is_damaged).ok()?;
         // The recording is saved by now; the note only helps to find its original place later.
-        let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
+        let _ = RescueNote { home: self.home.clone().into() }.write(&elsewhere);
         Some(elsewhere)
     }
 
     fn save_to(&mut self, folder: &Path, is_damaged: bool) -> io::Result<()> {
         fs::create_dir_all(folder)?;
-        let (log, begun) = (folder.join(LOG_NAME), folder.join(format!("{LOG_NAME}.new")));
-        let mut saved = File::create(&begun)?;
-        if let Err(reason) = self.out.get_mut().save(is_damaged, &mut saved) {
-            // A temporary file that cannot be removed does no harm.
-            let _ = fs::remove_file(&begun);
-            return Err(reason);
-        }
+        let log = folder.join(LOG_NAME);
+        let mut saved = new_beside(&log)?;
+        self.out.get_mut().save(is_damaged, saved.as_file_mut())?;
         // An existing settings file is kept, since the log contains all settings, too.
         match OpenOptions::new().write(true).create_new(true).open(folder.join(SETTINGS_NAME)) {
             Ok(mut file) => file.write_all(self.settings.as_bytes())?,
@@ -169,7 +164,8 @@ impl LogWriter {
             Err(reason) => return Err(reason),
         }
         move_aside(&log)?;
-        fs::rename(&begun, &log)
+        saved.persist(&log)?;
+        Ok(())
     }
 }
 
@@ -203,16 +199,23 @@ fn next_part(folder: &Path) -> PathBuf {
 /// Whether a folder does not exist, or contains only a part whose program was killed before it wrote a log.
 fn holds_nothing(part: &Path) -> bool {
     let is_left = |entry: io::Result<fs::DirEntry>| {
-        entry.is_ok_and(|entry| match entry.file_name().to_str() {
+        // The program makes no links and pipes, and follows none.
+        let entry = entry.ok().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
+        entry.is_some_and(|entry| match entry.file_name().to_str() {
             Some(SETTINGS_NAME) => read_regular(&entry.path()).is_ok_and(|text| is_written_settings(&text)),
-            Some(name) => name == LOCK_NAME || name.strip_suffix(".new") == Some(LOG_NAME),
+            Some(name) => name == LOCK_NAME || is_begun(name),
             None => false,
         })
     };
-    match fs::read_dir(part) {
-        Ok(mut entries) => entries.all(is_left),
-        Err(reason) => reason.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(part).is_err(),
+    match fs::symlink_metadata(part) {
+        Ok(data) => data.is_dir() && fs::read_dir(part).is_ok_and(|mut entries| entries.all(is_left)),
+        Err(reason) => reason.kind() == io::ErrorKind::NotFound,
     }
+}
+
+/// Whether a file of this name is a log or a settings file that a program was writing when it was killed.
+pub fn is_begun(name: &str) -> bool {
+    [LOG_NAME, SETTINGS_NAME].iter().any(|whole| name != *whole && replaced_name(name) == *whole)
 }
 
 /// Whether this program wrote a settings file in the folder of a recording: it has all settings and nothing else.

@@ -25,6 +25,7 @@ use super::view::theme::Theme;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::gaze::GazeSample;
+use crate::gaze::recorded_gaze::RecordedGazeSummary;
 use crate::history::belief_track::BeliefHistory;
 use crate::history::signal_judge::SignalJudge;
 use crate::kitchen::{Agent, AspectId};
@@ -173,6 +174,8 @@ pub struct ConsoleModel {
     refused_senders: Vec<(String, SessionTime)>,
     /// Address and pairing code for gaze senders at other computers, if they may connect.
     pub gaze_pairing: Option<GazePairing>,
+    /// What the session reads from its gaze file; `None` for other gaze sources.
+    pub recorded_gaze: Option<RecordedGazeSummary>,
     /// State of the participant's display, if there is one.
     pub display: Option<ParticipantDisplayHealth>,
     /// Session times of the human's errors, in ascending order.
@@ -237,6 +240,7 @@ impl ConsoleModel {
             rejected_senders: 0,
             refused_senders: Vec::new(),
             gaze_pairing: None,
+            recorded_gaze: None,
             display: None,
             errors: Vec::new(),
             signals: SignalJudge::default(),

@@ -50,7 +50,8 @@ pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     #[cfg(feature = "rerun")]
     checks.push(viewer());
     checks.extend(left_out());
-    checks.extend([devices::lsl(spec), devices::gaze(spec)]);
+    checks.push(devices::lsl(spec));
+    checks.extend(devices::gaze(spec));
     let healthy = checks.iter().all(|check| check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
 }

@@ -252,6 +252,7 @@ mod tests {
             "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1.01}\n{\"x\": 0.5, \"y\": 0.5, \"confidence\": -0.1}\n",
             "{\"t\": 1764057600123.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
             "{\"t\": -3.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
+            "{\"t\": -5e10, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
             "{\"x\": NaN, \"y\": 2, \"confidence\": 1}\nnonsense\n",
             &"9".repeat(3 * MAX_LINE),
             "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n",
@@ -271,7 +272,8 @@ mod tests {
         assert_eq!(found[..2], expected);
         assert_eq!(found[2..4], vec![TrackerMessage::Malformed(1); 2]);
         let milliseconds = sample(0.0, 0.0, 1.0, Some(1_764_057_600_123_500_032));
-        assert_eq!(found[4..6], [milliseconds, TrackerMessage::WrongTime(-3.5)]);
-        assert_eq!(found[6..], vec![TrackerMessage::Malformed(1); 4]);
+        let below_0 = sample(0.0, 0.0, 1.0, Some(-3_500_000_000));
+        assert_eq!(found[4..7], [milliseconds, below_0, TrackerMessage::WrongTime(-5e10)]);
+        assert_eq!(found[7..], vec![TrackerMessage::Malformed(1); 4]);
     }
 }

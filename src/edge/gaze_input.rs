@@ -9,10 +9,14 @@ use crate::session::tracker::TrackerRecording;
 /// Largest number of tracker messages that wait for the session.
 pub const WAITING: usize = 4096;
 
+/// Largest amount of a time on a tracker's clock, in seconds: nanoseconds of it still are a 64-bit number (292 years).
+pub const MAX_SECONDS: f64 = 9.2e9;
+
 /// A message from an eye tracker to the session. Points are in fractions of the wall display, origin at the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TrackerMessage {
     /// Gaze sample, with the time at which it was taken if the tracker's clock has been compared with this computer's.
+    /// The sample's confidence is NaN if the tracker did not tell it.
     Sample(GazeSample, Option<Instant>),
     /// Number of malformed messages, lines or gaze samples that the tracker sent.
     Malformed(u64),
@@ -92,7 +96,7 @@ impl GazeSenderRejection {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerTime {
     /// Time on the tracker's clock, in nanoseconds.
-    pub device_ns: u64,
+    pub device_ns: i64,
     /// Time on this computer's clock, if the two clocks were compared.
     pub at: Option<Instant>,
 }

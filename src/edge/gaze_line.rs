@@ -1,13 +1,13 @@
 //! Format of the lines of the gaze input: samples {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1, "age":
-//! seconds}, and the line with which a sender at another computer pairs, {"pair": "CODE"}. Coordinates are fractions of
-//! the wall display, with the origin at the top left; t is the time on the tracker's own clock, age the time since the
-//! sample was taken.
+//! seconds}, of which only x and y are needed, and the line with which a sender at another computer pairs, {"pair":
+//! "CODE"}. Coordinates are fractions of the wall display, with the origin at the top left; t is the time on the
+//! tracker's own clock, age the time since the sample was taken.
 
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
-use super::gaze_input::TrackerMessage;
+use super::gaze_input::{MAX_SECONDS, TrackerMessage};
 use crate::gaze::GazeSample;
 
 /// Largest age of a gaze sample, in seconds; a larger age is an error of the sender.
@@ -19,7 +19,8 @@ struct SampleLine {
     t: Option<f64>,
     x: f64,
     y: f64,
-    confidence: f64,
+    #[serde(default)]
+    confidence: Option<f64>,
     #[serde(default)]
     age: Option<f64>,
 }
@@ -50,33 +51,41 @@ pub fn parse(line: &[u8], arrived: Instant) -> Option<TrackerMessage> {
     if line.trim_ascii().is_empty() {
         return None;
     }
-    let Ok(found) = serde_json::from_slice::<SampleLine>(line) else { return Some(TrackerMessage::Malformed(1)) };
+    let found = serde_json::from_slice::<SampleLine>(line).or_else(|_| serde_json::from_slice(&without_nan(line)));
+    let Ok(found) = found else { return Some(TrackerMessage::Malformed(1)) };
     let has_age = found.age.is_none_or(|age_s| (0.0..=MAX_AGE_S).contains(&age_s));
     // Points outside the display are valid; a confidence outside 0 to 1 shows that the sender uses another format.
-    if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence) && has_age) {
+    let is_share = found.confidence.is_none_or(|confidence| (0.0..=1.0).contains(&confidence));
+    if !(found.x.is_finite() && found.y.is_finite() && is_share && has_age) {
         return Some(TrackerMessage::Malformed(1));
     }
     let device_ns = match found.t.map(|t| device_ns(t).ok_or(t)).transpose() {
         Ok(device_ns) => device_ns,
         Err(t) => return Some(TrackerMessage::WrongTime(t)),
     };
-    let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
+    let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence.unwrap_or(f64::NAN)) };
     let taken = found.age.and_then(|age_s| arrived.checked_sub(Duration::from_secs_f64(age_s)));
     Some(TrackerMessage::Sample(sample, taken))
 }
 
+/// A line in which numbers that are not known are `null`. Python's `json` writes them as `NaN`, which is no JSON. Words in
+/// strings do not matter, since all that is read of a line is numbers.
+fn without_nan(line: &[u8]) -> Vec<u8> {
+    String::from_utf8_lossy(line).replace("NaN", "null").into_bytes()
+}
+
 /// Converts a gaze sample's time stamp to nanoseconds; `None` if the stamp is invalid. Stamps of up to ten digits are
-/// seconds of any clock. Longer stamps are milliseconds, microseconds or nanoseconds since 1970, which differ by three
-/// digits each.
-fn device_ns(t: f64) -> Option<u64> {
+/// seconds of any clock, which can be negative. Longer stamps are milliseconds, microseconds or nanoseconds since 1970,
+/// which differ by three digits each.
+fn device_ns(t: f64) -> Option<i64> {
     let ns_per_unit = match t {
-        0.0..1e10 => 1e9,
+        t if t.abs() < MAX_SECONDS => 1e9,
         1e11..1e13 => 1e6,
         1e14..1e16 => 1e3,
-        1e17..1e19 => 1.0,
+        1e17..9.2e18 => 1.0,
         _ => return None,
     };
-    Some((t * ns_per_unit).round() as u64)
+    Some((t * ns_per_unit).round() as i64)
 }
 
 #[cfg(test)]
@@ -91,7 +100,8 @@ mod tests {
             assert!(ns.abs_diff(1_764_057_600_250_000_000) < 500, "{unit}: {ns}");
         }
         assert_eq!(device_ns(12.5), Some(12_500_000_000));
-        for wrong in [-0.001, 5e10, 5e13, 5e16, 1e20, f64::NAN, f64::INFINITY] {
+        assert_eq!(device_ns(-188.876_544), Some(-188_876_544_000), "a clock starts anywhere");
+        for wrong in [-5e10, 9.3e9, 5e10, 5e13, 5e16, 1e20, f64::NAN, f64::INFINITY] {
             assert_eq!(device_ns(wrong), None, "{wrong}");
         }
     }
@@ -109,6 +119,20 @@ mod tests {
         assert_eq!(with("null"), TrackerMessage::Sample(sample, None));
         for wrong in ["-0.001", "60.1", "\"1\"", "1e999"] {
             assert_eq!(with(wrong), TrackerMessage::Malformed(1), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_sample_without_confidence_is_a_sample() {
+        for confidence in ["", ", \"confidence\": null", ", \"confidence\": NaN"] {
+            let line = format!("{{\"x\": 0.25, \"y\": 1{confidence}}}");
+            let Some(TrackerMessage::Sample(sample, None)) = parse(line.as_bytes(), Instant::now()) else {
+                panic!("{line}: no sample")
+            };
+            assert!(sample.confidence.is_nan() && (sample.x, sample.y) == (0.25, 1.0), "{line}: {sample:?}");
+        }
+        for wrong in ["{\"x\": NaN, \"y\": 1, \"confidence\": NaN}", "{\"x\": 0, \"y\": 1, \"confidence\": \"high\"}"] {
+            assert_eq!(parse(wrong.as_bytes(), Instant::now()), Some(TrackerMessage::Malformed(1)), "{wrong}");
         }
     }
 

@@ -61,7 +61,7 @@ const fn ns(seconds: f64) -> i128 {
 impl DeviceClock {
     /// The session time at which a sample with this device time was taken, which is never later than the sample's
     /// arrival; and the clock step, if samples now show that the tracker's clock was set.
-    pub fn session_time(&mut self, device_ns: u64, arrived: SessionTime) -> (SessionTime, Option<ClockStep>) {
+    pub fn session_time(&mut self, device_ns: i64, arrived: SessionTime) -> (SessionTime, Option<ClockStep>) {
         let offset = i128::from(arrived.0) - i128::from(device_ns);
         let step = match self.offset() {
             Some(known) if (offset - known).abs() > ns(DOUBT_S) => self.question(offset, known, arrived),

@@ -69,7 +69,7 @@ impl DroppedInputCounts {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeFaultDetector {
     newest: Option<SessionTime>,
-    recent: Vec<(Option<u64>, [u64; 2])>,
+    recent: Vec<(Option<i64>, [u64; 2])>,
     next: usize,
     /// Number of faults found so far in the gaze stream, by kind.
     pub counts: GazeFaultCounts,

@@ -161,7 +161,7 @@ impl GazeTracker {
             }
             GazeSource::File => {
                 let path = tracker.file.as_deref().unwrap_or_default();
-                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker.file_start_s)?);
+                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker)?);
                 Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
             }
             GazeSource::Lsl => {

@@ -33,8 +33,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     accuracy_check::gaze(session, sample.taken_ns.unwrap_or(now).min(now), sample);
     let sample = session.corrected(sample);
     let status = &mut session.gaze;
-    let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
-    if !on_display || sample.confidence < MIN_CONFIDENCE {
+    if !sample.is_on_display() || sample.confidence < MIN_CONFIDENCE {
         status.unusable += 1;
         return;
     }

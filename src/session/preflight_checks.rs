@@ -10,6 +10,7 @@ use super::session_state::Session;
 use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
+use crate::gaze::recorded_gaze::RecordedGazeSummary;
 
 /// Sampling rate of the gaze below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;
@@ -83,10 +84,8 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),
-        GazeSource::File => {
-            let file = session.spec.tracker.file.clone().unwrap_or_default();
-            checks.push(PreflightCheck::ok("gaze", format!("gaze from {file}: it comes with the trial")));
-        }
+        // The check of recorded gaze needs the file, which the session does not know.
+        GazeSource::File => {}
         GazeSource::Mouse => checks.extend(gaze(session, now)),
         GazeSource::Json => {
             checks.extend(gaze(session, now));
@@ -104,6 +103,24 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
         }
     }
     checks
+}
+
+/// Checks the gaze that the session replays from this file: one check of the numbers, and one for each remark about the
+/// file. A file without any sample is refused when it is read.
+pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCheck> {
+    let look = "look at the line that is named; docs/tracker-recorded.md says what is read, and how";
+    let (verdict, remedy) = match found {
+        found if found.usable == 0 => (
+            PreflightVerdict::Failed,
+            "a file with gaze on the display; missing_confidence = \"good\" under [tracker], if the tracker knows no \
+             confidence",
+        ),
+        found if found.malformed * 20 > found.samples => (PreflightVerdict::Warning, look),
+        _ => (PreflightVerdict::Ok, ""),
+    };
+    let numbers = PreflightCheck::new("gaze", verdict, format!("{file}: {}", found.words()), remedy);
+    let odd = |remark: &String| PreflightCheck::new("gaze file", PreflightVerdict::Warning, remark, look);
+    [numbers].into_iter().chain(found.remarks.iter().map(odd)).collect()
 }
 
 fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
@@ -147,7 +164,8 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
                 "gaze quality",
                 PreflightVerdict::Warning,
                 found,
-                "set up the eye tracker again, or calibrate it",
+                "set up the eye tracker again, or calibrate it; set missing_confidence = \"good\" under [tracker], if it \
+                 knows no confidence",
             )
         }
     };

@@ -32,11 +32,40 @@ pub struct TrackerSpec {
     /// the trial starts before the first sample.
     #[serde(skip_serializing_if = "is_zero")]
     pub file_start_s: f64,
+    /// How gaze samples without a confidence are taken: in lines of JSON, in gaze files, and where Pupil Capture sends NaN.
+    #[serde(skip_serializing_if = "MissingConfidence::is_default")]
+    pub missing_confidence: MissingConfidence,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
     /// Drop-outs (times without gaze) of the simulated eye tracker; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<GazeGapSpec>,
+}
+
+/// How a gaze sample is taken whose source does not say how confident it is. Some trackers know no confidence at all;
+/// others leave it out where they have lost the eyes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MissingConfidence {
+    /// The sample is recorded with the confidence 1, and read.
+    Good,
+    /// The sample is recorded with the confidence 0, and not read.
+    #[default]
+    Bad,
+}
+
+impl MissingConfidence {
+    fn is_default(&self) -> bool {
+        *self == MissingConfidence::default()
+    }
+
+    /// The confidence with which such samples are recorded.
+    pub fn confidence(self) -> f64 {
+        match self {
+            MissingConfidence::Good => 1.0,
+            MissingConfidence::Bad => 0.0,
+        }
+    }
 }
 
 /// Drop-outs of the simulated eye tracker: periods without any gaze sample.
@@ -62,6 +91,7 @@ impl Default for TrackerSpec {
             record: true,
             file: None,
             file_start_s: 0.0,
+            missing_confidence: MissingConfidence::default(),
             distance_m: 2.0,
             gaps: None,
         }
@@ -148,7 +178,7 @@ pub enum TrackerEvent {
         /// The tracker's confidence in the fixation, 0 to 1.
         confidence: f64,
         /// Beginning of the fixation on the tracker's clock, in nanoseconds.
-        device_ns: u64,
+        device_ns: i64,
         /// Session time at which the fixation began.
         began_ns: SessionTime,
     },
@@ -166,7 +196,7 @@ pub enum TrackerEvent {
         /// The tracker's confidence in the blink, 0 to 1.
         confidence: f64,
         /// Time of the blink's onset or offset on the tracker's clock, in nanoseconds.
-        device_ns: u64,
+        device_ns: i64,
         /// Session time of the blink's onset or offset.
         taken_ns: SessionTime,
     },

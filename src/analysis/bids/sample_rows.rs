@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::event_cells;
-use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, or_nothing, seconds};
+use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, device_seconds, or_nothing, seconds};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::robot::moment::ArmSample;
@@ -90,7 +90,7 @@ pub(super) struct SampleRows {
 impl SampleRows {
     pub(super) fn note_gaze(&mut self, stamped: &TimestampedEvent, sample: &GazeSample) {
         let taken = sample.taken_ns.unwrap_or(stamped.time);
-        let device = or_nothing(sample.device_ns.map(|ns| seconds(SessionTime(ns))));
+        let device = or_nothing(sample.device_ns.map(device_seconds));
         let (x, y, confidence) = (sample.x.to_string(), sample.y.to_string(), sample.confidence.to_string());
         let cells = [seconds(taken), x, y, confidence, seconds(stamped.time), device, stamped.seq.to_string()];
         self.gaze.push((taken, tsv::line(cells)));

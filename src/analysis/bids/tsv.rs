@@ -120,6 +120,12 @@ pub(super) fn seconds(time: SessionTime) -> String {
     format!("{}.{:09}", time.0 / 1_000_000_000, time.0 % 1_000_000_000)
 }
 
+/// Time on a tracker's clock in seconds with nine decimals, which can be negative, for a table cell.
+pub(super) fn device_seconds(ns: i64) -> String {
+    let sign = if ns < 0 { "-" } else { "" };
+    format!("{sign}{}", seconds(SessionTime(ns.unsigned_abs())))
+}
+
 /// A value as text of a BIDS cell, or "n/a" for `None`.
 pub(super) fn or_nothing<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| NOTHING.to_string(), |value| value.to_string())

@@ -5,13 +5,12 @@ use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
 use crate::base::printable::printable;
-use crate::base::words::count;
 use crate::edge::file_error::FileError;
 use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
 use crate::gaze::surface::SurfaceHomography;
 use crate::session::SessionSpec;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
 
@@ -36,13 +35,13 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
 }
 
 /// Checks the session's gaze source.
-pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
+pub(super) fn gaze(spec: &SessionSpec) -> Vec<PreflightCheck> {
     match spec.participant.gaze {
-        GazeSource::Pupil => eye_tracker(&spec.tracker, true),
-        GazeSource::Json => lines(&spec.participant),
-        GazeSource::Lsl => stream(spec),
+        GazeSource::Pupil => vec![eye_tracker(&spec.tracker, true)],
+        GazeSource::Json => vec![lines(&spec.participant)],
+        GazeSource::Lsl => vec![stream(spec)],
         GazeSource::File => file(&spec.tracker),
-        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => eye_tracker(&spec.tracker, false),
+        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => vec![eye_tracker(&spec.tracker, false)],
     }
 }
 
@@ -163,17 +162,12 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
 }
 
 /// Checks whether the session's gaze file can be replayed.
-fn file(tracker: &TrackerSpec) -> PreflightCheck {
+fn file(tracker: &TrackerSpec) -> Vec<PreflightCheck> {
     let path = tracker.file.as_deref().unwrap_or_default();
-    let remedy =
-        "file under [tracker]: a table of gaze on the display, or the folder of a recording (docs/tracker-recorded.md)";
-    let found = SurfaceHomography::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map, tracker.file_start_s));
-    match found {
-        Some(Ok(found)) if !found.samples.is_empty() => {
-            PreflightCheck::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))
-        }
-        Some(Err(error)) => PreflightCheck::new("gaze", PreflightVerdict::Failed, error.to_string(), told(&error)),
-        _ => PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{path} has no gaze sample"), remedy),
+    let whole = SurfaceHomography::new(WHOLE).expect("the whole display is a quadrangle");
+    match gaze_file::read(Path::new(path), &whole, tracker) {
+        Ok(found) => recorded_gaze(path, &found.summary),
+        Err(error) => vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, error.to_string(), told(&error))],
     }
 }
 

@@ -201,7 +201,7 @@ impl GazeInlet {
         if let Some(step) = step {
             self.offer(step);
         }
-        let device_ns = (stamp_s > 0.0).then_some((stamp_s * 1e9) as u64);
+        let device_ns = (stamp_s.abs() > 0.0).then_some((stamp_s * 1e9) as i64);
         let sample = GazeSample { device_ns, ..GazeSample::new(x, y, confidence) };
         self.offer(TrackerMessage::Sample(sample, Some(taken)));
     }

@@ -68,7 +68,7 @@ impl StreamStamps {
             (self.ahead_s, self.is_foreign) = (Some(0.0), !is_lsl);
         }
         let arrived = SessionTime(now.saturating_duration_since(self.origin).as_nanos() as u64);
-        let (by_arrival, step) = self.device.session_time((corrected_s.max(0.0) * 1e9) as u64, arrived);
+        let (by_arrival, step) = self.device.session_time((corrected_s * 1e9) as i64, arrived);
         let told = step.map(|ClockStep { by_ns, uncertain_since }| {
             let by_s = by_ns as f64 / 1e9;
             self.ahead_s = self.ahead_s.map(|ahead_s| ahead_s + by_s);

@@ -10,7 +10,7 @@ use crate::gaze::GazeSample;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
 use crate::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
 use crate::run::desk::GazeTracker;
-use crate::session::tracker::TrackerEvent;
+use crate::session::tracker::{MissingConfidence, TrackerEvent};
 use crate::session::{Event, Session, TrialPhase};
 
 /// The result for a tracker message that leads to no event.
@@ -24,6 +24,10 @@ pub(super) struct GazeInput {
     dropped: DroppedInputCounts,
     /// Whether the wizard was already told of a wrong time stamp of gaze.
     has_complained: bool,
+    /// Whether the wizard was already told that samples without confidence are not read.
+    has_told_missing: bool,
+    /// How samples without confidence are taken.
+    missing_confidence: MissingConfidence,
     /// The file from which gaze is replayed, with the index of the next sample.
     file: Option<Arc<GazeFile>>,
     next: usize,
@@ -32,19 +36,31 @@ pub(super) struct GazeInput {
 impl GazeInput {
     /// The gaze input of a recording that begins or continues with this session.
     pub fn at(tracker: &GazeTracker, session: &Session) -> GazeInput {
-        let Some(file) = tracker.file() else { return GazeInput::default() };
-        let dropped = DroppedInputCounts { malformed: file.malformed, ..DroppedInputCounts::default() };
+        let missing_confidence = session.spec.tracker.missing_confidence;
+        let Some(file) = tracker.file() else { return GazeInput { missing_confidence, ..GazeInput::default() } };
+        let dropped = DroppedInputCounts { malformed: file.summary.malformed, ..DroppedInputCounts::default() };
         let clock_s = session.trial_clock(session.time).as_secs_f64();
         let is_past = |(at_s, _): &&(f64, GazeSample)| session.phase != TrialPhase::Ready && *at_s < clock_s;
         let next = file.samples.iter().take_while(is_past).count();
-        GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
+        GazeInput { dropped, file: Some(file), next, missing_confidence, ..GazeInput::default() }
     }
 
-    /// Message to the wizard about the first gaze sample with a wrong time stamp.
+    /// Message to the wizard about the first gaze sample with a wrong time stamp, and about the first one without
+    /// confidence if such samples are not read.
     pub fn complaint(&mut self, news: &TrackerMessage) -> Option<String> {
-        let TrackerMessage::WrongTime(t) = news else { return None };
-        let is_first = !std::mem::replace(&mut self.has_complained, true);
-        is_first.then(|| format!("gaze sample refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
+        let is_first = |told: &mut bool| !std::mem::replace(told, true);
+        match news {
+            TrackerMessage::WrongTime(t) => is_first(&mut self.has_complained)
+                .then(|| format!("gaze sample refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970")),
+            TrackerMessage::Sample(sample, _)
+                if sample.confidence.is_nan() && self.missing_confidence == MissingConfidence::Bad =>
+            {
+                is_first(&mut self.has_told_missing).then(|| {
+                    "gaze without confidence is recorded and not read: missing_confidence is \"bad\"".to_string()
+                })
+            }
+            _ => None,
+        }
     }
 
     /// The session's events for a tracker message; empty for messages that are only counted.
@@ -110,7 +126,11 @@ impl GazeInput {
         let step = step.map(|ClockStep { by_ns, uncertain_since }| {
             Event::Tracker(TrackerEvent::ClockSet { by_s: by_ns as f64 / 1e9, uncertain_since_ns: uncertain_since })
         });
-        [step, Some(Event::Gaze(GazeSample { taken_ns, ..sample }))]
+        let confidence = match sample.confidence {
+            missing if missing.is_nan() => self.missing_confidence.confidence(),
+            known => known,
+        };
+        [step, Some(Event::Gaze(GazeSample { taken_ns, confidence, ..sample }))]
     }
 
     /// An event with the counts of gaze input that was dropped, if they have grown.

@@ -172,6 +172,7 @@ impl Live {
         let (display, health) = ParticipantDisplay::at(desk);
         model.display = health;
         model.gaze_pairing = desk.tracker.pairing();
+        model.recorded_gaze = desk.tracker.file().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
         let mut live = Live {

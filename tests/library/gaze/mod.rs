@@ -6,6 +6,7 @@ mod formats;
 mod last_seen;
 mod quality;
 mod rate;
+mod tables;
 mod tags;
 
 use std::path::Path;

@@ -18,8 +18,11 @@ fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
     let at = |ms: u64| SessionTime(ms * 1_000_000);
     assert_eq!(engine.input(at(0), Event::TrialStarted).refused, None);
     let send = |engine: &mut SessionEngine, arrived: u64, taken: u64, x: f64| {
-        let sample =
-            GazeSample { device_ns: Some(taken + 5), taken_ns: Some(at(taken)), ..GazeSample::new(x, 0.35, 0.9) };
+        let sample = GazeSample {
+            device_ns: Some(taken as i64 + 5),
+            taken_ns: Some(at(taken)),
+            ..GazeSample::new(x, 0.35, 0.9)
+        };
         let before = engine.belief().clone();
         assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
         (*engine.belief() != before, engine.session().gaze.fault)
@@ -77,7 +80,7 @@ fn device_time_is_told_from_the_samples_that_took_the_shortest_way() {
     // The device's clock is 5 s behind; samples take 3 ms at least, some of them longer.
     for step in 0..200u64 {
         let late = 3 + [0, 9, 4, 30][step as usize % 4];
-        let taken = clock.session_time(ms(1000 + 10 * step).0, ms(6000 + 10 * step + late));
+        let taken = clock.session_time(ms(1000 + 10 * step).0 as i64, ms(6000 + 10 * step + late));
         assert_eq!(taken, (ms(6000 + 10 * step + 3), None), "step {step}");
     }
 }
@@ -90,7 +93,7 @@ fn stream(device_ms: impl Fn(u64) -> u64) -> (u64, f64, Vec<f64>) {
     for sample in 0..2000u64 {
         let taken_ms = 20_000 + 10 * sample;
         let arrived = SessionTime((taken_ms + 3 + [0, 9, 4, 2, 7][sample as usize % 5]) * 1_000_000);
-        let device_ns = 1_000_000 * device_ms(taken_ms);
+        let device_ns = 1_000_000 * device_ms(taken_ms) as i64;
         let (taken, step) = clock.session_time(device_ns, arrived);
         steps.extend(step.map(|step| step.by_ns as f64 / 1e9));
         let seen = GazeSample { device_ns: Some(device_ns), taken_ns: Some(taken), ..GazeSample::new(0.5, 0.5, 0.9) };
@@ -130,7 +133,7 @@ fn samples_that_were_held_up_together_set_no_clock() {
         let taken_ms = 5000 + 10 * sample;
         // Once a second the network holds everything up for 0.3 s.
         let arrived_ms = (taken_ms + 3).max(taken_ms / 1000 * 1000 + 303);
-        let (taken, step) = clock.session_time(ms(taken_ms).0, ms(arrived_ms));
+        let (taken, step) = clock.session_time(ms(taken_ms).0 as i64, ms(arrived_ms));
         assert_eq!(step, None, "sample {sample}");
         assert!(sample < 30 || taken.0.abs_diff(ms(taken_ms).0) <= 5_000_000, "sample {sample}: {taken}");
     }

@@ -23,6 +23,7 @@ use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
 use tomcom::session::header::RecordedFile;
 use tomcom::session::plan::{Questionnaire, Study};
+use tomcom::session::tracker::TrackerSpec;
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
@@ -153,7 +154,7 @@ fn table(bytes: &[u8]) {
 fn gaze_export(bytes: &[u8]) {
     let map =
         SurfaceHomography::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("the corners of a square");
-    shown(gaze_file::read(&file("gaze.csv", bytes), &map, 0.0).map(drop));
+    shown(gaze_file::read(&file("gaze.csv", bytes), &map, &TrackerSpec::default()).map(drop));
 }
 
 fn rerun_head(bytes: &[u8]) {

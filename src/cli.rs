@@ -226,7 +226,7 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
 
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
-    let found = doctor::examine(&files.spec, &args.out);
+    let found = doctor::examine(&files.spec, &files.kitchen.kitchen, &args.out);
     print(args.format, &found, || doctor::describe(&found))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }
 }

@@ -22,8 +22,6 @@ use crate::edge::gaze_json;
 use crate::edge::lsl::{self, InletThreadGuard, LslError};
 use crate::edge::pupil::{self, CaptureConfiguration, CaptureRequest};
 use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
-use crate::gaze::surface::SurfaceHomography;
-use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::accuracy_check::AcceptedGazeCheck;
@@ -136,13 +134,7 @@ impl OperatorInput {
 impl GazeTracker {
     async fn open(spec: &SessionSpec, kitchen: &Kitchen, desk: &LslDesk) -> Result<GazeTracker, LiveError> {
         let (participant, tracker) = (&spec.participant, &spec.tracker);
-        let surface = || {
-            let hull = || DisplayTags::place(kitchen).map(|tags| tags.hull()).map_err(LiveError::Tags);
-            let corners = tracker.corners.map_or_else(hull, Ok)?;
-            let found = format!("corners = {corners:?}");
-            let remedy = "a convex quadrangle".to_string();
-            SurfaceHomography::new(corners).ok_or(LiveError::Tags(TagError { found, remedy }))
-        };
+        let surface = || tracker.surface_map(kitchen).map_err(LiveError::Tags);
         match participant.gaze {
             GazeSource::Json => {
                 let at = SocketAddr::new(participant.gaze_listen, participant.gaze_port);

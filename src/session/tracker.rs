@@ -8,6 +8,8 @@ use crate::base::number_range::is_zero;
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DroppedInputCounts;
 use crate::gaze::surface::SurfaceHomography;
+use crate::gaze::tags::{DisplayTags, TagError};
+use crate::kitchen::Kitchen;
 
 /// Settings of the eye tracker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -99,6 +101,21 @@ impl Default for TrackerSpec {
 }
 
 impl TrackerSpec {
+    /// Map from the tracked surface to the display: from these settings' corners, or else from the hull of the tags.
+    ///
+    /// # Errors
+    /// The tags do not fit on the display, or the corners are no surface.
+    pub fn surface_map(&self, kitchen: &Kitchen) -> Result<SurfaceHomography, TagError> {
+        let corners = match self.corners {
+            Some(corners) => corners,
+            None => DisplayTags::place(kitchen)?.hull(),
+        };
+        SurfaceHomography::new(corners).ok_or_else(|| TagError {
+            found: format!("corners = {corners:?}"),
+            remedy: "a convex quadrangle".to_string(),
+        })
+    }
+
     pub(super) fn is_default(&self) -> bool {
         *self == TrackerSpec::default()
     }

@@ -8,15 +8,12 @@ use crate::base::printable::printable;
 use crate::edge::file_error::FileError;
 use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
-use crate::gaze::surface::SurfaceHomography;
+use crate::gaze::tags::TagError;
+use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
-
-/// Corners of a surface that covers the whole display, used because the check of a gaze file does not depend on the
-/// display's markers.
-const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;
@@ -35,12 +32,12 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
 }
 
 /// Checks the session's gaze source.
-pub(super) fn gaze(spec: &SessionSpec) -> Vec<PreflightCheck> {
+pub(super) fn gaze(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     match spec.participant.gaze {
         GazeSource::Pupil => vec![eye_tracker(&spec.tracker, true)],
         GazeSource::Json => vec![lines(&spec.participant)],
         GazeSource::Lsl => vec![stream(spec)],
-        GazeSource::File => file(&spec.tracker),
+        GazeSource::File => file(&spec.tracker, kitchen),
         GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => vec![eye_tracker(&spec.tracker, false)],
     }
 }
@@ -162,12 +159,16 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
 }
 
 /// Checks whether the session's gaze file can be replayed.
-fn file(tracker: &TrackerSpec) -> Vec<PreflightCheck> {
+fn file(tracker: &TrackerSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     let path = tracker.file.as_deref().unwrap_or_default();
-    let whole = SurfaceHomography::new(WHOLE).expect("the whole display is a quadrangle");
-    match gaze_file::read(Path::new(path), &whole, tracker) {
+    let failed = |found: String, remedy| vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
+    let map = match tracker.surface_map(kitchen) {
+        Ok(map) => map,
+        Err(TagError { found, remedy }) => return failed(found, remedy),
+    };
+    match gaze_file::read(Path::new(path), &map, tracker) {
         Ok(found) => recorded_gaze(path, &found.summary),
-        Err(error) => vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, error.to_string(), told(&error))],
+        Err(error) => failed(error.to_string(), told(&error)),
     }
 }
 

@@ -354,7 +354,7 @@ impl GazeColumns {
                 }
             },
         };
-        let place = map.to_display([x, y]).ok_or_else(|| format!("{}, {}: nowhere on the display's plane", x, y))?;
+        let place = map.to_display([x, y]).ok_or_else(|| format!("{x}, {y}: nowhere on the display's plane"))?;
         Ok(Some(GazeRow { line, time: at, place, confidence }))
     }
 

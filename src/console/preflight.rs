@@ -22,7 +22,9 @@ pub const OVERRIDE: char = 'o';
 
 /// Runs all preflight checks: participant, gaze, display, robot, recording, disk, keyboard, streams.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
-    let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
+    let check_gaze = key(model, &KeyAction::Hand(ManualAction::Calibrate));
+    let rejected = model.rejected_since(session.gaze.arrived);
+    let mut checks = participant(session, model.now, &check_gaze, rejected);
     checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
     checks.extend(model.display.as_ref().map(|display| display.check(session.spec.participant.gaze)));
     checks.extend(probes(session, model));

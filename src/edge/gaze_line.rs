@@ -7,11 +7,16 @@ use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
-use super::gaze_input::TrackerMessage;
+use super::gaze_input::{GazeSenderRejection, TrackerMessage};
+use crate::base::printable::printable;
 use crate::gaze::GazeSample;
 
 /// Largest age of a gaze sample, in seconds; a larger age is an error of the sender.
 const MAX_AGE_S: f64 = 60.0;
+/// Number of characters that are shown of data that are no JSON object.
+const SHOWN: usize = 24;
+/// Beginnings of requests in HTTP (RFC 9110, section 9).
+const HTTP: [&[u8]; 7] = [b"GET ", b"POST ", b"PUT ", b"HEAD ", b"OPTIONS ", b"DELETE ", b"PATCH "];
 
 #[derive(Deserialize)]
 struct SampleLine {
@@ -40,6 +45,39 @@ pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
     }
 }
 
+/// Why data that do not begin a JSON object are no lines of gaze.
+pub(super) fn opening_fault(bytes: &[u8]) -> GazeSenderRejection {
+    let text = bytes.trim_ascii_start();
+    // In UTF-16 every second byte of ASCII is zero.
+    let is_ascii = |byte: u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    let is_wide = |zero: usize| {
+        let mut pairs = text.chunks_exact(2).take(4);
+        text.len() >= 2 && pairs.all(|pair| pair[zero] == 0 && is_ascii(pair[1 - zero]))
+    };
+    if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide(0) || is_wide(1) {
+        return GazeSenderRejection::Utf16;
+    }
+    if text.starts_with(b"\xef\xbb\xbf") {
+        return GazeSenderRejection::ByteOrderMark;
+    }
+    if HTTP.iter().any(|method| text.starts_with(method)) {
+        return GazeSenderRejection::HttpRequest;
+    }
+    let start: String = String::from_utf8_lossy(&text[..text.len().min(4 * SHOWN)]).chars().take(SHOWN).collect();
+    GazeSenderRejection::NoObject(printable(start.trim_end()).into_owned())
+}
+
+/// Why a first line that is longer than `most` bytes is no line of gaze.
+pub(super) fn long_line_fault(line: &[u8], most: usize) -> GazeSenderRejection {
+    let mut signs = line.iter().filter(|byte| !byte.is_ascii_whitespace() && **byte != b',').peekable();
+    while let Some(sign) = signs.next() {
+        if *sign == b'}' && signs.peek() == Some(&&b'{') {
+            return GazeSenderRejection::NoLineBreak;
+        }
+    }
+    GazeSenderRejection::LongLine(most)
+}
+
 /// The pairing code in a line of the gaze input; `None` if the line is no pairing line.
 pub fn code_in(line: &[u8]) -> Option<String> {
     serde_json::from_slice::<PairingLine>(line).ok().map(|line| line.pair)
@@ -65,18 +103,13 @@ pub fn parse(line: &[u8], arrived: Instant) -> Option<TrackerMessage> {
     Some(TrackerMessage::Sample(sample, taken))
 }
 
-/// Converts a gaze sample's time stamp to nanoseconds; `None` if the stamp is invalid. Stamps of up to ten digits are
-/// seconds of any clock. Longer stamps are milliseconds, microseconds or nanoseconds since 1970, which differ by three
-/// digits each.
-fn device_ns(t: f64) -> Option<u64> {
-    let ns_per_unit = match t {
-        0.0..1e10 => 1e9,
-        1e11..1e13 => 1e6,
-        1e14..1e16 => 1e3,
-        1e17..1e19 => 1.0,
-        _ => return None,
-    };
-    Some((t * ns_per_unit).round() as u64)
+/// Converts a gaze sample's time stamp to nanoseconds; `None` if the stamp is too large to be a time. Stamps are seconds
+/// of any clock, which may be negative; larger ones are milliseconds, microseconds or nanoseconds since 1970, which differ
+/// by three digits each. A stamp counts in the largest unit in which it is at most the year 2262.
+fn device_ns(t: f64) -> Option<i64> {
+    const MOST: f64 = i64::MAX as f64;
+    let ns = [1e9, 1e6, 1e3, 1.0].map(|ns_per_unit| (t * ns_per_unit).round());
+    ns.into_iter().find(|ns| ns.abs() < MOST).map(|ns| ns as i64)
 }
 
 #[cfg(test)]
@@ -84,16 +117,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_stamps_are_seconds_or_finer_units_since_1970_or_refused() {
+    fn every_finite_time_stamp_is_seconds_or_finer_units_since_1970() {
         let since_1970_s = 1_764_057_600.25;
         for unit in [1.0, 1e3, 1e6, 1e9] {
             let ns = device_ns(since_1970_s * unit).expect("a time");
             assert!(ns.abs_diff(1_764_057_600_250_000_000) < 500, "{unit}: {ns}");
+            assert_eq!(device_ns(-since_1970_s * unit), Some(-ns), "{unit}");
         }
-        assert_eq!(device_ns(12.5), Some(12_500_000_000));
-        for wrong in [-0.001, 5e10, 5e13, 5e16, 1e20, f64::NAN, f64::INFINITY] {
+        assert_eq!([12.5, -0.001, -3.5].map(device_ns), [12_500_000_000, -1_000_000, -3_500_000_000].map(Some));
+        // Test: between the usual ranges of two units.
+        assert_eq!([5e10, -5e13, 5e16].map(device_ns), [5e16, -5e16, 5e16].map(|ns| Some(ns as i64)));
+        for wrong in [1e20, -1e20, f64::MAX, f64::NAN, f64::INFINITY] {
             assert_eq!(device_ns(wrong), None, "{wrong}");
         }
+    }
+
+    #[test]
+    fn what_is_found_instead_of_lines_is_told() {
+        let utf16 = |text: &str, order: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(order).collect::<Vec<u8>>();
+        let line = "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
+        for marked in [line.to_string(), format!("\u{feff}{line}")] {
+            for order in [u16::to_le_bytes, u16::to_be_bytes] {
+                assert_eq!(opening_fault(&utf16(&marked, order)), GazeSenderRejection::Utf16, "{marked:?}");
+            }
+        }
+        let found = |text: &str| opening_fault(text.as_bytes());
+        assert_eq!(found(&format!("\u{feff}{line}")), GazeSenderRejection::ByteOrderMark);
+        let stun = opening_fault(b"\x00\x01\x00\x08\x21\x12\xa4\x42");
+        assert!(matches!(stun, GazeSenderRejection::NoObject(_)), "{stun:?}");
+        assert_eq!(found("\r\nPOST / HTTP/1.1\r\n"), GazeSenderRejection::HttpRequest);
+        assert_eq!(found("{'x': 0.5}\n"), GazeSenderRejection::NoObject("{'x': 0.5}".to_string()));
+        assert_eq!(
+            found("\u{1b}[2J0.5;0.5;1;and more than fits"),
+            GazeSenderRejection::NoObject("\\u001b[2J0.5;0.5;1;and more t".to_string())
+        );
+        let objects = "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}, ".repeat(3);
+        assert_eq!(long_line_fault(objects.as_bytes(), 100), GazeSenderRejection::NoLineBreak);
+        assert_eq!(long_line_fault(&[b'{'; 200], 100), GazeSenderRejection::LongLine(100));
     }
 
     #[test]

@@ -158,9 +158,9 @@ impl GazeColumns {
                     .map(|((at_s, place), confidence)| ((at_s * 1e9) as i64, place, confidence))
             }
         };
-        match read.and_then(|(at_ns, place, confidence)| Some((at_ns, u64::try_from(at_ns).ok()?, place, confidence))) {
-            Some((at_ns, device_ns, [x, y], confidence)) => {
-                let sample = GazeSample { device_ns: Some(device_ns), ..GazeSample::new(x, y, confidence) };
+        match read {
+            Some((at_ns, [x, y], confidence)) => {
+                let sample = GazeSample { device_ns: Some(at_ns), ..GazeSample::new(x, y, confidence) };
                 GazeRow::Sample(at_ns, sample)
             }
             None => GazeRow::Malformed,

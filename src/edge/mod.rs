@@ -1,5 +1,6 @@
 //! Everything that touches the outside of the program: files, terminal, network, clocks.
 
+mod arrival;
 pub mod ask;
 pub mod battery_file;
 pub mod bids_tree;
@@ -22,6 +23,7 @@ mod gaze_gate;
 pub mod gaze_input;
 pub mod gaze_json;
 pub mod gaze_line;
+mod gaze_rejections;
 mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
@@ -50,6 +52,7 @@ pub mod rerun;
 pub mod rescue;
 #[cfg(feature = "rerun")]
 pub mod rrd;
+mod sender_clock;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;

@@ -8,6 +8,7 @@
 pub mod calibration;
 pub mod device_clock;
 pub mod quality;
+pub mod stamp_check;
 pub mod surface;
 pub mod tags;
 
@@ -29,9 +30,10 @@ pub struct GazeSample {
     pub y: f64,
     /// The tracker's confidence in the sample, 0 to 1.
     pub confidence: f64,
-    /// Time of the sample on the tracker's clock in nanoseconds, if the tracker reports it.
+    /// Time of the sample on the tracker's clock in nanoseconds, if the tracker reports it. It may be negative: trackers
+    /// choose what their time counts from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub device_ns: Option<u64>,
+    pub device_ns: Option<i64>,
     /// Session time at which the sample was taken, if the offset of the tracker's clock is known; otherwise the
     /// sample's arrival time counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]

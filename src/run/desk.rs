@@ -78,6 +78,8 @@ pub(super) struct GazeTracker {
     link: Option<TrackerMessage>,
     sees_display: Option<TrackerMessage>,
     other_surfaces: Option<TrackerMessage>,
+    several_streams: Option<TrackerMessage>,
+    stamps: Option<TrackerMessage>,
     /// Last gaze accuracy check that the wizard accepted.
     calibrated: Option<AcceptedGazeCheck>,
 }
@@ -195,6 +197,8 @@ impl GazeTracker {
             }
             TrackerMessage::SeesDisplay(_) => (self.sees_display, self.other_surfaces) = (Some(news.clone()), None),
             TrackerMessage::OtherSurfaces(_) => self.other_surfaces = Some(news.clone()),
+            TrackerMessage::SeveralStreams(_) => self.several_streams = Some(news.clone()),
+            TrackerMessage::Stamps(_) => self.stamps = Some(news.clone()),
             _ => {}
         }
     }
@@ -202,6 +206,7 @@ impl GazeTracker {
     /// Messages with the tracker's present state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = TrackerMessage> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
+        let known = known.chain(&self.several_streams).chain(&self.stamps);
         known.cloned().collect::<Vec<_>>().into_iter()
     }
 

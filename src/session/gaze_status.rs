@@ -22,8 +22,19 @@ pub struct GazeStatus {
     pub judge: GazeFaultDetector,
     /// Fault of the latest gaze sample.
     pub fault: Option<GazeFault>,
-    /// Sampling rate of the gaze in Hz, smoothed over about a second: see [`super::Session::gaze_hz`].
+    /// Sampling rate of the gaze in Hz, measured over about a second: see [`super::Session::gaze_hz`].
     pub(crate) rate_hz: f64,
-    /// Start of the present run of gaze samples without a gap; `None` after a pause.
-    pub(crate) steady_since: Option<SessionTime>,
+    /// The present measurement of the sampling rate.
+    pub(crate) measured: Option<RateMeasurement>,
+}
+
+/// A measurement of the sampling rate, from one gaze sample on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RateMeasurement {
+    /// Arrival of the first sample.
+    pub since: SessionTime,
+    /// Time at which the first sample was taken.
+    pub first_taken: SessionTime,
+    /// Number of samples since.
+    pub samples: u32,
 }

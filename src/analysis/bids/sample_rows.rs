@@ -90,7 +90,9 @@ pub(super) struct SampleRows {
 impl SampleRows {
     pub(super) fn note_gaze(&mut self, stamped: &TimestampedEvent, sample: &GazeSample) {
         let taken = sample.taken_ns.unwrap_or(stamped.time);
-        let device = or_nothing(sample.device_ns.map(|ns| seconds(SessionTime(ns))));
+        let sign = |ns: i64| if ns < 0 { "-" } else { "" };
+        let device = sample.device_ns.map(|ns| format!("{}{}", sign(ns), seconds(SessionTime(ns.unsigned_abs()))));
+        let device = or_nothing(device);
         let (x, y, confidence) = (sample.x.to_string(), sample.y.to_string(), sample.confidence.to_string());
         let cells = [seconds(taken), x, y, confidence, seconds(stamped.time), device, stamped.seq.to_string()];
         self.gaze.push((taken, tsv::line(cells)));

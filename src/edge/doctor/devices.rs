@@ -130,15 +130,22 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
     let there: Vec<(&DiscoveredLslStream, Vec<String>)> =
         streams.iter().map(|found| (found, lsl::channel_names(found, STREAM_S).unwrap_or_default())).collect();
     let told = |(found, channels): &(&DiscoveredLslStream, Vec<String>)| {
-        let [name, content, host] = found.identity();
-        format!("\"{name}\" of type \"{content}\" on {host}: {}", channels.join(", "))
+        format!("{}: {}", lsl::described(found), channels.join(", "))
     };
     let is_wanted = |(found, _): &&(&DiscoveredLslStream, Vec<String>)| {
-        let [name, content, _] = found.identity();
-        let is = |wanted: &Option<String>, found: &String| wanted.as_ref().is_none_or(|wanted| wanted == found);
-        is(&wanted.name, &name) && is(&wanted.content, &content)
+        let [name, content, host] = found.identity();
+        let wanted = [&wanted.name, &wanted.content, &wanted.host, &wanted.source_id];
+        let found = [name, content, host, found.source()];
+        wanted.iter().zip(found).all(|(wanted, found)| wanted.as_ref().is_none_or(|wanted| *wanted == found))
     };
-    if let Some(one) = there.iter().find(is_wanted) {
+    let fitting: Vec<_> = there.iter().filter(is_wanted).collect();
+    if let [_, _, ..] = fitting[..] {
+        let all: Vec<String> = fitting.into_iter().map(told).collect();
+        let found = format!("{} LSL streams {}: {}", all.len(), wanted.title(), all.join("; "));
+        let remedy = "set source_id or host under [lsl.gaze] to those of one of them, or end the others";
+        return PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy);
+    }
+    if let Some(one) = fitting.first() {
         let remedy = "set x, y and confidence under [lsl.gaze] to labels of channels, or to their numbers from 1";
         return match lsl::missing_channel(wanted, &one.1) {
             None => PreflightCheck::ok("gaze", told(one)),

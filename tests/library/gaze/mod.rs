@@ -2,6 +2,7 @@
 
 mod calibration;
 mod capture;
+mod clocks;
 mod formats;
 mod last_seen;
 mod quality;

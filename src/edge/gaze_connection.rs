@@ -23,6 +23,8 @@ use super::sender_clock::SenderClock;
 
 /// Longest line of a gaze connection, in bytes.
 const MAX_LINE: usize = 4096;
+/// Most bytes that are read at once: what a sender sends together is stamped together.
+const CHUNK: usize = 1 << 16;
 /// Number of bytes, without blanks, that show whether a connection begins with a JSON object.
 const OPENING: usize = 2;
 /// Time limit for the first line of a gaze connection.
@@ -73,6 +75,10 @@ pub(super) async fn attend(connection: GazeConnection) {
     };
     if let Err(why) = rejected {
         rejections.report(from, why, Instant::now());
+    }
+    if reader.clock.is_faulty() {
+        // Nothing is wrong with the stamps of the next sender, as far as is known.
+        let _ = news.send(TrackerMessage::Stamps(None)).await;
     }
 }
 
@@ -161,7 +167,7 @@ impl SampleReader<'_> {
     /// # Errors
     /// Why the sender is rejected.
     async fn read(&mut self) -> Result<(), GazeSenderRejection> {
-        let mut buffer = vec![0; MAX_LINE];
+        let mut buffer = vec![0; CHUNK];
         let first_by = tokio::time::Instant::now() + FIRST_LINE;
         loop {
             let readable = self.watch.wait(|| self.stream.readable());

@@ -110,7 +110,7 @@ impl GazeSenderRejection {
             GazeSenderRejection::Utf16 => "its text is UTF-16".to_string(),
             GazeSenderRejection::HttpRequest => "it is an HTTP request, as of a web page".to_string(),
             GazeSenderRejection::NoObject(start) => format!("its data begin with \"{start}\", no JSON object"),
-            GazeSenderRejection::NoLineBreak => "its first line does not end: no line break".to_string(),
+            GazeSenderRejection::NoLineBreak => "no line break ends its first line".to_string(),
             GazeSenderRejection::LongLine(bytes) => format!("its first line is longer than {bytes} bytes"),
             GazeSenderRejection::Silent(seconds) => format!("it connected and sent nothing for {seconds} s"),
             GazeSenderRejection::OtherSender(other) => format!("{other} sent first, and its datagrams are read"),

@@ -191,7 +191,11 @@ impl DatagramReader {
             return found;
         }
         self.holder.heard(from.ip(), now);
-        self.clock(from, now).stamp(found, arrival)
+        // Nothing is wrong with the stamps of a new sender, as far as is known.
+        let is_new = self.clocks.iter().all(|(sender, _)| *sender != from);
+        let forgets = is_new && self.clocks.back().is_some_and(|(_, clock)| clock.is_faulty());
+        let forget = forgets.then_some(TrackerMessage::Stamps(None));
+        forget.into_iter().chain(self.clock(from, now).stamp(found, arrival)).collect()
     }
 
     /// The clock of this sender.

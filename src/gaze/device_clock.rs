@@ -124,9 +124,9 @@ impl DeviceClock {
     /// Takes over a verdict about the stamps; returns whether the verdict is new.
     fn judge(&mut self, verdict: StampVerdict) -> Option<ClockNews> {
         let is_same = match (self.verdict, verdict) {
-            // A rate is estimated anew with every interval.
+            // A rate is estimated anew with every interval; only another one is news.
             (Some(StampVerdict::Faulty(StampFault::Rate(told))), StampVerdict::Faulty(StampFault::Rate(rate))) => {
-                (rate - told).abs() <= 0.05 * told.abs().max(1.0)
+                (rate - told).abs() <= 0.5 * told.abs().max(1.0)
             }
             (known, verdict) => known == Some(verdict),
         };
@@ -188,7 +188,6 @@ impl DeviceClock {
         self.forget();
         self.confirm(found, arrived);
         let by_ns = i64::try_from(before - told?).unwrap_or(if found < before { i64::MAX } else { i64::MIN });
-        self.check = StampCheck::default();
         Some(ClockNews::Set(ClockStep { by_ns, uncertain_since: self.doubted_since }))
     }
 

@@ -13,6 +13,8 @@ use crate::base::time::SessionTime;
 pub(super) const INTERVAL_S: f64 = 0.25;
 /// Number of successive intervals that show a rate which is far from real time.
 const FEW: usize = 5;
+/// Such a rate deviates from real time by this much at least; a smaller deviation shows in groups, and more exactly.
+const FAR: f64 = 0.2;
 /// Least number of samples in each of them; of slower trackers a rate shows in groups of intervals.
 const SAMPLES: u32 = 5;
 /// Length of a group of intervals in seconds, and number of groups that show a rate near real time. The smallest offset
@@ -67,9 +69,9 @@ impl StampFault {
                 format!("t runs at {:.digits$} % of real time", 100.0 * rate)
             }
             StampFault::Rate(rate) => {
-                let unit = [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")];
-                let is = |&&(per_s, _): &&(f64, &str)| (rate / per_s - 1.0).abs() < 0.05;
-                let like = unit.iter().find(is).map_or("counts of samples or frames", |(_, name)| name);
+                let units = [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")];
+                let unit = units.into_iter().find(|(per_s, _)| (rate / per_s - 1.0).abs() < 0.05);
+                let (rate, like) = unit.unwrap_or((rate, "counts of samples or frames"));
                 format!("t runs {rate:.0} times as fast as real time, like {like}")
             }
         }
@@ -180,7 +182,8 @@ impl StampCheck {
         let newest = self.intervals.range(self.intervals.len().saturating_sub(FEW)..);
         let few: Vec<OffsetPoint> = newest.filter_map(|one| point([one])).collect();
         let groups: Vec<OffsetPoint> = (1..=GROUPS).rev().filter_map(|group| point(in_group(group))).collect();
-        let few_change = change(&few).filter(|_| few.len() == FEW && few.iter().all(|one| one.samples >= SAMPLES));
+        let is_sure = few.len() == FEW && few.iter().all(|one| one.samples >= SAMPLES);
+        let few_change = change(&few).filter(|change| is_sure && change.abs() >= FAR);
         if let Some(change) = few_change.or_else(|| change(&groups).filter(|_| groups.len() == GROUPS)) {
             return Some(StampVerdict::Faulty(StampFault::Rate(1.0 - change)));
         }

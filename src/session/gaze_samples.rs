@@ -8,10 +8,8 @@ use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
 /// A gap between gaze samples of this length makes the sampling rate be measured anew, in seconds.
 const GAP_S: f64 = 0.5;
-/// Time over which the sampling rate is measured, in seconds; a first measurement counts after [`FIRST_S`], a further one
-/// after [`FURTHER_S`].
+/// Time over which the sampling rate is measured, in seconds; the first measurement counts from [`FIRST_S`] on.
 const MEASURED_S: f64 = 1.0;
-const FURTHER_S: f64 = 0.5;
 const FIRST_S: f64 = 0.05;
 
 /// Applies a gaze sample: counts it, updates the sampling rate, and records which location the participant looks at.
@@ -54,7 +52,7 @@ fn measure_rate(status: &mut GazeStatus, now: SessionTime, taken: SessionTime) {
     let begun = RateMeasurement { since: now, first_taken: taken, samples: 0 };
     let measured = status.measured.get_or_insert(begun);
     let over_s = now.secs_since(measured.since).max(taken.secs_since(measured.first_taken));
-    if over_s >= if status.rate_hz == 0.0 { FIRST_S } else { FURTHER_S } {
+    if over_s >= if status.rate_hz == 0.0 { FIRST_S } else { MEASURED_S } {
         status.rate_hz = f64::from(measured.samples) / over_s;
     }
     if over_s >= MEASURED_S {

@@ -5,13 +5,14 @@ import math
 import os
 import random
 import re
-import signal
 import socket
 import subprocess
 import sys
 import time
 import tomllib
 from pathlib import Path
+
+from console import Console as Terminal
 
 PAGE = Path("docs/tracker-json.md").read_text()
 PORT = tomllib.loads(Path("sessions/default.toml").read_text())["participant"]["gaze_port"]
@@ -69,9 +70,6 @@ class Console:
         (recording,) = self.out.iterdir()
         return recording
 
-    def pid(self):
-        return int(self.tmux("list-panes", "-F", "#{pane_pid}"))
-
     def checks(self, text):
         """Waits for this in the list of checks before the trial."""
         self.keys(".")
@@ -103,12 +101,12 @@ def connect():
 
 def send_among_nonsense(console):
     """Sends 600 samples, over several connections, cut into pieces anywhere, with lines between that are none."""
-    chance = random.Random(5)
+    chance, begun = random.Random(5), time.monotonic()
     sent = []
     for part in range(3):
         tracker = connect()
         for index in range(200):
-            sample = {"t": 100 + len(sent) / 120, "x": chance.uniform(-0.1, 1.1), "y": chance.random()}
+            sample = {"t": 100 + time.monotonic() - begun, "x": chance.uniform(-0.1, 1.1), "y": chance.random()}
             sample["confidence"] = chance.random()
             sent.append(sample)
             line = json.dumps(sample).encode() + b"\n"
@@ -267,12 +265,18 @@ def check_clocks(tomcom, scratch):
 def check_standing_still(tomcom, scratch):
     """The program is stopped for 6 s: what waited meanwhile is not read as from now, and nothing of it is dropped."""
     for name, t in (("without-t", None), ("with-t", lambda s, n: s)):
-        with Console(tomcom, scratch / name) as console, connect() as tracker:
-            stopper = f"import os, signal, time; time.sleep(3); os.kill({console.pid()}, signal.SIGSTOP); time.sleep(6); os.kill({console.pid()}, signal.SIGCONT)"
-            stop = subprocess.Popen([sys.executable, "-c", stopper])
-            send_by_schedule(tracker, t, 200, 12, 0.0)
-            stop.wait()
-            recording = console.quit()
+        # tmux does not let its programs stand still.
+        arguments = ["--participant", "keyboard", "--gaze", "json", "--out", scratch / name]
+        with Terminal(tomcom, arguments) as console:
+            console.wait_for("READY")
+            stop, go = (f"os.kill({console.process.pid}, signal.{name})" for name in ("SIGSTOP", "SIGCONT"))
+            stopper = subprocess.Popen([sys.executable, "-c", f"import os, signal, time; time.sleep(3); {stop}; time.sleep(6); {go}"])
+            with connect() as tracker:
+                send_by_schedule(tracker, t, 200, 12, 0.0)
+            stopper.wait()
+            console.wait_for("no samples arrive now")
+            console.quit()
+        (recording,) = (scratch / name).iterdir()
         events = recorded(recording)
         gaze = [event for event in events if event["kind"] == "gaze"]
         assert len(gaze) == 2400 and not [event for event in events if event["kind"] == "tracker" and event["what"] == "dropped"], len(gaze)
@@ -296,9 +300,10 @@ def check_held_places(tomcom, scratch):
                     holder.sendall(b" ")
                 except OSError:
                     pass
-        trackers = [connect() for _ in range(8)]
-        for tracker in trackers:
-            send_by_schedule(tracker, None, 120, 0.5, 0.0)
+        trackers = []
+        for _ in range(8):
+            trackers.append(connect())
+            send_by_schedule(trackers[-1], None, 120, 0.5, 0.0)
         recording = console.quit()
     fresh = [event for event in recorded(recording) if event["kind"] == "gaze" and event["x"] < 0.85]
     assert len(fresh) == 8 * 60, len(fresh)

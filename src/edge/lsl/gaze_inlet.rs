@@ -204,6 +204,7 @@ impl GazeInlet {
             match pulled {
                 Ok(Some(stamp_s)) => self.take(stamp_s, &values, channels, &mut stamps, &clock),
                 Ok(None) => {}
+                Err(_) if stamps.is_faulty() => return self.tell(TrackerMessage::Stamps(None)),
                 Err(_) => return Ok(()),
             }
         }

@@ -50,6 +50,11 @@ impl StreamStamps {
         step
     }
 
+    /// Whether the time stamps do not advance as time does.
+    pub fn is_faulty(&self) -> bool {
+        self.sender.is_faulty()
+    }
+
     /// Instant at which a sample that has just arrived was taken, from its time stamp; and a message if the sender's
     /// clock was set, or if its stamps cannot be used.
     pub fn taken(

@@ -4,15 +4,12 @@
 use std::collections::VecDeque;
 
 use super::quality::MAX_HZ;
-use super::stamp_check::{INTERVAL_S, StampCheck, StampFault, StampVerdict};
+use super::stamp_check::{DOUBT_S, INTERVAL_S, StampCheck, StampFault, StampVerdict, ns};
 use crate::base::time::SessionTime;
 
 /// Number of intervals in which samples arrived that give the clock offset: together longer than a network delay, and
 /// shorter than the time in which clocks drift by a millisecond.
 const INTERVALS: usize = 20;
-/// A gaze sample is in doubt if its clock offset differs from the known offset by more than this, in seconds: the
-/// sample was delayed, its time stamp is wrong, or the tracker's clock was set.
-pub(super) const DOUBT_S: f64 = 0.05;
 /// Samples in doubt agree on a new clock offset if their smallest offsets differ by no more than this, in seconds.
 const AGREE_S: f64 = 0.01;
 /// The same for samples that have been in doubt for [`LOST_S`], of which there may be few.
@@ -68,10 +65,6 @@ pub struct ClockStep {
     pub by_ns: i64,
     /// Arrival of the first gaze sample whose session time was uncertain until the clock step was detected.
     pub uncertain_since: SessionTime,
-}
-
-pub(super) const fn ns(seconds: f64) -> i128 {
-    (seconds * 1e9) as i128
 }
 
 impl DeviceClock {

@@ -5,10 +5,12 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::device_clock::{DOUBT_S, ns};
 use super::quality::TOO_OLD_S;
 use crate::base::time::SessionTime;
 
+/// A gaze sample is in doubt if its clock offset differs by more than this from what other samples say, in seconds: the
+/// sample was delayed, its time stamp is wrong, or the tracker's clock was set.
+pub(super) const DOUBT_S: f64 = 0.05;
 /// Length of the intervals in which the smallest clock offset is kept, in seconds: some samples of a slow tracker.
 pub(super) const INTERVAL_S: f64 = 0.25;
 /// Number of successive intervals that show a rate which is far from real time.
@@ -70,7 +72,7 @@ impl StampFault {
             }
             StampFault::Rate(rate) => {
                 let units = [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")];
-                let unit = units.into_iter().find(|(per_s, _)| (rate / per_s - 1.0).abs() < 0.05);
+                let unit = units.into_iter().find(|(per_s, _)| (rate / per_s - 1.0).abs() < 0.25);
                 let (rate, like) = unit.unwrap_or((rate, "counts of samples or frames"));
                 format!("t runs {rate:.0} times as fast as real time, like {like}")
             }
@@ -175,8 +177,8 @@ impl StampCheck {
         };
         let count = |number: fn(&StampInterval) -> u32| in_group(1).map(number).sum::<u32>();
         let (samples, back, far_back) = (count(|one| one.samples), count(|one| one.back), count(|one| one.far_back));
-        let is_more = |part: u32, share: f64| f64::from(part) > share * f64::from(samples);
-        if samples >= BACK && (is_more(back, BACK_SHARE) || is_more(far_back, FAR_BACK_SHARE)) {
+        let is_more = |part: u32, share: f64| samples >= BACK && f64::from(part) > share * f64::from(samples);
+        if is_more(back, BACK_SHARE) {
             return Some(StampVerdict::Faulty(StampFault::GoesBack));
         }
         let newest = self.intervals.range(self.intervals.len().saturating_sub(FEW)..);
@@ -186,6 +188,10 @@ impl StampCheck {
         let few_change = change(&few).filter(|change| is_sure && change.abs() >= FAR);
         if let Some(change) = few_change.or_else(|| change(&groups).filter(|_| groups.len() == GROUPS)) {
             return Some(StampVerdict::Faulty(StampFault::Rate(1.0 - change)));
+        }
+        // In a finer unit than seconds, samples that a network mixed up go far back, too; their rate is found first.
+        if self.intervals.len() > FEW && is_more(far_back, FAR_BACK_SHARE) {
+            return Some(StampVerdict::Faulty(StampFault::GoesBack));
         }
         let is_ordered = self.intervals.iter().all(|one| !one.stands && one.far_back == 0);
         let is_sound = groups.len() == GROUPS && is_ordered && mean_change(&groups)?.abs() <= SOUND_RATE;
@@ -243,6 +249,10 @@ fn change(points: &[OffsetPoint]) -> Option<f64> {
         step * mean.signum() >= STEADY * mean.abs()
     });
     (is_steady && total_s.abs() > least_s).then_some(mean)
+}
+
+pub(super) const fn ns(seconds: f64) -> i128 {
+    (seconds * 1e9) as i128
 }
 
 fn seconds(ns: i128) -> f64 {

@@ -171,7 +171,8 @@ def check_kill(tomcom, folder, pupil):
     time.sleep(1)
     subjects, labels = capture.subjects(), list(capture.labels().values())
     assert subjects.count("recording.started") == subjects.count("recording.stopped") == 1, subjects
-    assert labels == [["trial started", "trial running", "trial ended"]], labels
+    # A trial that is continued is paused at first.
+    assert labels == [["trial started", "trial paused", "trial ended"]], labels
     # Killed again, and Capture's recording is ended by hand meanwhile: the continued trial has a new one.
     with Console(tomcom, [session(folder / "again", PORT + 7), "--out", folder / "again" / "recordings"]) as console:
         console.wait_for(r"gaze +\d\d+ Hz")
@@ -193,7 +194,7 @@ def check_kill(tomcom, folder, pupil):
     subjects, labels = capture.subjects(), list(capture.labels().values())
     capture.kill()
     assert subjects.count("recording.started") == subjects.count("recording.stopped") == 3, subjects
-    assert ["trial running", "trial ended"] in labels, labels
+    assert ["trial paused", "trial ended"] in labels, labels
     print("killed in a trial and continued: Capture's recording goes on and is ended with the trial; one that was ended meanwhile is followed by a new one", flush=True)
 
 

@@ -56,6 +56,8 @@ pub mod stream_head;
 pub mod study_part_file;
 pub mod temporary;
 pub mod terminal;
+pub mod terminal_bytes;
+pub mod terminal_input;
 mod tracker_folder;
 pub mod training;
 mod type_error;

@@ -21,7 +21,8 @@ use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::gaze_json;
 use crate::edge::lsl::{self, InletThreadGuard, LslError};
 use crate::edge::pupil::{self, CaptureConfiguration, CaptureRequest};
-use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
+use crate::edge::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, theme};
+use crate::edge::terminal_input::TerminalInput;
 use crate::gaze::surface::SurfaceHomography;
 use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
@@ -115,7 +116,8 @@ impl OperatorDesk {
     pub fn without_devices(console: &ConsoleSpec) -> Result<OperatorDesk, TerminalError> {
         let screen = TerminalScreen::take().map_err(TerminalError)?;
         let theme = theme(console, screen.ground);
-        let seat = OperatorInput { hands: TerminalInput::default(), end: Box::pin(asked_to_end()) };
+        let hands = TerminalInput::start().map_err(TerminalError)?;
+        let seat = OperatorInput { hands, end: Box::pin(asked_to_end()) };
         let (tracker, wall, lsl) = (GazeTracker::default(), WallDisplay::default(), LslDesk::default());
         Ok(OperatorDesk { screen, theme, seat, tracker, wall, lsl })
     }

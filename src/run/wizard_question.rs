@@ -6,6 +6,7 @@ use super::desk::{OperatorDesk, is_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::console::ConsoleMessage;
+use crate::console::pasting::refusal_of_paste;
 use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
 use crate::session::wall_display::AnswerDevice;
@@ -31,7 +32,7 @@ pub(super) async fn ask_consent(
     question: &StartQuestion,
     on_display: bool,
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
-    let mut shell = OpenQuestion { question, on_display, theme: desk.theme, dirty: true };
+    let mut shell = OpenQuestion { question, on_display, theme: desk.theme, notice: None, dirty: true };
     let reply = event_loop::run(&mut shell, desk).await?;
     Ok(match reply {
         Some((StartQuestionReply::Answer(index), on)) => Some((index, on)),
@@ -45,6 +46,8 @@ struct OpenQuestion<'a> {
     /// Whether the participant's page can answer the question.
     on_display: bool,
     theme: Theme,
+    /// Why the last input had no effect.
+    notice: Option<&'static str>,
     /// Whether the screen with the question has to be redrawn.
     dirty: bool,
 }
@@ -69,13 +72,20 @@ impl ConsoleShell for OpenQuestion<'_> {
         };
         self.dirty = true;
         Ok(match message {
-            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, AnswerDevice::Console)),
+            ConsoleMessage::Key(key) => {
+                self.notice = None;
+                self.question.reply(&key).map(|reply| (reply, AnswerDevice::Console))
+            }
+            ConsoleMessage::Paste(text) => {
+                self.notice = Some(refusal_of_paste(text.as_deref()));
+                None
+            }
             _ => None,
         })
     }
 
     fn view(&self) -> ShellView<'_> {
-        ShellView::Question(self.question, self.theme)
+        ShellView::Question(self.question, self.notice, self.theme)
     }
 
     fn drawn(&mut self) {

@@ -36,6 +36,8 @@ mod robot_on_display;
 mod scenarios;
 mod session;
 mod study;
+#[cfg(unix)]
+mod terminal_input;
 mod viewers;
 
 /// Holds a text against `tests/snapshots/THEME__NAME.snap`.

@@ -149,6 +149,14 @@ impl RerunWriter {
         moment.rows.len() as u64
     }
 
+    /// Closes the stream's file, to which nothing is written any more; returns false if there is none. Viewers still get
+    /// the stream.
+    pub fn close_file(&mut self) -> bool {
+        let before = self.streams.len();
+        self.streams.retain(|one| one.piece.is_none());
+        self.streams.len() < before
+    }
+
     /// Completes the stream's file, if there is one; connected viewers keep the data that they have.
     pub fn finish(&self) {
         self.streams.iter().for_each(|one| one.stream.finalize_deferred_sinks());

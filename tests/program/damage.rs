@@ -14,6 +14,8 @@ use tomcom::edge::log::{LOG_NAME, RecordingLock};
 
 use crate::tmux::{PATIENCE, TOMCOM, Terminal, tomcom};
 
+/// Length of a log that has a middle, in bytes: its end is compared more often than the rest.
+const LENGTH: usize = 150_000;
 /// The name of a log that was moved aside.
 const ASIDE: &str = "events.jsonl.damaged";
 
@@ -56,7 +58,9 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     terminal.operate("default.toml", &format!("2> {}", errors.display()));
     terminal.start();
     terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
-    let (recording, before) = (terminal.recording(), terminal.log());
+    let recording = terminal.recording();
+    terminal.wait("a log of some length", || terminal.log().len() > LENGTH);
+    let before = terminal.log();
     let began = Instant::now();
     bad(&recording.join(LOG_NAME));
     terminal.see("RECORDING LOST");
@@ -99,6 +103,7 @@ fn a_log_that_another_program_overwrites_is_told_at_once_and_saved() {
         log.seek(at).and_then(|_| log.write_all(b"x")).expect("written");
     };
     check_damage("overwritten-header", |log| write(log, SeekFrom::Start(30)), "overwritten by another program");
+    check_damage("overwritten-middle", |log| write(log, SeekFrom::Start(50_000)), "overwritten by another program");
     check_damage("overwritten-end", |log| write(log, SeekFrom::End(-300)), "overwritten by another program");
     check_damage("appended", |log| write(log, SeekFrom::End(40_000)), "by another program");
 }

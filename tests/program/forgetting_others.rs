@@ -215,7 +215,7 @@ fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
         fs::remove_dir_all(lab.at(root)).expect("removed");
         // Nothing can be saved where it was.
         lab.put(root, "");
-        let told = log.check().expect_err("it is gone").to_string();
+        let told = log.check(false).expect_err("it is gone").to_string();
         let (_, saved) = told.split_once("is in ").expect("where it was saved");
         let to = lab.temporary.join(format!("tomcom-rescued-{}", root.len())).join("2026-03-14-P01-1");
         fs::create_dir_all(to.parent().expect("a folder")).expect("made");

@@ -170,7 +170,7 @@ fn rescued(lab: &RecordingsFolder, root: &str) -> PathBuf {
     let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header()).expect("a recording");
     fs::remove_dir_all(lab.at(root)).expect("removed");
     fs::write(lab.at(root), "").expect("written");
-    let told = log.check().expect_err("it is gone").to_string();
+    let told = log.check(false).expect_err("it is gone").to_string();
     told.split_once("is in ").expect("where it was saved").1.into()
 }
 

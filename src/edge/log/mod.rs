@@ -106,6 +106,13 @@ pub enum RecordingWriteError {
 }
 
 impl RecordingWriteError {
+    /// Whether the recording cannot be written because the disk is full, so that it can be as soon as there is room.
+    pub fn is_disk_full(&self) -> bool {
+        let is_full =
+            |reason: &io::Error| matches!(reason.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded);
+        matches!(self, RecordingWriteError::Unwritable { reason, .. } if is_full(reason))
+    }
+
     fn unwritable(path: impl Into<PathBuf>, reason: io::Error) -> RecordingWriteError {
         RecordingWriteError::Unwritable { path: path.into(), reason, saved: None }
     }

@@ -61,6 +61,9 @@ pub struct LogReader {
     next_seq: u64,
     /// Last line of the log without its line end: the line was cut off, or is not yet written completely.
     partial: Vec<u8>,
+    /// Number of the first line without any text since the last event. At the end of a log such lines are no damage: an
+    /// editor or a copy can add them.
+    blank: Option<usize>,
     ended: bool,
 }
 
@@ -98,7 +101,8 @@ impl LogReader {
         let layout = (Path::new(&header.layout.path), header.layout.text.clone());
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
-        Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
+        let (partial, blank) = (Vec::new(), None);
+        Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial, blank, ended: false })
     }
 
     /// The first number in the header that is outside the range which settings files may have today; `None` if there is
@@ -131,20 +135,29 @@ impl LogReader {
             });
         }
         self.before = None;
-        let room = (MAX_LINE - self.partial.len()) as u64;
-        let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.partial);
-        read.map_err(|reason| FileError::unreadable(&self.path, reason, "a readable recording"))?;
-        if self.partial.last() != Some(&b'\n') {
-            self.number += usize::from(self.partial.len() == MAX_LINE);
-            return match self.partial.len() {
-                MAX_LINE => Err(self.wrong("", 0, "a line without an end")),
-                _ => Ok(None),
-            };
+        loop {
+            let room = (MAX_LINE - self.partial.len()) as u64;
+            let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.partial);
+            read.map_err(|reason| FileError::unreadable(&self.path, reason, "a readable recording"))?;
+            if self.partial.last() != Some(&b'\n') {
+                self.number += usize::from(self.partial.len() == MAX_LINE);
+                return match self.partial.len() {
+                    MAX_LINE => Err(self.wrong("", 0, "a line without an end")),
+                    _ => Ok(None),
+                };
+            }
+            self.partial.pop();
+            self.number += 1;
+            let bytes = std::mem::take(&mut self.partial);
+            match self.blank {
+                _ if is_blank(&bytes) => self.blank = self.blank.or(Some(self.number)),
+                Some(number) => {
+                    self.number = number;
+                    return Err(self.wrong("", 0, "an empty line before another event"));
+                }
+                None => return self.event_of(bytes).map(Some),
+            }
         }
-        self.partial.pop();
-        self.number += 1;
-        let bytes = std::mem::take(&mut self.partial);
-        self.event_of(bytes).map(Some)
     }
 
     fn event_of(&mut self, bytes: Vec<u8>) -> FileResult<LogLine> {
@@ -181,7 +194,7 @@ impl LogReader {
         let mut lines = tail.split(|&byte| byte == b'\n').rev();
         // After the last line end comes nothing, or a line that is not complete.
         lines.next();
-        Ok(lines.next().and_then(|line| serde_json::from_slice(line).ok()))
+        Ok(lines.find(|line| !is_blank(line)).and_then(|line| serde_json::from_slice(line).ok()))
     }
 
     /// Whether the events read so far lack the session's end.
@@ -281,6 +294,11 @@ fn open_before(
         true => Ok(first),
         false => Err(wrong(format!("a part of another session than that of {name}"), "the session that it continues")),
     }
+}
+
+/// Whether a line of a log has no text.
+pub(super) fn is_blank(line: &[u8]) -> bool {
+    line.trim_ascii().is_empty()
 }
 
 /// Whether the first line of a log is what a power failure leaves of a header: nothing, zeros, or the beginning of a

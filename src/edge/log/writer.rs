@@ -17,6 +17,9 @@ use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 
 /// Longest time, in session time, for which gaze samples are held back before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
+/// Largest number of bytes that are handed on at once: less than the buffer, so that they are taken as a whole or not at
+/// all.
+const PIECE: usize = 1 << 14;
 /// Suffix of the folders of later parts: `<recording>-part2`, `<recording>-part3`, …
 const PART: &str = "-part";
 
@@ -26,6 +29,8 @@ pub struct LogWriter {
     folder: PathBuf,
     path: PathBuf,
     out: BufWriter<GuardedFile>,
+    /// Bytes of the last event that `out` has not taken, since the log could not be written.
+    left: Vec<u8>,
     /// Whether events are handed to the operating system at once, because other programs rely on them.
     prompt: bool,
     flushed_at: SessionTime,
@@ -80,10 +85,11 @@ impl LogWriter {
             OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&begun).map_err(failed)?;
         let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
         let mut out = BufWriter::with_capacity(1 << 16, file);
-        write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
+        line(header).and_then(|line| out.write_all(&line)).and_then(|()| out.flush()).map_err(failed)?;
         fs::rename(&begun, &path).map_err(failed)?;
         let home = fs::canonicalize(&folder).unwrap_or_else(|_| folder.clone());
-        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, home, lock })
+        let (left, flushed_at) = (Vec::new(), SessionTime::ZERO);
+        Ok(LogWriter { folder, path, out, left, prompt, flushed_at, settings, home, lock })
     }
 
     /// Folder of the recording that is being written.
@@ -98,8 +104,15 @@ impl LogWriter {
     }
 
     /// Appends an event to the log.
+    ///
+    /// # Errors
+    /// The log cannot be written. Once there is room on a full disk, [`LogWriter::flush`] writes the event.
     pub fn append(&mut self, stamped: &TimestampedEvent) -> Result<(), RecordingWriteError> {
-        write_line(&mut self.out, stamped).map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))?;
+        let written = line(stamped).and_then(|line| {
+            self.left.extend(line);
+            self.hand_on()
+        });
+        written.map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))?;
         let waits = stamped.event.is_sample() && stamped.time - self.flushed_at < FLUSH_AFTER;
         if self.prompt && !waits {
             self.flushed_at = stamped.time;
@@ -110,22 +123,34 @@ impl LogWriter {
 
     /// Hands all events that were held back to the operating system.
     pub fn flush(&mut self) -> Result<(), RecordingWriteError> {
-        self.out.flush().map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
+        let flushed = self.hand_on().and_then(|()| self.out.flush());
+        flushed.map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
+    }
+
+    /// Hands the bytes of the last event on to the buffer, which writes them if it is full.
+    fn hand_on(&mut self) -> io::Result<()> {
+        while !self.left.is_empty() {
+            let piece = self.left.len().min(PIECE);
+            self.out.write_all(&self.left[..piece])?;
+            self.left.drain(..piece);
+        }
+        Ok(())
     }
 
     /// Checks that the log is still at its place and undamaged: an open file accepts every event even after it was
     /// deleted, moved, cut, overwritten or made read-only. If the log is not, the recording is saved into a folder of
-    /// the same name: at its place, or else below the system's folder for temporary files.
+    /// the same name: at its place, or else below the system's folder for temporary files. Every check compares a part
+    /// of the log with what was written, or `whole`, all of it.
     ///
     /// # Errors
     /// The log is gone or damaged, or must not be written any more.
-    pub fn check(&mut self) -> Result<(), RecordingWriteError> {
+    pub fn check(&mut self, whole: bool) -> Result<(), RecordingWriteError> {
         if !is_same(self.out.get_ref().file(), &self.path) {
             let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
             let reason = io::Error::new(io::ErrorKind::NotFound, found);
             return Err(RecordingWriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue(false) });
         }
-        if let Some(found) = self.out.get_mut().damage() {
+        if let Some(found) = self.out.get_mut().damage(whole) {
             return Err(RecordingWriteError::Damaged { path: self.path.clone(), found, saved: self.rescue(true) });
         }
         let is_readonly = |path: &Path| fs::metadata(path).is_ok_and(|data| data.permissions().readonly());
@@ -221,12 +246,12 @@ pub fn is_written_settings(text: &str) -> bool {
     spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
 }
 
-/// Writes a line of the log completely or not at all.
-fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+/// A line of the log, with its line end.
+fn line(value: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut line = Vec::with_capacity(256);
     value.serialize(&mut serde_json::Serializer::with_formatter(&mut line, FiniteNumbers))?;
     line.push(b'\n');
-    out.write_all(&line)
+    Ok(line)
 }
 
 /// JSON serialiser that rejects `null`: in a log, only numbers that are not finite would become `null`, and a log with

@@ -264,7 +264,7 @@ impl Live {
                 self.input(Event::SessionEnded);
             }
             self.flush_log();
-            self.check_log();
+            self.check_log(true);
         }
         self.capture.leave(Instant::now());
         if let Some(viewing) = self.viewing.take() {

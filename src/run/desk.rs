@@ -45,7 +45,7 @@ mod lsl_desk;
 
 use lsl_desk::LslDesk;
 use wall::WallDisplay;
-pub(super) use wall::{PageInput, is_consent};
+pub(super) use wall::{PageInput, hear_consent};
 
 /// Terminal and devices that all recordings of a series share.
 pub(super) struct OperatorDesk {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::Sender;
-use tokio::time::timeout;
+use tokio::time::{sleep, timeout};
 
 use super::connection_table::ConnectionHandle;
 use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
@@ -182,7 +182,11 @@ impl SampleReader<'_> {
         };
         let verdict = match self.is_paired {
             true => Ok(()),
-            false => lock(self.gate).pair(self.from, code.as_deref(), Instant::now()),
+            false => {
+                let delay = code.as_deref().map(|code| lock(self.gate).delay(code, Instant::now()));
+                sleep(delay.unwrap_or_default()).await;
+                lock(self.gate).pair(self.from, code.as_deref(), Instant::now())
+            }
         };
         self.is_paired = verdict.is_ok();
         let answer = match verdict {
@@ -231,6 +235,21 @@ mod tests {
         admitted_per_address: 1,
         silence: Duration::from_secs(5),
     };
+
+    #[test]
+    fn a_first_line_that_is_longer_than_any_line_is_foreign_before_its_time_is_over() {
+        for beginning in ["", "{", "{\"x\": "] {
+            let mut lines = LineReader::default();
+            for &byte in beginning.as_bytes() {
+                assert!(lines.take(byte).is_none() && !lines.is_foreign(), "{beginning:?}");
+            }
+            let blanks = (0..=MAX_LINE).take_while(|_| {
+                lines.take(b' ');
+                !lines.is_foreign()
+            });
+            assert_eq!(blanks.count(), MAX_LINE - beginning.len(), "{beginning:?}");
+        }
+    }
 
     #[tokio::test]
     async fn samples_arrive_and_what_is_none_is_counted() {

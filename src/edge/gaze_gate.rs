@@ -61,6 +61,11 @@ impl GazeAccessCheck {
         }
     }
 
+    /// Time to wait before the pairing code of a sender is to be checked ([`GazeAccessCheck::pair`]).
+    pub fn delay(&self, code: &str, now: Instant) -> Duration {
+        self.desk.as_ref().map_or(Duration::ZERO, |desk| desk.delay(None, code, now))
+    }
+
     /// Checks the pairing code of a sender that needs a code, and reports the sender if it is rejected.
     ///
     /// # Errors
@@ -94,6 +99,10 @@ impl GazeAccessCheck {
         match self.admission(from.ip()) {
             GazeAdmission::Open => Some(lines),
             GazeAdmission::ByCode if self.paired.contains(&from) => Some(lines),
+            GazeAdmission::ByCode if code.as_ref().is_some_and(|code| !self.delay(code, now).is_zero()) => {
+                self.refuse(from.ip(), GazeSenderRejection::Locked, now);
+                None
+            }
             GazeAdmission::ByCode => {
                 self.pair(from.ip(), code.as_deref(), now).ok()?;
                 self.paired.push_back(from);

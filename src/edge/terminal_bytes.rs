@@ -49,8 +49,9 @@ enum ParserState {
     LinuxKey,
     /// `ESC O`: an arrow or function key.
     Ss3,
-    /// `ESC [ M`, with the bytes of button, column and row: the oldest form of mouse reports.
-    OldMouse(Vec<u8>),
+    /// `ESC [ M`, with the number of bytes still to come: the oldest form of mouse reports. Terminals are asked for newer
+    /// ones, so these bytes are skipped; but a space among them counts as the space bar.
+    OldMouse(u8),
     /// A string for programs, such as an answer to a query: `ESC` and this byte, until `ESC \` or BEL; `is_empty` says
     /// that nothing has followed yet.
     ControlString { opener: u8, is_empty: bool },
@@ -124,16 +125,11 @@ impl TerminalParser {
             return is_text;
         }
         self.state = match (std::mem::take(&mut self.state), byte) {
-            (ParserState::OldMouse(mut report), 0x20..) => {
-                report.push(byte);
-                match report[..] {
-                    [button, column, row] => {
-                        let report = [button, column, row].map(|byte| u32::from(byte) - 0x20);
-                        messages.extend(mouse(report, false));
-                        ParserState::Ground
-                    }
-                    _ => ParserState::OldMouse(report),
+            (ParserState::OldMouse(left), 0x20..) => {
+                if byte == b' ' {
+                    messages.push(typed(' ', false));
                 }
+                if left > 1 { ParserState::OldMouse(left - 1) } else { ParserState::Ground }
             }
             // The space bar ends whatever came before.
             (ParserState::Escape, b' ') => begin(byte, true, messages),
@@ -174,7 +170,9 @@ impl TerminalParser {
                 ParserState::Ground
             }
             (ParserState::ControlString { .. }, BEL) => ParserState::Ground,
-            (ParserState::ControlString { opener, .. }, 0x21..) => ParserState::ControlString { opener, is_empty: false },
+            (ParserState::ControlString { opener, .. }, 0x21..) => {
+                ParserState::ControlString { opener, is_empty: false }
+            }
             // The byte belongs to nothing that came before.
             (_, _) => begin(byte, false, messages),
         };
@@ -279,12 +277,13 @@ fn sequence(parameters: &[u8], last: u8, messages: &mut Vec<ConsoleMessage>) -> 
         ([b'<', ..], b'M' | b'm') => report(&fields).and_then(|report| mouse(report, last == b'm')),
         // Answers to queries.
         ([b'<' | b'=' | b'>' | b'?', ..], _) => None,
-        ([], b'M') => return ParserState::OldMouse(Vec::new()),
+        ([], b'M') => return ParserState::OldMouse(3),
         ([], b'[') => return ParserState::LinuxKey,
         ([], b'I') => Some(ConsoleMessage::Focus(true)),
         ([], b'O') => Some(ConsoleMessage::Focus(false)),
-        (_, b'M') => report(&fields)
-            .and_then(|[button, column, row]| mouse([button.checked_sub(0x20)?, column, row], false)),
+        (_, b'M') => {
+            report(&fields).and_then(|[button, column, row]| mouse([button.checked_sub(0x20)?, column, row], false))
+        }
         (b"200", b'~') => return ParserState::Paste(OpenPaste::default()),
         (_, b'~') => numbered_key(first).map(|code| key(code, modifiers)),
         (_, b'u') => {

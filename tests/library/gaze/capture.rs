@@ -330,7 +330,7 @@ async fn requests_wait_for_a_capture_that_is_not_there_without_filling_their_cha
     for _ in 0..room {
         orders.try_send(CaptureRequest::Record("P07".to_string())).expect("room");
     }
-    let until = Instant::now() + Duration::from_secs(30);
+    let until = Instant::now() + Duration::from_secs(300);
     while orders.capacity() < room {
         assert!(Instant::now() < until, "nobody takes the requests: {} of {room} places are free", orders.capacity());
         tokio::time::sleep(Duration::from_millis(20)).await;

@@ -85,7 +85,8 @@ fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
     let mut slow = SeekableReplay::begin(recording).expect("it opens");
     slow.read_to_trial().expect("events");
     assert!(!slow.is_read(), "the rest is read later");
-    slow.wind(slow.trial_start());
+    let start = slow.trial_start();
+    slow.wind(start);
     assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, SessionTime::from_secs_f64(0.5)));
     assert!(slow.trial_length() > SessionTime::ZERO);
     whole.wind(whole.length().1);

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::belief::Belief;
-use crate::base::number_range::is_zero;
 use crate::base::rng::Stream;
 use crate::kitchen::{Kitchen, WeightedWorlds};
 
@@ -20,17 +19,13 @@ pub struct ChoiceParameters {
     pub lapse_anywhere: f64,
     /// Cost of waiting instead of pressing, in presses, in the choice model.
     pub wait_cost: f64,
-    /// Share of the people who, at a given time, consider only one order in their decisions, whatever they believe about
-    /// the others. A header without the key means that everybody considers all orders.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub one_order: f64,
     /// Number of drawn worlds that represent a belief.
     pub cases: usize,
 }
 
 impl Default for ChoiceParameters {
     fn default() -> Self {
-        ChoiceParameters { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, one_order: 0.0, cases: 32 }
+        ChoiceParameters { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, cases: 32 }
     }
 }
 

@@ -7,9 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::choice_parameters::ChoiceParameters;
 use super::fitting::HumanModelParameter;
-use super::model::{
-    AdaptationSettings, HumanModel, InferenceSettings, LookingModel, PerceptionModel, PriorModel, TransitionModel,
-};
+use super::model::{HumanModel, InferenceSettings, LookingModel, PerceptionModel, PriorModel, TransitionModel};
 use super::signal_model::SignalModel;
 
 /// Fitted parameters of persons by the persons' codes; parameters that a person's table leaves out are the
@@ -44,8 +42,6 @@ pub struct HumanModelFile {
     transition: TransitionModel,
     decision: ChoiceParameters,
     signal: SignalModel,
-    #[serde(skip_serializing_if = "AdaptationSettings::is_off")]
-    adapt: AdaptationSettings,
     inference: InferenceSettings,
     /// Parameters of single persons; `None` if the file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,14 +51,13 @@ pub struct HumanModelFile {
 impl HumanModelFile {
     /// The content of a file with these parameters of the population and of persons.
     pub fn new(population: HumanModel, people: Option<FittedPeople>) -> HumanModelFile {
-        let HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference } = population;
-        HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, people }
+        let HumanModel { prior, perception, looking, transition, decision, signal, inference } = population;
+        HumanModelFile { prior, perception, looking, transition, decision, signal, inference, people }
     }
 
     /// The parameters of the population, which hold for everybody if the file has no persons.
     pub fn population(&self) -> HumanModel {
-        let HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, .. } =
-            self.clone();
-        HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference }
+        let HumanModelFile { prior, perception, looking, transition, decision, signal, inference, .. } = self.clone();
+        HumanModel { prior, perception, looking, transition, decision, signal, inference }
     }
 }

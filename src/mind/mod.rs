@@ -1,7 +1,6 @@
 //! The human's mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how
 //! the human decides.
 
-pub mod attention_posterior;
 pub mod belief;
 pub mod choice;
 pub mod choice_parameters;
@@ -10,7 +9,6 @@ pub mod filter;
 pub mod fitted_people;
 pub mod fitting;
 pub mod gaze_presence;
-pub mod lapse_posterior;
 pub mod model;
 pub mod observation;
 pub mod recorded_estimate;

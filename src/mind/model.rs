@@ -25,33 +25,8 @@ pub struct HumanModel {
     pub decision: ChoiceParameters,
     /// How the human notices and reads signals.
     pub signal: SignalModel,
-    /// What the estimate learns about the person in a trial.
-    #[serde(skip_serializing_if = "AdaptationSettings::is_off")]
-    pub adapt: AdaptationSettings,
     /// Settings of the computation that infers the belief, which are no properties of people.
     pub inference: InferenceSettings,
-}
-
-/// Which parameters the estimate adapts to the person in a trial, press by press.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct AdaptationSettings {
-    /// Whether the estimate learns how often the person slips.
-    pub lapse: bool,
-    /// Whether the estimate learns how attentive the person is: how fast the person reads, and how often it looks. A
-    /// header without the key means that it does not.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub attention: bool,
-}
-
-impl AdaptationSettings {
-    /// Everything that can be adapted to the person is.
-    pub const ALL: AdaptationSettings = AdaptationSettings { lapse: true, attention: true };
-
-    /// Whether nothing is adapted to the person, in which case files and headers leave this table out.
-    pub(super) fn is_off(&self) -> bool {
-        *self == AdaptationSettings::default()
-    }
 }
 
 /// The human's belief at the start of a trial (prior).
@@ -67,8 +42,7 @@ pub struct PriorModel {
     pub recipe_truth: f64,
     /// Share of the remaining probability that goes to variants which look like the true recipe, where there are any.
     pub recipe_look_alike: f64,
-    /// Precision (sum of the alphas) of the Dirichlet about a recipe: small where people are certain of one variant from
-    /// the start, large where they are not before they recall it ([`TransitionModel::recall_precision`]).
+    /// Precision (sum of the alphas) of the Dirichlet about a recipe: small, since people are certain of one variant.
     pub recipe_precision: f64,
 }
 
@@ -94,9 +68,6 @@ pub const CONFIDENCE_RAMP: f64 = 0.4;
 pub struct PerceptionModel {
     /// Reading rate lambda at distance 0 and full confidence, in readings per second.
     pub reading_rate_hz: f64,
-    /// Time of a look, at distance 0 and full confidence, after which reading begins, in seconds: gaze that only passes
-    /// reads nothing.
-    pub reading_begins_s: f64,
     /// Radius r of the area around the fixation that is read, in degrees of the visual field.
     pub radius_deg: f64,
     /// Distance from the eyes to the display, in metres.
@@ -120,7 +91,6 @@ impl Default for PerceptionModel {
     fn default() -> Self {
         PerceptionModel {
             reading_rate_hz: 5.0,
-            reading_begins_s: 0.0,
             radius_deg: 2.0,
             viewing_distance_m: 2.0,
             look_alike: 0.04,
@@ -207,22 +177,9 @@ impl LocationReadingRate {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransitionModel {
-    /// Half-life with which a belief about a recipe decays to what is left of a forgotten one, in seconds: of how many
-    /// people still hold it, or, where recipes are recalled, of its distance from that while the dish is not ordered.
+    /// Half-life with which beliefs about a recipe decay to the prior, in seconds: of how many people still hold what
+    /// they have learned.
     pub recipe_half_life_s: f64,
-    /// Expected probability of the true recipe in what is left of a forgotten recipe: beliefs decay to it. Absent: that of
-    /// the prior ([`PriorModel::recipe_truth`]), as if nothing of the instruction before the trial were forgotten.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub forgotten_truth: Option<f64>,
-    /// Precision with which a recipe is recalled when its dish is ordered: the belief becomes one that is drawn from a
-    /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. The same happens to
-    /// those who find their version wrong, as it could not be served. Absent: orders do not change what is held of
-    /// recipes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub recall_precision: Option<f64>,
-    /// Half-life of a recalled recipe while its dish is ordered, in seconds: then the recipe is recalled anew from what is
-    /// left of it. It has an effect only where `recall_precision` is set.
-    pub recall_half_life_s: f64,
     /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
     /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
     pub foresight: f64,
@@ -230,17 +187,11 @@ pub struct TransitionModel {
 
 impl Default for TransitionModel {
     fn default() -> Self {
-        TransitionModel {
-            recipe_half_life_s: 200.0,
-            forgotten_truth: None,
-            recall_precision: None,
-            recall_half_life_s: 20.0,
-            foresight: 0.2,
-        }
+        TransitionModel { recipe_half_life_s: 200.0, foresight: 0.2 }
     }
 }
 
-/// Settings of the inference of the belief: from which evidence, and with which sample sizes.
+/// Sample sizes of the inference of the belief.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InferenceSettings {
@@ -254,22 +205,11 @@ pub struct InferenceSettings {
     pub max_beliefs: usize,
     /// Number of worlds from which the effect of a robot press on the belief is predicted.
     pub predictions: usize,
-    /// Whether waiting is evidence: a human who waits believes that no press is useful now; a human who presses
-    /// believes that some press is.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub waiting: bool,
 }
 
 impl Default for InferenceSettings {
     fn default() -> Self {
-        InferenceSettings {
-            beliefs: 256,
-            states: 32,
-            min_effective: 32.0,
-            max_beliefs: 512,
-            predictions: 64,
-            waiting: false,
-        }
+        InferenceSettings { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 512, predictions: 64 }
     }
 }
 

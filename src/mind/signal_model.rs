@@ -33,10 +33,6 @@ pub struct SignalModel {
     /// Probability that somebody who reads a signal takes it for any of the other values.
     #[serde(skip_serializing_if = "is_zero")]
     pub misread: f64,
-    /// Precision of the prior for learning how often this person notices signals: `noticed` counts as this number of
-    /// signals; 0: nothing is learned.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub noticed_precision: f64,
     /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured this
     /// probability; the default stands for a person who notices most proposals and makes most of them.
     #[serde(skip_serializing_if = "is_usual_following")]
@@ -64,7 +60,6 @@ impl Default for SignalModel {
             delay_s: 0.0,
             reading_rate_hz: READING_RATE_HZ,
             misread: 0.0,
-            noticed_precision: 0.0,
             follows: FOLLOWS,
         }
     }
@@ -76,17 +71,11 @@ impl SignalModel {
         self.delay_s > 0.0
     }
 
-    /// Expected probability that a signal about a location of this kind is noticed, once `read` of `shown` signals have
-    /// been read: the mean of a Beta distribution with the prior precision `noticed_precision`; read signals of both
-    /// kinds count as the same evidence.
-    pub fn expected_noticed(&self, kind: LocationKind, read: f64, shown: f64) -> f64 {
-        let before = match kind {
+    /// Probability that a signal about a location of this kind is noticed.
+    pub fn noticed_at(&self, kind: LocationKind) -> f64 {
+        match kind {
             LocationKind::Order => self.noticed,
             _ => self.highlight_noticed.unwrap_or(self.noticed),
-        };
-        match self.noticed_precision > 0.0 {
-            true => (self.noticed_precision * before + read) / (self.noticed_precision + shown),
-            false => before,
         }
     }
 

@@ -102,7 +102,7 @@ pub enum Event {
         order: String,
     },
     /// The human has not pressed for unusually long, compared with the human's own intervals between presses. Recorded
-    /// only where it has consequences: where the assistant is then asked for advice, or where waiting is evidence.
+    /// only where the assistant is then asked for advice.
     HumanWaits {
         /// Time since the human's last press, without pauses.
         silent_ns: SessionTime,

@@ -179,10 +179,9 @@ impl SessionSpec {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == ShadowMode::On
     }
 
-    /// Whether unusually long silence of the human is recorded: where the assistant is then asked for advice, or where
-    /// waiting is evidence about the human's beliefs.
+    /// Whether unusually long silence of the human is recorded, so that the assistant is then asked for advice.
     pub fn notes_silence(&self) -> bool {
-        self.human.inference.waiting || self.assistant.asks_in_silence && self.asks_assistant()
+        self.assistant.asks_in_silence && self.asks_assistant()
     }
 
     /// Whether false beliefs that the gaze alone suggests are recorded, so that the assistant is then asked for advice.

@@ -28,8 +28,6 @@ struct Look {
     unread: f64,
     /// Probability that the location has not been read since that last event.
     survived: f64,
-    /// Time for which the location has been looked at in this look, in seconds at full reading rate.
-    looked_s: f64,
     /// Code of the content that the display showed at the last sample of the look.
     code: u8,
     /// Time of the last sample of the look.
@@ -37,16 +35,6 @@ struct Look {
 }
 
 impl Look {
-    /// Counts time of looking, in seconds at full reading rate; returns the share of it in which the location can be read
-    /// already, where reading begins after `begins_s`.
-    fn look_on(&mut self, added_s: f64, begins_s: f64) -> f64 {
-        self.looked_s += added_s;
-        if begins_s <= 0.0 {
-            return 1.0;
-        }
-        ((self.looked_s - begins_s) / added_s.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
-    }
-
     /// Applies a probability `chance` that the location is read, given that it has not been read in this look. Returns
     /// the share of the present belief that the reading replaces.
     fn read(&mut self, chance: f64) -> f64 {
@@ -75,10 +63,7 @@ impl GazeBeliefUpdate {
             (0..values).map(|value| confusion(kitchen, model, LocationId(index as u8), value)).collect()
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
-        let looks = vec![
-            Look { unread: 1.0, survived: 1.0, looked_s: 0.0, code: 0, last: SessionTime::ZERO };
-            confusions.len()
-        ];
+        let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
         GazeBeliefUpdate { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
     }
 
@@ -137,14 +122,13 @@ impl GazeBeliefUpdate {
             let rate_hz = self.rate.at(distance_m, confidence);
             let code = state.code(LocationId(index as u8));
             if code != look.code || taken.secs_since(look.last) > model.look_ends_s {
-                (look.unread, look.survived, look.looked_s) = (1.0, 1.0, 0.0);
+                (look.unread, look.survived) = (1.0, 1.0);
                 look.code = code;
             }
             if rate_hz >= ELSEWHERE * full_hz * confidence {
                 look.last = taken;
             }
-            let read_s = known_s * look.look_on(rate_hz / full_hz * known_s, model.reading_begins_s);
-            let read = look.read(-(-rate_hz * read_s).exp_m1());
+            let read = look.read(-(-rate_hz * known_s).exp_m1());
             if read < NEGLIGIBLE {
                 continue;
             }

@@ -29,8 +29,6 @@ struct Look {
     code: u8,
     /// Time of the last sample.
     last: SessionTime,
-    /// Time of looking, in seconds at full reading rate.
-    looked_s: f64,
 }
 
 /// Tracks looks at locations and the recent states of the display.
@@ -80,17 +78,13 @@ impl LookTracker {
             let look = &mut self.looks[index];
             let begins = code != look.code || taken.secs_since(look.last) > model.look_ends_s;
             if begins {
-                *look = Look { code, looked_s: 0.0, ..*look };
+                *look = Look { code, ..*look };
             }
             if rate_hz >= ELSEWHERE * model.reading_rate_hz * confidence {
                 look.last = taken;
             }
-            let before_s = look.looked_s;
-            look.looked_s += rate_hz / model.reading_rate_hz * known_s;
-            let begun_s = |looked_s: f64| (looked_s - model.reading_begins_s).max(0.0);
-            let readable_s = begun_s(look.looked_s) - begun_s(before_s);
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
-            let chance = 1.0 - (-model.reading_rate_hz * readable_s).exp();
+            let chance = 1.0 - (-rate_hz * known_s).exp();
             glances.push(LocationReading {
                 location,
                 begins,

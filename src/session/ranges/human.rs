@@ -16,7 +16,7 @@ const UNSURE: &str = "a certain belief could not be corrected by any observation
 const PRECISION: &str = "with a lower precision there is no belief, with a higher one the belief is certain";
 const DRAWS: &str = "larger samples take seconds to minutes for each press";
 
-pub(super) const RANGES: [NumberRange; 43] = [
+pub(super) const RANGES: [NumberRange; 37] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
@@ -29,7 +29,6 @@ pub(super) const RANGES: [NumberRange; 43] = [
         "at a lower rate nothing is read, at a higher one everything at once",
     )
     .recorded(ABOVE_0),
-    NumberRange::real("human.perception.reading_begins_s", [0.0, 1.0], "s", "what is looked at for a second is read"),
     NumberRange::real(
         "human.perception.radius_deg",
         [0.1, 40.0],
@@ -80,15 +79,6 @@ pub(super) const RANGES: [NumberRange; 43] = [
         "half-lives from forgotten at once to never forgotten",
     )
     .recorded(ABOVE_0),
-    NumberRange::real("human.transition.forgotten_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
-    NumberRange::real("human.transition.recall_precision", [0.001, 10_000.0], "", PRECISION).recorded(ABOVE_0),
-    NumberRange::real(
-        "human.transition.recall_half_life_s",
-        [1.0, 1_000_000.0],
-        "s",
-        "half-lives from recalled anew at every press to never",
-    )
-    .recorded(ABOVE_0),
     NumberRange::real("human.transition.foresight", [0.0, 1.0], "", "the setting is a share from 0 to 1"),
     NumberRange::real(
         "human.decision.tau",
@@ -118,7 +108,6 @@ pub(super) const RANGES: [NumberRange; 43] = [
         "with the largest cost of waiting, nobody ever waits",
     )
     .recorded(NOT_NEGATIVE),
-    NumberRange::real("human.decision.one_order", [0.0, 0.999], "", "at 1 nobody would ever consider two orders"),
     NumberRange::whole("human.decision.cases", [1.0, 4_096.0], "worlds", DRAWS).recorded(TO_65536),
     NumberRange::real("human.signal.noticed", [0.0, 1.0], "", CHANCE),
     NumberRange::real("human.signal.highlight_noticed", [0.0, 1.0], "", CHANCE),
@@ -135,12 +124,6 @@ pub(super) const RANGES: [NumberRange; 43] = [
         "at a lower rate nothing is read, at a higher one everything at once",
     ),
     NumberRange::real("human.signal.misread", [0.0, 1.0], "", CHANCE),
-    NumberRange::real(
-        "human.signal.noticed_precision",
-        [0.0, 10_000.0],
-        "signals",
-        "with the largest number nothing is learned in a trial; with 0 nothing at all",
-    ),
     NumberRange::real(
         "human.signal.follows",
         [0.0, 0.999],

@@ -1,11 +1,9 @@
 //! Inference of the human's belief against exact computation, against humans who are simulated from the model itself, against
 //! its own plain reference, and under whatever may come.
 
-mod adaptation;
 mod calibration;
 mod drop_outs;
 mod exact;
-mod failed_serving;
 mod fitting;
 mod fitting_answers;
 mod fitting_intervals;
@@ -14,15 +12,11 @@ mod freezes;
 mod grid;
 mod laws;
 mod observed;
-mod order_focus;
 mod particles;
 mod proposals;
-mod reading_begins;
-mod recall;
 mod recorded;
 mod signals;
 mod unknown_gaze;
-mod waiting;
 mod world;
 
 use rand::RngExt;

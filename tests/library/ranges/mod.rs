@@ -43,19 +43,12 @@ const SETTINGS: &str = r#"
         answers_from = 0.4
         answer_s = { median = 2.0, sigma = 0.4 }
         follows_proposal = { median = 0.5, sigma = 0.4 }
-        [human.decision]
-        one_order = 0.5
-        [human.transition]
-        forgotten_truth = 0.7
-        recall_precision = 0.5
-        recall_half_life_s = 30.0
         [human.signal]
         follows = 0.5
         highlight_noticed = 0.5
         delay_s = 0.5
         reading_rate_hz = 2.0
         misread = 0.1
-        noticed_precision = 2.0
         [probes]
         per_trial = 0
         least_questions = 1

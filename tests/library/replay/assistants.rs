@@ -19,7 +19,6 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::ComparedContent;
-use tomcom::mind::model::AdaptationSettings;
 use tomcom::mind::signal_model::SignalModel;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
@@ -124,7 +123,6 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
     for name in SESSIONS {
         let out = with_assistant(name, "other-moments", (2, 90.0), |spec| {
             (spec.assistant.asks_in_silence, spec.assistant.asks_by_gaze) = (true, true);
-            spec.human.inference.waiting = true;
         });
         let mut counts = [0; 3];
         for trial in ["seed1-S001", "seed1-S002"] {
@@ -145,27 +143,6 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
         }
         println!("{name}: silences, aspects unaware of, and advice after these: {counts:?}");
         assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
-    }
-}
-
-#[test]
-fn an_assistant_that_learns_lapse_and_attention_comes_out_the_same_again() {
-    for name in SESSIONS {
-        let out = ["adapting", "adapting-again"].map(|out| {
-            let out = with_assistant(name, out, (1, 60.0), |spec| {
-                (spec.assistant.asks_by_gaze, spec.human.inference.waiting) = (true, true);
-                spec.human.adapt = AdaptationSettings::ALL;
-            });
-            out.join("seed1-S001").join(LOG_NAME)
-        });
-        same(&out[0], &out[1]);
-        let found = verify(&out[0]).expect("a recording");
-        assert!(found.verified, "{name}: {:?}", found.difference);
-        let header = fs::read_to_string(&out[0]).expect("a recording");
-        assert!(
-            header.contains(r#""adapt":{"lapse":true,"attention":true}"#),
-            "{name}: the header says what is learned"
-        );
     }
 }
 

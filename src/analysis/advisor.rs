@@ -48,7 +48,7 @@ impl AdviceRequest {
             None => RobotIntent::Free,
         };
         let (state, robot_press_s) = (session.state, session.spec.robot.press_s);
-        let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
+        let signals = follower.repeats.allowed(&session.kitchen, session.highlights());
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();

@@ -212,7 +212,7 @@ impl SessionFollower {
                     unavailable(kitchen, state, signal).is_none()
                         && aspects_told(kitchen, state, signal).contains(&aspect)
                 };
-                let signals = || self.repeats.allowed(kitchen, session.spec.signals.own_hand);
+                let signals = || self.repeats.allowed(kitchen, session.highlights());
                 self.awareness.looked(session, belief, sample, |aspect| signals().iter().any(|one| tells(one, aspect)));
             }
             event if leads_to_advice(session, event) => self.awareness.asked(session, belief),

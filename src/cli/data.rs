@@ -170,8 +170,7 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     }
     let found = forget::find(&args.folder, &std::env::temp_dir(), code)?;
     if let Some(fault) = participant_code::fault(code).filter(|_| found.is_empty()) {
-        let help =
-            "the code of a participant; recordings of earlier versions with such a code are found by their headers";
+        let help = "the code of a participant";
         let folder = args.folder.display();
         return Err(Failure::Wrong(miette::miette!(
             help = help,

@@ -363,8 +363,7 @@ pub fn without_seed(name: &str) -> Option<&str> {
 }
 
 impl SessionSpec {
-    /// Checks that the participant codes in these settings are valid. New sessions with invalid codes are refused, but
-    /// recordings of earlier versions that have invalid codes can still be opened.
+    /// Checks that the participant codes in these settings are valid.
     ///
     /// # Errors
     /// The participant's code, or a code in the plan, is invalid.

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::participant_settings::GazeSource;
 use super::setting_checks::SettingError;
-use crate::base::number_range::is_zero;
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DroppedInputCounts;
 use crate::gaze::surface::SurfaceHomography;
@@ -30,7 +29,6 @@ pub struct TrackerSpec {
     pub file: Option<String>,
     /// Time in the replayed gaze file at which the trial starts, in seconds after the file's first sample; negative:
     /// the trial starts before the first sample.
-    #[serde(skip_serializing_if = "is_zero")]
     pub file_start_s: f64,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
@@ -69,10 +67,6 @@ impl Default for TrackerSpec {
 }
 
 impl TrackerSpec {
-    pub(super) fn is_default(&self) -> bool {
-        *self == TrackerSpec::default()
-    }
-
     pub(super) fn check(&self, gaze: GazeSource) -> Result<(), SettingError> {
         if let Some(GazeGapSpec { shortest_s, longest_s, .. }) = self.gaps
             && shortest_s > longest_s

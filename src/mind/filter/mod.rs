@@ -16,6 +16,7 @@ mod own_press;
 mod perception;
 mod proposal_mixture;
 mod robot_press;
+mod sample_observation;
 mod serving;
 pub mod signals_so_far;
 mod standing_signal;
@@ -277,11 +278,13 @@ impl BeliefFilter {
 
     /// Marginalises over looks in `seconds` of unknown gaze that end at `until`.
     fn pass_unknown(&mut self, seconds: f64, until: SessionTime, cost: &mut CostToGo) {
-        if seconds <= 0.0 {
+        let is_pertinent = self.model.looking.marginalised || self.model.signal.takes_time();
+        if seconds <= 0.0 || !is_pertinent {
             return;
         }
-        let LookingModel { looks_hz, other_looks_hz, display_lost_looks_hz, .. } = self.model.looking;
+        let LookingModel { marginalised, looks_hz, other_looks_hz, display_lost_looks_hz, .. } = self.model.looking;
         let [base, extra] = match self.presence.display_in_view {
+            _ if !marginalised => [0.0; 2],
             true => [other_looks_hz, looks_hz - other_looks_hz].map(|hz| hz * seconds),
             false => [display_lost_looks_hz * seconds, 0.0],
         };
@@ -323,7 +326,7 @@ impl BeliefFilter {
     fn see_changes(&mut self, now: SessionTime, after: State) {
         let unknown = if self.forgot.is_some() { self.presence.unknown_share(now) } else { 0.0 };
         let seen = self.model.looking.capture * unknown;
-        if seen <= 0.0 || !self.presence.display_in_view {
+        if !self.model.looking.marginalised || seen <= 0.0 || !self.presence.display_in_view {
             return;
         }
         for index in 0..self.kitchen.locations.len() {

@@ -106,6 +106,7 @@ impl ParticleSet {
         let (kitchen, model) = (&self.kitchen, &self.model);
         let looking = &model.looking;
         let rates_hz = match self.presence.display_in_view {
+            _ if !looking.marginalised => [0.0; 2],
             true => [looking.other_looks_hz, looking.looks_hz],
             false => [looking.display_lost_looks_hz; 2],
         };
@@ -134,7 +135,8 @@ impl ParticleSet {
 
     /// Accounts for a change by others that attracts the gaze while the gaze is unknown.
     fn see_changes(&mut self, now: SessionTime, after: State, random: &mut Stream) {
-        if self.forgot.is_some() && self.presence.display_in_view {
+        let looks = self.model.looking.marginalised && self.presence.display_in_view;
+        if self.forgot.is_some() && looks {
             let seen = self.model.looking.capture * self.presence.unknown_share(now);
             plausible_looks::see_changes(&self.kitchen, &self.model, &mut self.of, [self.shown, after], seen, random);
         }

@@ -52,7 +52,7 @@ impl Particle {
     }
 
     /// Applies a gaze sample: a location that has not been read in this look is read with a probability, and the belief
-    /// becomes certain of the value that was read.
+    /// becomes certain of the value that was read. Where the sample is an observation, the belief is updated by Bayes' rule.
     pub fn look(&mut self, glances: &[LocationReading], random: &mut Stream) {
         for glance in glances {
             let location = glance.location.index();
@@ -62,8 +62,24 @@ impl Particle {
             if !self.read[location] && random.random::<f64>() < glance.chance {
                 self.read[location] = true;
                 let value = pick(&glance.reading, random);
-                self.settle(AspectId::of_location(glance.location), value);
+                match &glance.observation {
+                    None => self.settle(AspectId::of_location(glance.location), value),
+                    Some(probabilities) => self.observe(location, value, probabilities),
+                }
             }
+        }
+    }
+
+    /// Updates the belief about a location by Bayes' rule: the value `seen` has the probability `probabilities[v][seen]`
+    /// where v is the true value.
+    fn observe(&mut self, location: usize, seen: usize, probabilities: &[Vec<f64>]) {
+        let of = &mut self.of[location];
+        for (p, row) in of.iter_mut().zip(probabilities) {
+            *p *= row[seen];
+        }
+        let total: f64 = of.iter().sum();
+        if total > 0.0 {
+            of.iter_mut().for_each(|p| *p /= total);
         }
     }
 

@@ -1,10 +1,10 @@
-//! The effect of a gaze sample at each location: the probability that the location is read, and the distribution of the
-//! value that is read.
+//! The effect of a gaze sample at each location: the probability that the location is read, or that it is observed, and
+//! the distribution of the value that is read or observed.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use crate::mind::model::PerceptionModel;
+use crate::mind::model::{PerceptionModel, PerceptionUnit};
 
 /// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
@@ -20,6 +20,9 @@ pub struct LocationReading {
     pub chance: f64,
     /// Distribution of the value that is read at the location.
     pub reading: Vec<f64>,
+    /// Where the sample is an observation: `[v][o]`, the probability of observing value o where v is the true one, by which
+    /// the belief is updated. Where a look is one, the belief becomes certain of what was read.
+    pub observation: Option<Vec<Vec<f64>>>,
 }
 
 /// A look at a location.
@@ -80,6 +83,16 @@ impl LookTracker {
             if begins {
                 *look = Look { code, ..*look };
             }
+            if model.observation == PerceptionUnit::Sample {
+                let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
+                if distance_m <= model.radius_m() && sample.confidence >= model.min_confidence {
+                    let values = 0..kitchen.aspects[index].values.len();
+                    let all: Vec<_> = values.map(|value| reading(kitchen, model, location, value)).collect();
+                    let (reading, observation) = (all[value].clone(), Some(all));
+                    glances.push(LocationReading { location, begins: true, chance: 1.0, reading, observation });
+                }
+                continue;
+            }
             if rate_hz >= ELSEWHERE * model.reading_rate_hz * confidence {
                 look.last = taken;
             }
@@ -90,6 +103,7 @@ impl LookTracker {
                 begins,
                 chance,
                 reading: reading(kitchen, model, location, value),
+                observation: None,
             });
         }
         glances

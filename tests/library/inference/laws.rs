@@ -12,6 +12,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceSettings};
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 use super::{any_number, any_state, check_proper, looks_at_nothing};
@@ -346,7 +347,7 @@ fn an_unseen_press_of_the_robot_makes_uncertain_what_its_policy_may_change_and_n
 
 #[test]
 fn recipes_are_forgotten_with_their_half_life_and_pauses_do_not_count() {
-    let mut bench = Bench::new("sushi", HumanModel::default());
+    let mut bench = Bench::new("sushi", HumanModel { signal: PAPER_2021.signal, ..HumanModel::default() });
     bench.order(0.5, "order_1", "tuna maki");
     bench.observe(1.0, ObservedEvidence::Told { location: bench.location("order_1") });
     assert!(bench.p("recipe of tuna maki", "tuna maki") > 0.999 && bench.p("order_1", "tuna maki") > 0.999);

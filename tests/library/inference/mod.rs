@@ -24,11 +24,12 @@ use tomcom::base::rng::Stream;
 use tomcom::kitchen::{Kitchen, LocationId, State};
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::model::{HumanModel, LookingModel};
+use tomcom::mind::named_models::PAPER_2021;
 
-/// A human who looks at nothing while the gaze is unknown.
+/// A human who looks at nothing while the gaze is unknown, and believes signals at once.
 fn looks_at_nothing() -> HumanModel {
     let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
-    HumanModel { looking, ..HumanModel::default() }
+    HumanModel { looking, signal: PAPER_2021.signal, ..HumanModel::default() }
 }
 
 /// Holds a Dirichlet against what every one must be.

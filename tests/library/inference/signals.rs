@@ -11,6 +11,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::belief_set::ParticleSet;
 use tomcom::mind::reference::person::Particle;
@@ -186,7 +187,7 @@ fn without_a_delay_a_signal_is_believed_at_once_and_never_counted() {
 
 #[test]
 fn a_signal_without_a_delay_is_one_event_that_is_noticed_or_not_and_may_be_misread() {
-    let signal = SignalModel { noticed: 0.6, highlight_noticed: Some(0.3), misread: 0.2, ..SignalModel::default() };
+    let signal = SignalModel { noticed: 0.6, highlight_noticed: Some(0.3), misread: 0.2, ..PAPER_2021.signal };
     let mut model = HumanModel { signal, ..looks_at_nothing() };
     // Beliefs that no draw of the prior makes certain.
     (model.prior.location_truth, model.prior.location_precision) = (0.5, 50.0);

@@ -19,7 +19,7 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::ComparedContent;
-use tomcom::mind::signal_model::SignalModel;
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::run::replay::RecordingReplay;
@@ -170,7 +170,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
     (files.spec.human.looking.looks_hz, files.spec.human.looking.other_looks_hz) = (0.0, 0.0);
     files.spec.human.looking.capture = 0.0;
     // A signal is believed at once: what is tried is from when on it counts.
-    files.spec.human.signal = SignalModel::default();
+    files.spec.human.signal = PAPER_2021.signal;
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
     let mut engine = SessionEngine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
     let mut random = stream(4, "presses", 0);
@@ -181,7 +181,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
         (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
-        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None })
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None })
     }));
     inputs.push((80.0, Event::TrialEnded { reason: TrialEndReason::Wizard }));
     inputs.push((81.0, Event::SessionEnded));

@@ -6,7 +6,6 @@ use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
-use tomcom::session::wall_display::{DisplaySpec, RobotDepiction};
 
 #[test]
 fn every_session_file_loads_and_its_keys_are_unambiguous() {
@@ -27,17 +26,9 @@ fn the_default_session_spells_out_every_default() {
     let path = Path::new("sessions/default.toml");
     let only_layout: SessionSpec = parse(path, "layout = \"../layouts/sushi.toml\"").expect("a session file");
     let spec = read_session(path).expect("the default session").spec;
-    // But for the reasons of presses without effect and the robot's hand, which a recording without the setting does not show; for the
-    // number of served orders, which such a recording shows; for the arm, which is
-    // timed where nothing is said, as in recordings of before there was another; and for what is fitted to its simulated
-    // participant: the human model.
+    // But for the arm, which is timed where nothing is said.
     let robot = RobotSpec { arm: ArmKind::Timed, ..spec.robot };
-    assert_ne!(spec.human, only_layout.human);
-    assert_eq!((spec.display.reasons, only_layout.display.reasons), (Some(true), None));
-    assert_eq!((spec.display.arm, only_layout.display.arm), (Some(RobotDepiction::Hand), None));
-    assert_eq!((spec.display.served, only_layout.display.served), (Some(false), None));
-    let display = DisplaySpec { reasons: None, served: None, arm: None, ..spec.display };
-    assert_eq!(SessionSpec { human: only_layout.human.clone(), robot, display, ..spec }, only_layout);
+    assert_eq!(SessionSpec { robot, ..spec }, only_layout);
 }
 
 #[test]

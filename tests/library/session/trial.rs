@@ -10,12 +10,7 @@ use tomcom::session::{Event, TrialPhase};
 use super::{at, check, engine, press, refused};
 
 fn highlight(location: &str) -> Event {
-    Event::SignalShown {
-        by: Sender::Wizard,
-        signal: Signal::Highlight(location.to_string()),
-        accepted: None,
-        offer: None,
-    }
+    Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()), offer: None }
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod tutorials;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tomcom::analysis::offer_summary::OfferSummary;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::edge::log::LOG_NAME;
@@ -87,7 +88,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         signal_contents: 0,
         useful_signals: None,
         display_arm: None,
-        offers: None,
+        offers: OfferSummary::default(),
         seconds: 400.0,
         answers: Vec::new(),
         wizard: None,

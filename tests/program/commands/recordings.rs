@@ -100,7 +100,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session file"));
     assert!(complaint(&["compare", "tests/golden"]).contains("a folder without recordings"));
     // What is summed up counts once, whatever path leads to it.
-    let [one, same] = ["tests/golden/format-1-hand.jsonl", "tests/../tests/golden/format-1-hand.jsonl"];
+    let [one, same] = ["tests/golden/format-3-hand.jsonl", "tests/../tests/golden/format-3-hand.jsonl"];
     for command in [&["compare"][..], &["fit"], &["replay", "--check-beliefs"], &["replay", "--accuracy"]] {
         assert!(complaint(&[command, &[one, same]].concat()).contains("the same recording twice"), "{command:?}");
     }
@@ -159,7 +159,7 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
 fn a_path_that_is_nearly_right_gets_a_suggestion() {
     let out = folder("nearly");
     fs::create_dir_all(out.join("seed7-S001")).expect("a folder");
-    fs::copy("tests/golden/format-1-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
+    fs::copy("tests/golden/format-3-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
     let out = out.display().to_string();
     let wrong = format!("{out}/seed7-S01");
     let wanted = format!("{wrong} does not exist; did you mean {out}/seed7-S001?");

@@ -67,8 +67,8 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         *library = folder.join(&*library).display().to_string();
     }
     if let Some(file) = &spec.human_model {
-        if spec.human != HumanModel::default() {
-            let found = "human_model, beside parameters of the human model in the session file".to_string();
+        if text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("human")) {
+            let found = "human_model, beside a [human] table in the session file".to_string();
             let remedy = "one of the two: that file, or the [human] tables in here, which then have to go".to_string();
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }

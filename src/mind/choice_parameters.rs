@@ -12,8 +12,8 @@ model_table! {
         tau: f64,
         /// The lapse rate: share of presses that are slips.
         lapse: f64,
-        /// Share of the slips that hit any button at random. The other slips hit the neighbouring button and the look-alike
-        /// button with equal probability.
+        /// Share of the slips that hit any button at random. The other slips hit the neighbouring button and the
+        /// look-alike button with equal probability.
         lapse_anywhere: f64,
         /// Cost of waiting instead of pressing, in presses, in the choice model.
         wait_cost: f64,

@@ -29,8 +29,8 @@ pub struct RecordedBelief {
     pub aspects: Vec<AspectBelief>,
     /// Reason for the participant's next press: "as believed", "slip: hit a button nearby, meant cut", …
     pub cause: String,
-    /// Origin of the participant's next press, found by repeating the participant's decision with the truth; `None` at a
-    /// freeze probe, which leads to no press.
+    /// Origin of the participant's next press, found by repeating the participant's decision with the truth; `None` at
+    /// a freeze probe, which leads to no press.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<PressOrigin>,
     /// Names of the aspects whose replacement by the truth changes a press that a false belief caused.

@@ -114,9 +114,11 @@ model_table! {
         location_precision: f64,
         /// Expected probability of a dish's true recipe.
         recipe_truth: f64,
-        /// Share of the remaining probability that goes to variants which look like the true recipe, where there are any.
+        /// Share of the remaining probability that goes to variants which look like the true recipe, where there are
+        /// any.
         recipe_look_alike: f64,
-        /// Precision (sum of the alphas) of the Dirichlet about a recipe: small, since people are certain of one variant.
+        /// Precision (sum of the alphas) of the Dirichlet about a recipe: small, since people are certain of one
+        /// variant.
         recipe_precision: f64,
     }
 }
@@ -176,24 +178,24 @@ impl PerceptionModel {
 }
 
 model_table! {
-    /// Plausible looking: where people look, in rates. The belief filter uses these rates while the gaze is unknown, the
-    /// planner in its rollouts.
+    /// Plausible looking: where people look, in rates. The belief filter uses these rates while the gaze is unknown,
+    /// the planner in its rollouts.
     LookingModel, GivenLooking {
-        /// Whether the belief filter marginalises over plausible looks while the gaze is unknown; otherwise it assumes that
-        /// nothing is seen then.
+        /// Whether the belief filter marginalises over plausible looks while the gaze is unknown; otherwise it assumes
+        /// that nothing is seen then.
         marginalised: bool,
-        /// Looks per second at each place that the next press needs; before an item is fetched, also at the robot's hand,
-        /// which may be bringing the item.
+        /// Looks per second at each place that the next press needs; before an item is fetched, also at the robot's
+        /// hand, which may be bringing the item.
         looks_hz: f64,
         /// Looks per second at each other place.
         other_looks_hz: f64,
         /// Share of the changes by others that attract the gaze at once.
         capture: f64,
-        /// Looks per second at each place while the eye tracker does not find the display in its view, which means that the
-        /// head is turned away.
+        /// Looks per second at each place while the eye tracker does not find the display in its view, which means that
+        /// the head is turned away.
         display_lost_looks_hz: f64,
-        /// Time without known gaze that counts as a blink, in seconds: nothing is read during a blink, and its time does
-        /// not count as unknown.
+        /// Time without known gaze that counts as a blink, in seconds: nothing is read during a blink, and its time
+        /// does not count as unknown.
         blink_s: f64,
     }
 }
@@ -219,8 +221,8 @@ impl LocationReadingRate {
 model_table! {
     /// Transition model: how the human's belief changes without new evidence.
     TransitionModel, GivenTransition {
-        /// Half-life with which beliefs about a recipe decay to the prior, in seconds: of how many people still hold what
-        /// they have learned.
+        /// Half-life with which beliefs about a recipe decay to the prior, in seconds: of how many people still hold
+        /// what they have learned.
         recipe_half_life_s: f64,
         /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
         /// unchanged.

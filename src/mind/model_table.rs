@@ -1,7 +1,7 @@
 //! A table of parameters of the human model, and what a file gives of it.
 //!
-//! A file names a model ([`super::named_models`]) and may give single parameters on top of it. So every table has a twin
-//! in which each parameter may be missing; what is missing is taken from the named model.
+//! A file names a model ([`super::named_models`]) and may give single parameters on top of it. So every table has a
+//! twin in which each parameter may be missing; what is missing is taken from the named model.
 
 /// Declares a table of parameters, and its twin of which a file gives some.
 macro_rules! model_table {

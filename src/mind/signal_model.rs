@@ -10,25 +10,25 @@ const MOST_NOTICED: f64 = 0.999;
 model_table! {
     /// The effect of a signal on the human.
     ///
-    /// With `delay_s` = 0 a signal is believed at once with the probability `noticed`. Otherwise a signal is read while it
-    /// stands on the display, and may be missed.
+    /// With `delay_s` = 0 a signal is believed at once with the probability `noticed`. Otherwise a signal is read while
+    /// it stands on the display, and may be missed.
     SignalModel, GivenSignal {
-        /// Probability that a signal is noticed. Where signals take time: that a signal which stands for long is noticed
-        /// under unknown gaze.
+        /// Probability that a signal is noticed. Where signals take time: that a signal which stands for long is
+        /// noticed under unknown gaze.
         noticed: f64,
         /// Probability that a highlight is noticed, if it differs from that of a shown recipe.
         #[serde(skip_serializing_if = "Option::is_none")]
         highlight_noticed: Option<f64>,
-        /// Mean time until somebody who notices a signal reads it, in seconds after its beginning; 0: signals are believed
-        /// at once.
+        /// Mean time until somebody who notices a signal reads it, in seconds after its beginning; 0: signals are
+        /// believed at once.
         delay_s: f64,
         /// Readings per second of a signal while the gaze is known to be at its place, at distance 0 and with full
         /// confidence.
         reading_rate_hz: f64,
         /// Probability that somebody who reads a signal takes it for any of the other values.
         misread: f64,
-        /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured this
-        /// probability; 0.7 stands for a person who notices most proposals and makes most of them.
+        /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured
+        /// this probability; 0.7 stands for a person who notices most proposals and makes most of them.
         follows: f64,
     }
 }

@@ -46,8 +46,7 @@ impl TraitSpread {
 }
 
 /// Parameters of the simulated population. The defaults of planning and slips are calibrated to the paper's participants
-/// (study, "Simulated participants", steps A and B). Step C, their beliefs over two trials, is in `sessions/paper.toml`;
-/// the default beliefs are those to which the human model of `sessions/default.toml` was fitted.
+/// (study, "Simulated participants", steps A and B). Step C, their beliefs over two trials, is in `sessions/paper.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Population {

@@ -1,12 +1,13 @@
 //! Perception: the update of the estimate by a gaze sample, in closed form.
 //!
-//! Where every sample is an observation, see [`super::sample_observation`]. Where looks are, a sample that covers dt reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance
-//! of the gaze from the location's area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a
-//! location is read at most once in a look. Let m0 be the belief at the start of the look, or after the last other
-//! event that changed the belief; `unread` is the probability that the location had not been read in this look by then,
-//! and `survived` the probability that it has not been read since. The weight of m0 in the present belief is 1 - unread
-//! (1 - survived); the remaining weight is on the content that was read. Each sample moves a further share of m0 to
-//! that content. Mean and second moment are exact.
+//! Where every sample is an observation, see [`super::sample_observation`]. Where looks are, a sample that covers dt
+//! reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance of the gaze from the
+//! location's area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a location is read at
+//! most once in a look. Let m0 be the belief at the start of the look, or after the last other event that changed the
+//! belief; `unread` is the probability that the location had not been read in this look by then, and `survived` the
+//! probability that it has not been read since. The weight of m0 in the present belief is 1 - unread (1 - survived);
+//! the remaining weight is on the content that was read. Each sample moves a further share of m0 to that content. Mean
+//! and second moment are exact.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

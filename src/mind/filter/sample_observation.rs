@@ -1,12 +1,14 @@
 //! Perception where every gaze sample is an observation (paper, equation 1): the human sees o with the probability
 //! c(o | s) of the true content s, and updates a belief b by Bayes' rule, b'_v = c(o | v) b_v / sum_u c(o | u) b_u.
 //!
-//! The observer does not know o, and b is Dirichlet, so the update is averaged over both. With b_v = g_v / sum_u g_u for
-//! independent g_v ~ Gamma(alpha_v), w_v = c(o | v) and 1 / x^n = integral of t^(n - 1) exp(-t x) / (n - 1)! over t,
+//! The observer does not know o, and b is Dirichlet, so the update is averaged over both. With b_v = g_v / sum_u g_u
+//! for independent g_v ~ Gamma(alpha_v), w_v = c(o | v) and 1 / x^n = integral of t^(n - 1) exp(-t x) / (n - 1)! over
+//! t,
 //!
 //! ```text
 //! E[b'_v]   = alpha_v               integral of (w_v / (1 + t w_v))     P(t) dt
-//! E[b'_v^2] = alpha_v (alpha_v + 1) integral of t (w_v / (1 + t w_v))^2 P(t) dt,    P(t) = product of (1 + t w_u)^(-alpha_u)
+//! E[b'_v^2] = alpha_v (alpha_v + 1) integral of t (w_v / (1 + t w_v))^2 P(t) dt
+//! P(t)      = product over u of (1 + t w_u)^(-alpha_u)
 //! ```
 //!
 //! With t = e^x the integrands are analytic and fall exponentially on both sides, so the trapezoidal rule is exact to
@@ -20,7 +22,8 @@ use super::perception::{NEGLIGIBLE, confusion};
 
 /// Distance of neighbouring points x of the trapezoidal rule.
 const STEP: f64 = 0.375;
-/// At the first point, t times the largest precision is e^-SIDE; at the last one, t times the smallest weight is e^SIDE.
+/// At the first point, t times the largest precision is e^-SIDE; at the last one, t times the smallest weight is
+/// e^SIDE.
 const SIDE: f64 = 20.0;
 /// Least weight c(o | v), so that an observation which the human holds to be impossible leaves a proper belief.
 const LEAST_WEIGHT: f64 = 1e-9;

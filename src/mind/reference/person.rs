@@ -52,7 +52,8 @@ impl Particle {
     }
 
     /// Applies a gaze sample: a location that has not been read in this look is read with a probability, and the belief
-    /// becomes certain of the value that was read. Where the sample is an observation, the belief is updated by Bayes' rule.
+    /// becomes certain of the value that was read. Where the sample is an observation, the belief is updated by Bayes'
+    /// rule.
     pub fn look(&mut self, glances: &[LocationReading], random: &mut Stream) {
         for glance in glances {
             let location = glance.location.index();
@@ -70,8 +71,8 @@ impl Particle {
         }
     }
 
-    /// Updates the belief about a location by Bayes' rule: the value `seen` has the probability `probabilities[v][seen]`
-    /// where v is the true value.
+    /// Updates the belief about a location by Bayes' rule: the value `seen` has the probability
+    /// `probabilities[v][seen]` where v is the true value.
     fn observe(&mut self, location: usize, seen: usize, probabilities: &[Vec<f64>]) {
         let of = &mut self.of[location];
         for (p, row) in of.iter_mut().zip(probabilities) {

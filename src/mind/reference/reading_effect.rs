@@ -20,8 +20,8 @@ pub struct LocationReading {
     pub chance: f64,
     /// Distribution of the value that is read at the location.
     pub reading: Vec<f64>,
-    /// Where the sample is an observation: `[v][o]`, the probability of observing value o where v is the true one, by which
-    /// the belief is updated. Where a look is one, the belief becomes certain of what was read.
+    /// Where the sample is an observation: `[v][o]`, the probability of observing value o where v is the true one, by
+    /// which the belief is updated. Where a look is one, the belief becomes certain of what was read.
     pub observation: Option<Vec<Vec<f64>>>,
 }
 

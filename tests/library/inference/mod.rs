@@ -12,6 +12,7 @@ mod freezes;
 mod grid;
 mod laws;
 mod observed;
+mod paper;
 mod particles;
 mod proposals;
 mod recorded;

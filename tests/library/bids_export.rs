@@ -85,7 +85,7 @@ fn events_last_until_what_they_begin_is_over() {
     for (begins, ends) in [
         ("trial_started", &["trial_ended"][..]),
         ("trial_paused", &["trial_resumed", "trial_ended"]),
-        ("robot_stopped", &["robot_resumed", "trial_ended"]),
+        ("robot_stopped", &["robot_resumed", "trial_ended", "session_ended"]),
         ("signal_shown", &["signal_ended", "signal_shown", "trial_ended"]),
     ] {
         let begun: Vec<&BTreeMap<String, String>> = rows.iter().filter(|row| row["trial_type"] == begins).collect();

@@ -30,7 +30,7 @@ fn a_header_has_the_numbers_that_files_may_have() {
         ("\"cost_of_communication\":1.5", "\"cost_of_communication\":1e308", "cost_of_communication = "),
         ("\"tau\":4.0", "\"tau\":0.00001", "tau = 0.00001"),
         ("\"tau\":4.0", "\"tau\":0.0", "tau = 0"),
-        ("\"beliefs\":256", "\"beliefs\":0", "beliefs = 0"),
+        ("\"beliefs\":16", "\"beliefs\":0", "beliefs = 0"),
         ("\"shown_s\":4.0", "\"shown_s\":5000.0", "shown_s = 5000"),
         ("\"shown_s\":4.0", "\"shown_s\":-4.0", "shown_s = -4"),
         ("served_shown_s = 2.0", "served_shown_s = 9e9", "served_shown_s = 9000000000"),

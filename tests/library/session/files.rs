@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use tomcom::communication::{Signal, signals};
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
+use tomcom::mind::named_models::{PAPER_2021, PLAIN};
 use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
 
 #[test]
@@ -29,6 +31,45 @@ fn the_default_session_spells_out_every_default() {
     // But for the arm, which is timed where nothing is said.
     let robot = RobotSpec { arm: ArmKind::Timed, ..spec.robot };
     assert_eq!(SessionSpec { robot, ..spec }, only_layout);
+}
+
+#[test]
+fn a_session_names_a_model_and_sets_single_parameters_on_top_of_it() {
+    let read = |settings: &str| SessionSpec::from_toml(&format!("layout = \"\"\n{settings}"));
+    let spec = read("[human]\nmodel = \"paper-2021\"\n[human.decision]\ntau = 3.0\n").expect("settings");
+    let mut wanted = PAPER_2021;
+    wanted.decision.tau = 3.0;
+    assert_eq!(spec.human, wanted);
+    assert_eq!(spec.human.differences(), ["decision.tau = 3.0, not 4.0"]);
+    assert_eq!(read("").expect("settings").human, PLAIN);
+    let header = serde_json::to_string(&spec).expect("JSON");
+    assert_eq!(serde_json::from_str::<SessionSpec>(&header).expect("the same settings"), spec);
+    let unknown = read("[human]\nmodel = \"paper\"\n").expect_err("no such model").to_string();
+    assert!(unknown.contains("paper-2021"), "{unknown}");
+}
+
+#[test]
+fn signals_highlight_what_session_or_model_name() {
+    let setup = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let kitchen = setup.kitchen.kitchen;
+    let highlighted = |spec: &SessionSpec| {
+        let all = signals(&kitchen, spec.highlights(&kitchen)).into_iter();
+        let names = all.filter_map(|(_, signal)| match signal {
+            Signal::Highlight(name) => Some(name),
+            _ => None,
+        });
+        names.collect::<Vec<String>>()
+    };
+    let mut spec = setup.spec;
+    let usual = highlighted(&spec);
+    assert!(usual.contains(&"counter".to_string()) && !usual.contains(&"human_hand".to_string()), "{usual:?}");
+    spec.human = PAPER_2021;
+    assert_eq!(highlighted(&spec), ["robot_hand", "assembly_board"]);
+    spec.signals.highlights = Some(vec!["human_hand".to_string()]);
+    assert_eq!(highlighted(&spec), ["human_hand"]);
+    assert!(spec.check_kitchen(&kitchen).is_ok());
+    spec.signals.highlights = Some(vec!["cellar".to_string()]);
+    assert_eq!(spec.check_kitchen(&kitchen).expect_err("no such place").path, "signals.highlights");
 }
 
 #[test]

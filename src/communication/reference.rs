@@ -51,7 +51,9 @@ struct Future {
     /// press in any case.
     robot_press: Option<(ButtonId, f64, bool)>,
     now_s: f64,
+    /// Numbers of presses of both agents and of waits of the human so far.
     presses: u32,
+    waits: u32,
     /// The state aspects of the signal, and the time at which the human reads it; `None` once it is read.
     signal: Option<(Vec<AspectId>, f64)>,
 }
@@ -113,7 +115,7 @@ impl ReferencePlanner {
         stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
 
-    /// Number of presses of both agents in one rollout, plus the cost to go at its end.
+    /// Number of presses of both agents in one rollout, what the human's waits count, and the cost to go at its end.
     fn roll_out(&self, cost: &mut CostToGo, moment: &DecisionPoint, signal: Option<&Signal>, rollout: u64) -> f64 {
         let DecisionPoint { situation, presses, .. } = *moment;
         let mut random = self.chance("plain belief", presses, rollout, 0);
@@ -131,7 +133,7 @@ impl ReferencePlanner {
             RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, signal };
+        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, waits: 0, signal };
         future.read_by(&self.kitchen, 0.0);
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
@@ -150,10 +152,13 @@ impl ReferencePlanner {
             if has_pressed {
                 let people = std::slice::from_mut(&mut future.person);
                 order_focus::turn_at_press(&self.kitchen, &self.human, people, &mut turning);
+            } else {
+                future.waits += 1;
             }
             self.turn_from_changed(&mut future, before, &mut turning);
         }
-        f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
+        let spent = f64::from(future.presses) + self.human.decision.wait_cost * f64::from(future.waits);
+        spent + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
     }
 
     /// Lets the human choose anew who considers only an order that has changed since the state `before`.

@@ -182,14 +182,6 @@ impl ChoiceModel {
         PressParts { chosen: weight(button.index()) / total, slipped }
     }
 
-    /// Likelihood p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the
-    /// present state, summed over the same draws.
-    pub fn wait_likelihood(&self, here: u32, sums: &[u32]) -> f64 {
-        let draws = self.weights.len().saturating_sub(1).max(1);
-        let ChoiceWeights { wait, total, .. } = self.weights(here, sums, draws as u32);
-        wait / (wait + total)
-    }
-
     /// p(a | b) of every button, given that a button is pressed, from the same sums as
     /// [`ChoiceModel::press_likelihood`].
     pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {

@@ -254,10 +254,6 @@ pub struct InferenceSettings {
     pub max_beliefs: usize,
     /// Number of worlds from which the effect of a robot press on the belief is predicted.
     pub predictions: usize,
-    /// Whether waiting is evidence: a human who waits believes that no press is useful now; a human who presses
-    /// believes that some press is.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub waiting: bool,
 }
 
 impl Default for InferenceSettings {
@@ -268,7 +264,6 @@ impl Default for InferenceSettings {
             min_effective: 32.0,
             max_beliefs: 512,
             predictions: 64,
-            waiting: false,
         }
     }
 }

@@ -297,7 +297,6 @@ pub const FILE_WORDS: &[&str] = &[
     "screen",
     "script",
     "scripted",
-    "seems_unaware",
     "session",
     "session_ended",
     "sessions",

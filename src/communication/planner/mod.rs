@@ -2,7 +2,9 @@
 //!
 //! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
 //! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
-//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that
+//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A wait of the
+//! human counts like a press, by what it costs in the human model: else a human who believes that nothing is worth doing
+//! would lose nothing by waiting for the horizon. A signal that
 //! changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped. Where signals take time, a
 //! rollout reads its signal after the mean delay, and its saving is multiplied by the probability that the signal is
 //! read: a human who misses the signal continues like the baseline.
@@ -31,6 +33,7 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, WeightedWorlds};
 use crate::mind::ChoiceModel;
+use crate::mind::choice::HumanChoice;
 use crate::mind::filter::order_focus::OrderFocus;
 use crate::mind::filter::urn::value_at;
 use crate::mind::model::{HumanModel, LookingModel};
@@ -47,6 +50,8 @@ pub struct Planner {
     spec: AssistantSpec,
     seed: u64,
     choice: ChoiceModel,
+    /// What a wait of the human counts in rollouts, in presses.
+    wait_cost: f64,
     foresight: f64,
     /// Which orders humans consider who choose anew.
     focus: OrderFocus,
@@ -86,6 +91,7 @@ impl Planner {
         let watched = |button| kitchen.watched(button).into_iter().map(AspectId::of_location).collect();
         Planner {
             choice: ChoiceModel::up_to_draws(&kitchen, &human.decision, spec.rollout.states),
+            wait_cost: human.decision.wait_cost,
             foresight: human.transition.foresight,
             focus: OrderFocus::new(&kitchen, human.decision.one_order),
             looking: spec.rollout.looking(&human.looking),
@@ -157,6 +163,7 @@ impl Planner {
             other_looks: -(-self.looking.other_looks_hz * attended_s).exp_m1(),
             capture: self.looking.capture,
             focus: &self.focus,
+            wait_cost: self.wait_cost,
         };
         let read_s = situation.forecast.delay_s;
         let mut rollout =
@@ -175,7 +182,7 @@ impl Planner {
             }
             let outcome = rollout.with_signal(&mut self.state, &candidate.aspects, &self.baseline);
             // A human who misses the signal saves exactly nothing by the signal.
-            let saved = candidate.probability * f64::from(self.baseline.value - outcome.value);
+            let saved = candidate.probability * (self.baseline.value - outcome.value);
             candidate.tally.add(saved, outcome.diverged);
         }
     }
@@ -232,10 +239,11 @@ impl Planner {
         let reason = candidates.first().filter(|candidate| candidate.tally.mean() > 0.0).and_then(|candidate| {
             let mut reason =
                 SignalReason::for_signal(&self.kitchen, situation.state, situation.belief, &candidate.signal)?;
-            if let Some((prevents, instead)) = candidate.tally.turning_point() {
-                let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
-                reason.prevents = Some(name(prevents));
-                reason.instead = instead.map(name);
+            if let Some(choices) = candidate.tally.turning_point() {
+                [reason.prevents, reason.instead] = choices.map(|choice| match choice {
+                    HumanChoice::Press(button) => Some(self.kitchen.button(Agent::Human, button).name.clone()),
+                    HumanChoice::Wait => None,
+                });
             }
             Some(reason)
         });

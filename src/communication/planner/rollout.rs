@@ -84,6 +84,8 @@ pub struct RolloutContext<'a> {
     pub foresight: f64,
     /// Which orders a human considers who chooses anew.
     pub focus: &'a OrderFocus,
+    /// What a wait of the human counts, in presses.
+    pub wait_cost: f64,
 }
 
 /// State of a rollout before a decision of the human.
@@ -97,7 +99,9 @@ pub struct RolloutState {
     focus: u8,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
+    /// Numbers of presses of both agents, and of waits of the human, since the start of the rollout.
     presses: i32,
+    waits: i32,
     now_s: f64,
 }
 
@@ -112,15 +116,15 @@ pub struct BaselineRollout {
     reading_before: usize,
     /// State of the rollout after the last decision that a signal cannot change.
     unread: RolloutState,
-    /// Number of presses of both agents up to the horizon, plus the cost to go from there.
-    pub value: i32,
+    /// Number of presses of both agents up to the horizon, what the human's waits count, and the cost to go from there.
+    pub value: f64,
 }
 
 /// Result of a rollout with a signal, paired with the baseline without one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
-    /// Number of presses of both agents in the rollout, plus the cost to go at its end.
-    pub value: i32,
+    /// Number of presses of both agents in the rollout, what the human's waits count, and the cost to go at its end.
+    pub value: f64,
     /// The first choice of the human that differs between the two rollouts: in the baseline, and with the signal.
     pub diverged: Option<(HumanChoice, HumanChoice)>,
 }
@@ -148,7 +152,7 @@ impl RolloutState {
             }
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        (self.presses, self.now_s) = (0, 0.0);
+        (self.presses, self.waits, self.now_s) = (0, 0, 0.0);
     }
 
     /// The human looks at every location whose content has just changed.
@@ -163,7 +167,7 @@ impl RolloutState {
         (self.kitchen, self.focus) = (other.kitchen, other.focus);
         self.ongoing = other.ongoing;
         self.is_still = other.is_still;
-        (self.presses, self.now_s) = (other.presses, other.now_s);
+        (self.presses, self.waits, self.now_s) = (other.presses, other.waits, other.now_s);
     }
 
     /// Whether this rollout continues exactly like another rollout that is in the state `other` at the same time.
@@ -229,7 +233,7 @@ impl Rollout<'_> {
             self.until_decision(state, step, &mut unread);
             let unsignalled = &baseline.states[step];
             if state.continues_like(unsignalled) {
-                return RolloutOutcome { value: baseline.value + state.presses - unsignalled.presses, diverged };
+                return RolloutOutcome { value: baseline.value + self.spent(state) - self.spent(unsignalled), diverged };
             }
             let choice = self.decide(state, step);
             let unsignalled = baseline.choices[step];
@@ -240,8 +244,13 @@ impl Rollout<'_> {
         RolloutOutcome { value: self.value(state), diverged }
     }
 
-    fn value(&mut self, state: &RolloutState) -> i32 {
-        state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
+    fn value(&mut self, state: &RolloutState) -> f64 {
+        self.spent(state) + f64::from(self.cost.all_orders(state.kitchen, &self.context.recipes))
+    }
+
+    /// Number of presses of both agents so far, and what the human's waits count.
+    fn spent(&self, state: &RolloutState) -> f64 {
+        f64::from(state.presses) + self.context.wait_cost * f64::from(state.waits)
     }
 
     /// Time of a decision of the human, in seconds since the start of the rollout.
@@ -348,6 +357,8 @@ impl Rollout<'_> {
                 state.focus = context.focus.chosen_anew(to);
             }
             self.turn_from_changed(state, before, step);
+        } else {
+            state.waits += 1;
         }
         choice
     }

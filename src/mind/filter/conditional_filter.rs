@@ -13,7 +13,7 @@ use std::sync::Arc;
 use super::evidence::{BeliefSampler, PressEvidence};
 use super::evidence_model::EvidenceModel;
 use super::exchange::ExchangeUpdate;
-use super::human_act::{HumanAction, ProposalMixture};
+use super::human_act::ProposalMixture;
 use super::look_news::UnseenLooks;
 use super::order_focus::OrderFocus;
 use super::perception::GazeBeliefUpdate;
@@ -203,7 +203,6 @@ impl ConditionalFilter {
                 self.recall_ordered(self.shown, state);
                 self.show(now, state);
             }
-            ObservedEvidence::Waited { longer } => self.weigh_waiting(longer, cost),
             ObservedEvidence::Told { location } => self.told(now, location),
             ObservedEvidence::EndedSignal => self.signals.end(),
             ObservedEvidence::Paused => self.forgot = None,
@@ -347,8 +346,7 @@ impl ConditionalFilter {
         let lapse = self.model.adapt.lapse.then(|| self.lapse.expected());
         let (inference, focus) = (&self.model.inference, &self.focus);
         let model = EvidenceModel { kitchen, choice, inference, watched, lapse, focus };
-        let evidence =
-            self.sampler.weigh(&model, cost, &mut self.belief, HumanAction::Presses(press), looks.as_ref(), random);
+        let evidence = self.sampler.weigh(&model, cost, &mut self.belief, press, looks.as_ref(), random);
         if lapse.is_some() {
             let parts = self.sampler.expected_parts();
             self.lapse.learn(|lapse| press.likelihood(parts.likelihood(lapse)));
@@ -359,15 +357,6 @@ impl ConditionalFilter {
             self.correct_reading(signal_hazard, self.sampler.signal_read());
         }
         evidence
-    }
-
-    /// Updates the estimate by a silence of the human; `longer` is the share of the human's intervals that are longer.
-    fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
-        let mut random = stream(self.seed, "waiting", self.presses);
-        let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
-        let (inference, focus) = (&self.model.inference, &self.focus);
-        let model = EvidenceModel { kitchen, choice, inference, watched, lapse, focus };
-        self.sampler.weigh(&model, cost, &mut self.belief, HumanAction::Waits { longer }, None, &mut random);
     }
 
     fn show(&mut self, now: SessionTime, state: State) {

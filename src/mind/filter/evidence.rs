@@ -1,4 +1,4 @@
-//! The update of the estimate by the likelihood of the human's action: a press, or waiting.
+//! The update of the estimate by the likelihood of the human's press.
 //!
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the
 //! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
@@ -19,7 +19,7 @@ use crate::mind::model::InferenceSettings;
 use super::distinct::DistinctWorlds;
 use super::distinct_draws::{Alike, DistinctDraws, Run};
 use super::evidence_model::EvidenceModel;
-use super::human_act::HumanAction;
+use super::human_act::ProposalMixture;
 use super::look_news::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
 use super::moments::MixtureMoments;
 use super::order_focus::considered;
@@ -63,9 +63,6 @@ pub struct BeliefSampler {
     pub(super) posteriors: Vec<f64>,
     /// Parts of each belief sample's likelihood of the press (with and without a slip), where the lapse is learned.
     parts: Vec<PressParts>,
-    /// Prior weight of each belief sample; where waiting is evidence, multiplied by the probability that the human
-    /// presses at all.
-    pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
@@ -110,14 +107,14 @@ impl BeliefSampler {
         }
     }
 
-    /// Updates the estimate by the likelihood of an action of the human, and by the possible looks at times of unknown
-    /// gaze before the action.
+    /// Updates the estimate by the likelihood of a press of the human, and by the possible looks at times of unknown
+    /// gaze before the press.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
-        act: HumanAction,
+        press: ProposalMixture,
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) -> PressEvidence {
@@ -131,9 +128,9 @@ impl BeliefSampler {
                 self.look(model, looks, old, random);
                 self.worlds.rate(cost, wanted * states);
             }
-            self.weigh_samples(model, act, old);
+            self.weigh_samples(model, press, old);
             while self.rate_again(cost, states) {
-                self.weigh_samples(model, act, 0);
+                self.weigh_samples(model, press, 0);
             }
             let evidence = self.evidence();
             let can_double = wanted * 2 <= model.inference.max_beliefs;
@@ -167,7 +164,6 @@ impl BeliefSampler {
         self.runs.clear();
         self.priors.clear();
         self.posteriors.clear();
-        self.pressing.clear();
         self.looks.clear();
         self.news.clear();
         self.read_sums.clear();
@@ -259,38 +255,23 @@ impl BeliefSampler {
         world
     }
 
-    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's action.
-    fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAction, from: usize) {
+    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's press.
+    fn weigh_samples(&mut self, model: &EvidenceModel, press: ProposalMixture, from: usize) {
         self.posteriors.truncate(from);
-        self.pressing.truncate(from);
         self.parts.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
             let sums = self.sum_costs(sample, &mut sums, model);
-            let waits = || model.choice.wait_likelihood(self.sum_here(sample), sums);
-            let (pressing, likelihood) = match act {
-                HumanAction::Presses(press) => {
-                    let presses = if model.inference.waiting { 1.0 - waits() } else { 1.0 };
-                    let choice = match model.lapse {
-                        None => model.choice.press_likelihood(sums, press.button),
-                        Some(lapse) => {
-                            let parts = model.choice.press_parts(sums, press.button);
-                            self.parts.push(parts);
-                            parts.likelihood(lapse)
-                        }
-                    };
-                    (prior * presses, press.likelihood(choice))
+            let choice = match model.lapse {
+                None => model.choice.press_likelihood(sums, press.button),
+                Some(lapse) => {
+                    let parts = model.choice.press_parts(sums, press.button);
+                    self.parts.push(parts);
+                    parts.likelihood(lapse)
                 }
-                HumanAction::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
             };
-            self.pressing.push(pressing);
-            self.posteriors.push(pressing * likelihood);
+            self.posteriors.push(prior * press.likelihood(choice));
         }
-    }
-
-    /// Cost to go of the present state, summed over the draws of one belief sample.
-    fn sum_here(&self, sample: &Sample) -> u32 {
-        self.runs_of(sample).iter().map(|run| run.draws * u32::from(self.worlds.here(run.world))).sum()
     }
 
     /// Cost to go after each button of the human, summed over the draws of one belief sample.
@@ -340,15 +321,15 @@ impl BeliefSampler {
 
     /// Expected parts of the last press's likelihood, under the estimate before that press.
     pub fn expected_parts(&self) -> PressParts {
-        let before: f64 = self.pressing.iter().sum();
+        let before: f64 = self.priors.iter().sum();
         let mean = |part: fn(&PressParts) -> f64| {
-            self.parts.iter().zip(&self.pressing).map(|(parts, weight)| part(parts) * weight).sum::<f64>() / before
+            self.parts.iter().zip(&self.priors).map(|(parts, weight)| part(parts) * weight).sum::<f64>() / before
         };
         PressParts { chosen: mean(|parts| parts.chosen), slipped: mean(|parts| parts.slipped) }
     }
 
     fn evidence(&self) -> PressEvidence {
-        let (before, total): (f64, f64) = (self.pressing.iter().sum(), self.posteriors.iter().sum());
+        let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
         let squares: f64 = self.posteriors.iter().map(|p| p * p).sum();
         PressEvidence {
             log_p: (total / before).ln(),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::order_focus;
-use super::person::{Particle, press_chances, wait_chance};
+use super::person::{Particle, press_chances};
 use super::plausible_looks::{self, LookNeedProbabilities};
 use super::reading_effect::LookTracker;
 use super::signal_reading::ReferenceSignalHistory;
@@ -41,9 +41,6 @@ pub struct ParticleSet {
     pub of: Vec<Particle>,
     sight: LookTracker,
     presence: UnknownGazeTimer,
-    /// For each belief, the probability at the human's last press that the human presses rather than waits, where
-    /// waiting is evidence.
-    pub pressing: Vec<f64>,
     /// Where the human of each belief looks while the gaze is unknown, once it has been computed after the last event.
     unseen: Option<LookNeedProbabilities>,
     shown: State,
@@ -66,7 +63,7 @@ impl ParticleSet {
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let forgotten = DirichletBelief::forgotten(&kitchen, &model, shown);
         let (doubt, sight, presence) = (prior.clone(), LookTracker::default(), UnknownGazeTimer::new(&model));
-        let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
+        let (of, unseen, forgot) = (Vec::new(), None, None);
         let (proposed, signals, lapses) =
             (ProposedPresses::default(), ReferenceSignalHistory::default(), lapses(&model));
         ParticleSet {
@@ -78,7 +75,6 @@ impl ParticleSet {
             of,
             sight,
             presence,
-            pressing,
             unseen,
             shown,
             forgot,
@@ -161,8 +157,8 @@ impl ParticleSet {
         }
     }
 
-    /// Updates every belief with an event. Returns for each belief the likelihood of the human's press, or of the
-    /// human's waiting; 1 for other events.
+    /// Updates every belief with an event. Returns for each belief the likelihood of the human's press; 1 for other
+    /// events.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = self.frozen.unwrap_or(observation.time);
         match observation.what {
@@ -207,7 +203,6 @@ impl ParticleSet {
                 order_focus::turn_from_changed(&self.kitchen, &self.model, &mut self.of, [self.shown, state], random);
                 self.show(now, state);
             }
-            ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
             ObservedEvidence::Told { location } => self.told(now, location, random),
             ObservedEvidence::EndedSignal => self.end_signal(),
             ObservedEvidence::Paused => self.forgot = None,
@@ -291,22 +286,19 @@ impl ParticleSet {
         };
         self.proposed.pressed(button);
         let mut weights = Vec::with_capacity(self.of.len());
-        self.pressing.clear();
         let mut likelihoods = vec![0.0; self.lapses.len()];
         let is_serving = matches!(self.kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_));
         // Only a serving without effect makes people recall other versions.
         let recall = self.model.transition.recall_precision.filter(|_| is_serving && !effective);
         for person in &mut self.of {
             let mut weight = 0.0;
-            let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
-            let presses = if inference.waiting { 1.0 - wait_chance(decision, here, &after) } else { 1.0 };
-            self.pressing.push(presses);
+            let (_, after) = person.prospects(&self.kitchen, cost, inference.states, random);
             // p(a | b) for each possible lapse; only for the human model's lapse where the lapse is not learned.
             for ((lapse, p), likelihood) in self.lapses.iter().zip(&mut likelihoods) {
                 let decision = ChoiceParameters { lapse: *lapse, ..decision.clone() };
                 let pressed = proposed + chosen * press_chances(&self.kitchen, &decision, &after)[button.index()];
-                *likelihood += presses * pressed;
-                weight += p * presses * pressed;
+                *likelihood += pressed;
+                weight += p * pressed;
             }
             weights.push(weight);
             let before = recall.map(|precision| (precision, person.of.clone()));
@@ -320,15 +312,6 @@ impl ParticleSet {
             *p *= likelihood / total;
         }
         weights
-    }
-
-    fn human_waited(&self, longer: f64, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
-        let (decision, states) = (&self.model.decision, self.model.inference.states);
-        let waited = |person: &Particle| {
-            let (here, after) = person.prospects(&self.kitchen, cost, states, random);
-            longer + (1.0 - longer) * wait_chance(decision, here, &after)
-        };
-        self.of.iter().map(waited).collect()
     }
 
     fn robot_pressed(&mut self, cost: &mut CostToGo, random: &mut Stream) {

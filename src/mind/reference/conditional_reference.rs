@@ -83,7 +83,7 @@ impl ConditionalReference {
         let weights = self.people.experience(observation, cost, &mut random);
         self.looked = is_gaze;
         if matches!(observation.what, ObservedEvidence::Pressed(press) if press.agent == Agent::Human) {
-            self.log_p = Some((weights.iter().sum::<f64>() / self.people.pressing.iter().sum::<f64>()).ln());
+            self.log_p = Some((weights.iter().sum::<f64>() / weights.len() as f64).ln());
         }
         if !is_gaze {
             self.project(&weights, &mut random);

@@ -380,14 +380,6 @@ pub fn press_chances(kitchen: &Kitchen, model: &ChoiceParameters, expected: &[f6
     chances
 }
 
-/// p(wait | b), from the expected cost to go of the present state and of the state after each button.
-pub fn wait_chance(model: &ChoiceParameters, here: f64, after: &[f64]) -> f64 {
-    let weight = |q: f64| (model.tau * (q + here)).exp();
-    let wait = weight(-(here + model.wait_cost));
-    let pressing: f64 = after.iter().map(|after| weight(-(1.0 + after))).sum();
-    wait / (wait + pressing)
-}
-
 /// Draws a value in proportion to weights that sum to about 1.
 pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
     let mut left = random.random::<f64>() * weights.iter().sum::<f64>();

@@ -2,8 +2,8 @@
 //! Live sessions and replays derive these with the same code.
 
 use crate::base::time::SessionTime;
-use crate::communication::repeats::SignalRepeatRule;
 use crate::communication::Signal;
+use crate::communication::repeats::SignalRepeatRule;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
 use crate::measures::JudgedPress;

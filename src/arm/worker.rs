@@ -160,9 +160,7 @@ impl RobotTaskExecutor {
                     body.has_nothing_to_do();
                 }
                 let waits_for = match reason {
-                    IdleReason::HumanTurn => {
-                        cost.nearer(Fidelity::Exact, state, &kitchen.true_recipes(), Agent::Human)
-                    }
+                    IdleReason::HumanTurn => cost.nearer(Fidelity::Exact, state, &kitchen.true_recipes(), Agent::Human),
                     IdleReason::NoOrder | IdleReason::Skipped => 0,
                 };
                 let told = self.idle.replace(Idleness { reason, waits_for, state, is_passive });
@@ -262,13 +260,7 @@ impl RobotTaskExecutor {
 
     /// Lets the timed arm touch the button. The arm presses if the press is still useful or the wizard chose the press;
     /// otherwise the arm abandons the press.
-    fn touch(
-        &mut self,
-        kitchen: &Kitchen,
-        cost: &mut CostToGo,
-        state: State,
-        is_passive: bool,
-    ) -> Option<RobotEvent> {
+    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State, is_passive: bool) -> Option<RobotEvent> {
         let ongoing = self.busy.take()?;
         match ongoing.is_useful(kitchen, cost, state, is_passive) {
             true => Some(RobotEvent::Press(ongoing.button)),
@@ -377,4 +369,3 @@ impl RobotTaskExecutor {
         }
     }
 }
-

@@ -133,7 +133,8 @@ impl ReferencePlanner {
             RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, waits: 0, signal };
+        let mut future =
+            Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, waits: 0, signal };
         future.read_by(&self.kitchen, 0.0);
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;

@@ -258,13 +258,7 @@ pub struct InferenceSettings {
 
 impl Default for InferenceSettings {
     fn default() -> Self {
-        InferenceSettings {
-            beliefs: 256,
-            states: 32,
-            min_effective: 32.0,
-            max_beliefs: 512,
-            predictions: 64,
-        }
+        InferenceSettings { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 512, predictions: 64 }
     }
 }
 

@@ -94,7 +94,8 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             session.robot.gives_up(*reason);
         }
         Event::RobotIdles { reason, waits_for } => {
-            let waits_for = waits_for.iter().map(|button| named.button(Agent::Human, button)).collect::<Result<_, _>>()?;
+            let waits_for =
+                waits_for.iter().map(|button| named.button(Agent::Human, button)).collect::<Result<_, _>>()?;
             session.robot.idle = Some((*reason, waits_for));
         }
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {

@@ -150,7 +150,9 @@ impl EventCells {
         match event {
             Event::RobotIntends { button, until_ns } => (self.button, self.at) = (button.clone(), Some(*until_ns)),
             Event::RobotAborts { button, reason } => (self.button, self.reason) = (button.clone(), name(reason)),
-            Event::RobotIdles { reason, waits_for } => (self.reason, self.button) = (name(reason), waits_for.join(", ")),
+            Event::RobotIdles { reason, waits_for } => {
+                (self.reason, self.button) = (name(reason), waits_for.join(", "))
+            }
             Event::RobotMoves(sample) => (self.what, self.force_n) = (name(&sample.phase), Some(sample.force_n)),
             Event::RobotSafety { mode, force_n, joint } => {
                 (self.what, self.force_n, self.value) = (name(mode), *force_n, joint.map(f64::from));

@@ -31,7 +31,10 @@ pub const LEVELS: &[(&str, &str)] = &[
     ("robot_aborts", "The robot gave up its press"),
     ("robot_driven", "Somebody chose the robot's next press"),
     ("robot_held", "Somebody holds the robot before its next press"),
-    ("robot_idles", "The robot has nothing useful to do: there is no order, or it waits for a press of the participant"),
+    (
+        "robot_idles",
+        "The robot has nothing useful to do: there is no order, or it waits for a press of the participant",
+    ),
     ("robot_intends", "The robot sets out for a button"),
     ("robot_released", "The held robot goes on"),
     ("robot_resumed", "The wizard lets the stopped robot go on"),

@@ -233,7 +233,10 @@ impl Rollout<'_> {
             self.until_decision(state, step, &mut unread);
             let unsignalled = &baseline.states[step];
             if state.continues_like(unsignalled) {
-                return RolloutOutcome { value: baseline.value + self.spent(state) - self.spent(unsignalled), diverged };
+                return RolloutOutcome {
+                    value: baseline.value + self.spent(state) - self.spent(unsignalled),
+                    diverged,
+                };
             }
             let choice = self.decide(state, step);
             let unsignalled = baseline.choices[step];

@@ -15,9 +15,9 @@ use crate::participant::SimulatedParticipant;
 use crate::participant::gaze_gaps::GazeDropoutSchedule;
 use crate::participant::population::Experience;
 use crate::session::SessionSpec;
-use crate::session::settings::{ArmKind, RobotSpec};
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
+use crate::session::settings::{ArmKind, RobotSpec};
 use crate::session::tracker::GazeGapSpec;
 use crate::wizard::ScriptedWizard;
 

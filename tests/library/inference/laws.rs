@@ -105,14 +105,7 @@ impl Bench {
 
 /// Coarse, for tests of many presses.
 fn coarse() -> HumanModel {
-    let inference = InferenceSettings {
-        beliefs: 8,
-        states: 4,
-        min_effective: 2.0,
-        max_beliefs: 16,
-        predictions: 8,
-        waiting: false,
-    };
+    let inference = InferenceSettings { beliefs: 8, states: 4, min_effective: 2.0, max_beliefs: 16, predictions: 8 };
     HumanModel { inference, ..HumanModel::default() }
 }
 
@@ -124,7 +117,6 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
         1 => ObservedEvidence::Paused,
         2 => ObservedEvidence::Resumed,
         3 => ObservedEvidence::Displayed { state: any_state(kitchen, random) },
-        12 => ObservedEvidence::Waited { longer: random.random() },
         4 => ObservedEvidence::Told { location: LocationId(random.random_range(0..kitchen.locations.len()) as u8) },
         5..=7 => {
             let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
@@ -389,14 +381,7 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
-    let inference = InferenceSettings {
-        beliefs: 32,
-        states: 8,
-        min_effective: 30.0,
-        max_beliefs: 256,
-        predictions: 8,
-        waiting: false,
-    };
+    let inference = InferenceSettings { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
     let mut bench = Bench::new("sushi", HumanModel { inference, ..HumanModel::default() });
     bench.order(0.5, "order_1", "salmon nigiri");
     bench.look(1.0, 6.0, "order_1", 120.0);

@@ -22,7 +22,6 @@ mod recall;
 mod recorded;
 mod signals;
 mod unknown_gaze;
-mod waiting;
 mod world;
 
 use rand::RngExt;

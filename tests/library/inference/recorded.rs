@@ -34,13 +34,6 @@ fn they_agree_without_gaze() {
 }
 
 #[test]
-fn they_agree_where_waiting_is_evidence() {
-    let mut model = HumanModel::default();
-    model.inference.waiting = true;
-    agree(model, |_| true, with_waits);
-}
-
-#[test]
 fn they_agree_where_the_lapse_is_learned() {
     let mut model = HumanModel::default();
     model.adapt.lapse = true;
@@ -117,22 +110,7 @@ fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
     all
 }
 
-/// After every third press of the human, a second later, it has waited for longer than usual.
-fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
-    let is_own = |what: &ObservedEvidence| matches!(what, ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }));
-    let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
-    let waits: Vec<Observation> = own
-        .map(|one| Observation {
-            time: one.time + SessionTime::from_secs_f64(1.0),
-            what: ObservedEvidence::Waited { longer: 0.2 },
-        })
-        .collect();
-    let mut all = [observations, waits].concat();
-    all.sort_by_key(|one| one.time);
-    all
-}
-
-/// What a filter has after a press or a wait: the means of its estimate, and the log likelihood if it was a press of the human.
+/// What a filter has after a press: the means of its estimate, and the log likelihood if it was a press of the human.
 struct Step {
     means: Vec<Vec<f64>>,
     log_p: Option<f64>,
@@ -149,8 +127,7 @@ fn steps(
             ObservedEvidence::Pressed(Press { agent, .. }) => Some(agent),
             _ => None,
         };
-        let is_step = pressed.is_some() || matches!(observation.what, ObservedEvidence::Waited { .. });
-        let (belief, log_p) = after(observation, is_step)?;
+        let (belief, log_p) = after(observation, pressed.is_some())?;
         Some(Step { means: means(&belief), log_p: log_p.filter(|_| pressed == Some(Agent::Human)) })
     };
     observations.iter().filter_map(step).collect()

@@ -27,8 +27,8 @@ const MOST_STATES: usize = 50_000;
 pub struct OwnWays {
     /// Number of the robot's presses until the order is served.
     pub presses: u32,
-    /// The first presses of the shortest ways, each with the state after it.
-    pub first: Vec<(ButtonId, State)>,
+    /// The first presses of the shortest ways.
+    pub first: Vec<ButtonId>,
 }
 
 /// The robot's presses that change the state, each with the state after it.
@@ -53,7 +53,8 @@ pub fn own_ways(
     let least = cost.order_with(Fidelity::LowerBound, state, recipes, order);
     let mut search = WaySearch { kitchen, cost, recipes, order, failed: FxHashMap::default() };
     let presses = (least..=MOST_PRESSES).find(|&presses| search.serves(state, presses))?;
-    let first = steps(kitchen, state, recipes).filter(|&(_, next)| search.serves(next, presses - 1)).collect();
+    let first = steps(kitchen, state, recipes).filter(|&(_, next)| search.serves(next, presses - 1));
+    let first = first.map(|(button, _)| button).collect();
     Some(OwnWays { presses, first })
 }
 

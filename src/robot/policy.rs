@@ -111,8 +111,7 @@ pub fn chosen(
 
 /// The presses among which the robot chooses while the human is passive: those that begin the shortest way in which the
 /// robot alone serves an order, or without such a way those that prepare the orders; none if every way needs the human
-/// next. If several ways are equally short, a way for the order on which the human works has priority, then a press
-/// after which the cost to go is least.
+/// next. Of equally short ways, those for the order on which the human works have priority.
 pub fn initiative(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Vec<ButtonId> {
     let recipes = kitchen.true_recipes();
     let orders: Vec<LocationId> = kitchen.wanted(state).map(|(order, _)| order).collect();
@@ -121,7 +120,8 @@ pub fn initiative(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Vec<B
         ways.extend(own_ways(kitchen, cost, state, &recipes, order).map(|own| (order, own)));
     }
     let Some(presses) = ways.iter().map(|(_, own)| own.presses).min() else {
-        return preparation(kitchen, cost, state, &recipes);
+        let first = preparation(kitchen, cost, state, &recipes);
+        return without_waste(kitchen, cost, state, first);
     };
     ways.retain(|(_, own)| own.presses == presses);
     if let Some(begun) = begun_order(kitchen, cost, Fidelity::Exact, state, &recipes)
@@ -129,20 +129,23 @@ pub fn initiative(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Vec<B
     {
         ways.retain(|(order, _)| *order == begun);
     }
-    let first = ways.into_iter().flat_map(|(_, own)| own.first);
-    let mut first: Vec<(u32, ButtonId)> =
-        first.map(|(button, next)| (cost.all_orders(next, &recipes), button)).collect();
-    let least = first.iter().map(|(left, _)| *left).min();
-    first.retain(|(left, _)| Some(*left) == least);
-    // What is of use is put down rather than thrown away.
-    let throws_away = |button: ButtonId| kitchen.button(Agent::Robot, button).action == ButtonAction::Trash;
-    if first.iter().any(|(_, button)| !throws_away(*button)) {
-        first.retain(|(_, button)| !throws_away(*button));
+    let mut first: Vec<ButtonId> = ways.into_iter().flat_map(|(_, own)| own.first).collect();
+    first.sort_unstable();
+    first.dedup();
+    without_waste(kitchen, cost, state, first)
+}
+
+/// Of these equally good presses, only the one that throws a content away if no order loses by that; else the others, if
+/// there are others.
+fn without_waste(kitchen: &Kitchen, cost: &mut CostToGo, state: State, presses: Vec<ButtonId>) -> Vec<ButtonId> {
+    let is_trash = |button: &ButtonId| kitchen.button(Agent::Robot, *button).action == ButtonAction::Trash;
+    let Some(trash) = presses.iter().copied().find(is_trash) else { return presses };
+    let recipes = kitchen.true_recipes();
+    let after = kitchen.press(state, &recipes, Agent::Robot, trash).unwrap_or(state);
+    if presses.len() == 1 || cost.all_orders(after, &recipes) <= cost.all_orders(state, &recipes) {
+        return vec![trash];
     }
-    let mut buttons: Vec<ButtonId> = first.into_iter().map(|(_, button)| button).collect();
-    buttons.sort_unstable();
-    buttons.dedup();
-    buttons
+    presses.into_iter().filter(|button| !is_trash(button)).collect()
 }
 
 /// Whether a press to which the robot's arm is moving still helps: it lowers the cost to go or, while the human is

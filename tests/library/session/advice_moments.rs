@@ -57,7 +57,7 @@ fn a_silence_of_six_seconds_is_unusual_whoever_presses_faster_or_not_at_all() {
 #[test]
 fn a_press_ends_the_silence_and_a_pause_is_none() {
     let mut engine = engine(|_| ());
-    let (_, last_s) = pressed(&mut engine, &[1.0]);
+    let (_, last_s) = pressed(&mut engine, &[1.0, 1.0, 1.0]);
     let kinds = check(&mut engine, &[later(last_s + 5.0), (last_s + 5.5, press("trash")), later(last_s + 11.0)]);
     assert!(waits(&kinds).is_empty(), "{kinds:?}");
     let now_s = last_s + 11.0;

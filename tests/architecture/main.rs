@@ -1,4 +1,5 @@
-//! The house keeps its own rules: who imports whom, what is not named where, and that ARCHITECTURE.md names what exists.
+//! The house keeps its own rules: who imports whom, what is not named where, and that ARCHITECTURE.md and the glossary name
+//! what exists.
 
 mod documents;
 mod imports;

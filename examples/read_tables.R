@@ -25,4 +25,4 @@ if (all(c("none", "wizard") %in% colnames(paired))) {
 human <- actions[actions$agent == "human", ]
 cat("presses_human:", nrow(human), "\n")
 causes <- table(human$cause)
-for (cause in sort(names(causes), method = "radix")) cat(sprintf("cause %s: %d\n", cause, causes[[cause]]))
+for (cause in sort(as.character(names(causes)), method = "radix")) cat(sprintf("cause %s: %d\n", cause, causes[[cause]]))

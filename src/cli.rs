@@ -44,6 +44,7 @@ use crate::analysis::kitchen_summary::{self, KitchenSummary};
 use crate::analysis::recording_summary::RecordingSummary;
 use crate::analysis::{event_lines, timing_summary};
 use crate::base::number_range::OutOfRange;
+use crate::base::printable::printable;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
@@ -66,7 +67,7 @@ const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 pub fn main() -> ExitCode {
     // Lines of messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
-    let cli = Cli::try_parse().unwrap_or_else(|error| command_hint::add(error).exit());
+    let cli = Cli::try_parse().unwrap_or_else(|error| command_hint::add(printable_error(error)).exit());
     let command = cli.command.unwrap_or(CliCommand::Operate(operate::OperateArgs {
         session: None,
         recording: None,
@@ -90,6 +91,7 @@ pub fn main() -> ExitCode {
         CliCommand::Kitchen(args) => kitchen(&args),
         CliCommand::Keys(args) => keys(&args),
         CliCommand::Exclude(args) => exclude(&args),
+        CliCommand::Correct(args) => correct(&args),
         CliCommand::Codes(args) => data::codes(&args),
         CliCommand::Export(args) => exports::export(&args),
         CliCommand::Forget(args) => data::forget(&args),
@@ -105,6 +107,14 @@ pub fn main() -> ExitCode {
     };
     put_error(report);
     ExitCode::from(code)
+}
+
+/// The message about wrong arguments, in which their control characters are escaped. The message quotes arguments in many
+/// places, so it is made again, from escaped arguments.
+fn printable_error(error: clap::Error) -> clap::Error {
+    let escaped = std::env::args_os().map(|argument| printable(&argument.to_string_lossy()).into_owned());
+    // Arguments that are wrong only because they are not UTF-8 are not quoted.
+    Cli::try_parse_from(escaped).err().unwrap_or(error)
 }
 
 fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
@@ -185,6 +195,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
         if !args.follow || !replay.log().is_cut() {
             break;
         }
+        replay.log().check_there()?;
         std::thread::sleep(FOLLOW_INTERVAL);
     }
     let standing = standing::exclusion_status(replay.session(), replay.log())?;
@@ -215,9 +226,18 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     print(args.format, &ruling, || format!("{} {words}\n", recording.display()))
 }
 
+fn correct(args: &CorrectArgs) -> Result<(), Failure> {
+    let recording = list::chosen(&args.recording)?;
+    let correction = log::correct(&recording, args.code.as_deref(), args.why.as_deref().unwrap_or_default())?;
+    print(args.format, &correction, || {
+        let (before, after) = (&correction.before, &correction.after);
+        format!("{} is a recording of {after}, no longer of {before}\n", recording.display())
+    })
+}
+
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
-    let found = doctor::examine(&files.spec, &args.out);
+    let found = doctor::examine(&files.spec, &files.kitchen.kitchen, &args.out);
     print(args.format, &found, || doctor::describe(&found))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }
 }

@@ -1,6 +1,7 @@
 //! Checks the belief estimate before each press: how well the estimate agrees with the participant's recorded beliefs,
 //! and how well it predicts the press.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -18,7 +19,7 @@ use crate::measures::JudgedPress;
 use crate::measures::attribution::ErrorCause;
 use crate::measures::belief_basis::BeliefSource;
 use crate::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs};
-use crate::measures::flags::{FlagThresholds, MOST_FALSE_FLAGS, ThresholdSource};
+use crate::measures::flags::{FlagThresholds, MOST_FALSE_FLAGS, ThresholdChoice, ThresholdSource};
 use crate::mind::belief::Belief;
 use crate::mind::choice_parameters::ChoiceParameters;
 use crate::session::{Event, Session, TimestampedEvent};
@@ -31,6 +32,8 @@ const SEED: u64 = 1;
 pub struct BeliefCheck {
     /// Number of recordings whose belief estimates were checked.
     pub recordings: u64,
+    /// Number of participants of these recordings.
+    pub participants: u64,
     /// Number of the human's presses in the trials.
     pub human_actions: u64,
     /// Source of what participants believed: recorded beliefs, or answers to freeze probes; null if there is neither.
@@ -46,16 +49,22 @@ pub struct BeliefCheck {
 }
 
 impl BeliefCheck {
-    /// Checks the belief estimate against the presses of several trials in one kitchen. Where no beliefs are recorded,
+    /// Checks the belief estimate against the presses of several trials in one kitchen; `codes` holds the code of the
+    /// participant of each trial. Without `thresholds` they are chosen by cross-fitting. Where no beliefs are recorded,
     /// answers to freeze probes in these trials take their place.
     pub fn from_trials(
         kitchen: &Arc<Kitchen>,
         trials: &[TrialBeliefs],
+        codes: &[String],
         thresholds: Option<FlagThresholds>,
         probes: Option<ProbeSummary>,
     ) -> BeliefCheck {
         let mut cost = CostToGo::new(kitchen.clone());
-        let mut detection = FalseBeliefDetection::from_trials(kitchen, trials, thresholds);
+        let known: BTreeSet<&String> = codes.iter().collect();
+        let index = |code: &String| known.range::<&String, _>(..code).count();
+        let participants: Vec<usize> = codes.iter().map(index).collect();
+        let choice = thresholds.map_or(ThresholdChoice::CrossFitted(&participants), ThresholdChoice::Given);
+        let mut detection = FalseBeliefDetection::from_trials(kitchen, trials, Some(choice));
         let is_recorded = trials.iter().flatten().any(|press| press.held.is_some());
         if let Some(found) = probes.as_ref().filter(|_| !is_recorded) {
             detection = found.detection.in_place_of(detection);
@@ -64,6 +73,7 @@ impl BeliefCheck {
         BeliefCheck {
             beliefs_from: if is_recorded { Some(BeliefSource::Recorded) } else { by_probes },
             recordings: trials.len() as u64,
+            participants: known.len() as u64,
             human_actions: trials.iter().map(Vec::len).sum::<usize>() as u64,
             detection,
             log_likelihood: PressLogLikelihood::from_trials(
@@ -71,6 +81,7 @@ impl BeliefCheck {
                 &mut cost,
                 &ChoiceParameters::default(),
                 trials,
+                &participants,
                 SEED,
             ),
             probes,
@@ -172,21 +183,21 @@ pub fn describe(check: &BeliefCheck) -> String {
         let from = match from {
             ThresholdSource::OtherRecordings => "chosen on other recordings".to_string(),
             ThresholdSource::OtherHalf => {
-                "each half of the recordings judged with those chosen on the other; all give".to_string()
+                "each half of the participants judged with those chosen on the other; all give".to_string()
             }
-            ThresholdSource::SameTrial => "chosen on the same recording, so these rates are too good".to_string(),
+            ThresholdSource::OneParticipant => "of one participant, not judged without a second one".to_string(),
         };
         format!("\n  thresholds {from}: {locations} for locations, {recipes} for recipes")
     });
-    // For a single recording there is no interval, since it has no spread between recordings.
-    let interval = likely.gain_interval.filter(|_| check.recordings > 1);
+    // For a single participant there is no interval, since there is no spread between participants.
+    let interval = likely.gain_interval.filter(|_| check.participants > 1);
     let interval = interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
     let informed = match (likely.informed_tau, likely.informed_lapse) {
         (Some(tau), Some(lapse)) => format!(" (tau {tau:.2}, lapse {lapse:.3})"),
         _ => String::new(),
     };
     let mut text = format!(
-        "{}, {} of the human\n\
+        "{} of {}, {} of the human\n\
          what is believed wrong, area under the ROC: {} in the mean (locations {}, where knowing only what changed unseen \
          gives {}, and how long ago others changed it {}; recipes {})\n\
          false belief episodes of two or more errors flagged before the third: {} of {}, {} false flags per 20 presses, \
@@ -195,6 +206,7 @@ pub fn describe(check: &BeliefCheck) -> String {
          log likelihood per press: {} (informed human {}{informed}, uniform {}); gain {}{interval} nats\n\
          \n{:<32}{:>8}{:>8}\n",
         count(check.recordings, "recording", "recordings"),
+        count(check.participants, "participant", "participants"),
         count(check.human_actions, "press", "presses"),
         number(found.auc),
         number(found.auc_locations),

@@ -13,7 +13,7 @@ use super::trial_summary::TrialSummary;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
-use crate::measures::flags::chosen_thresholds;
+use crate::measures::flags::{ThresholdChoice, chosen_thresholds};
 use crate::measures::resampled_detection::DetectionScores;
 use crate::mind::choice_parameters::ChoiceParameters;
 
@@ -204,7 +204,9 @@ impl CohortPerformance {
         saved: f64,
         intervals: [Option<[f64; 2]>; MEASURES],
     ) -> CohortPerformance {
-        let thresholds = chosen_thresholds(&trials.chosen_on[of], &aspect_groups(kitchen));
+        let thresholds = chosen_thresholds(&trials.chosen_on[of], &aspect_groups(kitchen)).map(ThresholdChoice::Given);
+        // Every trial of a cohort is of another participant.
+        let participants: Vec<usize> = (0..trials.judged[of].len()).collect();
         let [auc_locations_interval, auc_recipes_interval, ece_interval, saved_interval] = intervals;
         let (views, mut cost) = (&trials.judged[of], CostToGo::new(kitchen.clone()));
         CohortPerformance {
@@ -217,6 +219,7 @@ impl CohortPerformance {
                 &mut cost,
                 &ChoiceParameters::default(),
                 views,
+                &participants,
                 SEED,
             ),
             assisted: CohortRates::from_trials(&trials.assisted[of]),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::session::Session;
+use crate::session::{Session, TrialPhase};
 
 /// Whether a trial was aborted or excluded; an analysis leaves out aborted and excluded trials.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -22,6 +22,18 @@ impl ExclusionStatus {
     /// Whether analyses include the trial: it was neither aborted nor excluded.
     pub fn counts(&self) -> bool {
         self.aborted.is_none() && self.excluded.is_none()
+    }
+
+    /// Why analyses leave out the trial of a session that was read to its end, in words; `None` for a trial that counts.
+    pub fn left_out(self, session: &Session) -> Option<String> {
+        let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
+        match self {
+            ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
+            ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
+            _ if !is_over => Some("cut before the trial's end".to_string()),
+            _ if session.presses == [0, 0] => Some("no press in it".to_string()),
+            _ => None,
+        }
     }
 
     /// The exclusion status as text; empty for a trial that counts.

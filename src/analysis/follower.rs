@@ -277,18 +277,16 @@ impl SessionFollower {
         // pause says nothing about the human's silence.
         let is_frozen = self.session.is_frozen();
         match &stamped.event {
-            Event::TrialPaused | Event::TrialResumed | Event::Gaze(_) if is_frozen => None,
+            Event::TrialPaused | Event::TrialResumed if is_frozen => None,
             Event::TrialPaused => Some(ObservedEvidence::Paused),
             Event::TrialResumed => Some(ObservedEvidence::Resumed),
             // The belief filter does not use gaze samples that are late, duplicate or out of order; they are recorded
             // only.
             Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
             Event::Gaze(sample) => {
-                let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
-                if self.session.probes.ended_at.is_some_and(|ended| taken < ended) {
-                    return None;
-                }
-                Some(ObservedEvidence::Gaze { sample: self.session.corrected(*sample), taken })
+                let taken = sample.taken(stamped.time);
+                let evidence = ObservedEvidence::Gaze { sample: self.session.corrected(*sample), taken };
+                self.session.had_kitchen_on_display(taken).then_some(evidence)
             }
             Event::Tracker(TrackerEvent::DisplayLost) => Some(ObservedEvidence::DisplayInView(false)),
             Event::Tracker(TrackerEvent::DisplayFound | TrackerEvent::Lost { .. }) => {
@@ -354,6 +352,11 @@ impl SessionFollower {
         let belief_known = belief.is_some();
         let (seq, time, before) = (stamped.seq, stamped.time, press.before);
         self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
+    }
+
+    /// Number of the human's presses so far whose judgement rests on a cost to go that is not proven.
+    pub fn unproven(&self) -> usize {
+        self.judged.iter().filter(|press| !press.verdict.is_proven).count()
     }
 
     /// The number of the human's errors so far.

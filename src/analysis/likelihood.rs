@@ -28,7 +28,7 @@ pub struct PressLogLikelihood {
     pub uniform: Option<f64>,
     /// Difference of mean log probability between the human model and the informed human, in nats per press.
     pub gain: Option<f64>,
-    /// 95 % interval of the difference `gain`, by a bootstrap over trials.
+    /// 95 % interval of the difference `gain`, by a bootstrap over participants.
     pub gain_interval: Option<[f64; 2]>,
     /// Value of the softmax parameter tau of the choice model, per press, that fits the informed human best.
     pub informed_tau: Option<f64>,
@@ -37,12 +37,14 @@ pub struct PressLogLikelihood {
 }
 
 impl PressLogLikelihood {
-    /// Computes the log likelihoods of all presses of these trials. The bootstrap's random stream is seeded by `seed`.
+    /// Computes the log likelihoods of all presses of these trials; `participants` holds the index of the participant of
+    /// each trial, below their number. The bootstrap's random stream is seeded by `seed`.
     pub fn from_trials(
         kitchen: &Kitchen,
         cost: &mut CostToGo,
         model: &ChoiceParameters,
         trials: &[TrialBeliefs],
+        participants: &[usize],
         seed: u64,
     ) -> PressLogLikelihood {
         let presses = trials.iter().map(Vec::len).sum::<usize>() as f64;
@@ -63,8 +65,14 @@ impl PressLogLikelihood {
             .map(|trial| trial.iter().map(|press| Some(press.estimate.as_ref()?.log_p)).sum::<Option<f64>>())
             .collect();
         let gains = estimated.as_ref().map(|estimated| -> Vec<(f64, f64)> {
-            let both = estimated.iter().zip(&informed).zip(trials);
-            both.map(|((model, informed), trial)| (model - informed, trial.len() as f64)).collect()
+            let number = participants.iter().map(|participant| participant + 1).max().unwrap_or(0);
+            let mut sums = vec![(0.0, 0.0); number];
+            let both = estimated.iter().zip(&informed).zip(trials).zip(participants);
+            for (((model, informed), trial), &participant) in both {
+                let (gain, presses) = sums[participant];
+                sums[participant] = (gain + model - informed, presses + trial.len() as f64);
+            }
+            sums
         });
         PressLogLikelihood {
             model: estimated.map(|estimated| estimated.iter().sum::<f64>() / presses),

@@ -8,7 +8,8 @@ use crate::session::Session;
 /// Least duration of a look after which a location counts as seen, in seconds.
 pub const LOOK_S: f64 = 0.1;
 
-/// For each location, the time since which the gaze has been in the location's area without a change there.
+/// For each location, the time since which the gaze has been in the location's area without a change there. Times are
+/// those at which samples were taken.
 #[derive(Clone, Debug, Default)]
 pub struct LocationDwells {
     since: [Option<SessionTime>; MAX_LOCATIONS],
@@ -26,11 +27,11 @@ impl LocationDwells {
     }
 
     /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen
-    /// the location's present content by now.
+    /// the location's present content by now. A sample that was taken before the last change there is no look at it.
     pub fn sampled(&mut self, session: &Session, location: LocationId) -> bool {
         let since = &mut self.since[location.index()];
-        let is_there = session.gaze.looked_at[location.index()] == Some(session.time);
-        *since = is_there.then(|| since.unwrap_or(session.time));
-        since.is_some_and(|since| session.time.secs_since(since) >= LOOK_S)
+        let taken = session.gaze.looked_at[location.index()].filter(|_| session.sees_present_content(location));
+        *since = taken.map(|taken| since.unwrap_or(taken));
+        since.zip(taken).is_some_and(|(since, taken)| taken.secs_since(since) >= LOOK_S)
     }
 }

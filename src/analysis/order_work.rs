@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::cost_to_go::{CostToGo, ProofBudget};
 use crate::kitchen::{Kitchen, KitchenChange, LocationId};
 use crate::session::{Session, TimelineEvent};
 
@@ -42,8 +42,9 @@ impl RegretSum {
         self.lost += match press.before == press.after {
             true => 1,
             false => {
-                let mut cost = |state| i64::from(cost.all_orders(state, &recipes));
-                1 + cost(press.after) - cost(press.before)
+                let mut budget = ProofBudget::default();
+                let mut least = |state| i64::from(cost.proven_all_orders(state, &recipes, &mut budget).presses);
+                1 + least(press.after) - least(press.before)
             }
         };
     }

@@ -74,7 +74,7 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
     let mut groups = vec![
         (ProbeAccuracyGrouping::Kind, kind, question.kind.words().to_string()),
         (ProbeAccuracyGrouping::Aspect, 0, question.aspect.clone()),
-        (ProbeAccuracyGrouping::Condition, trial.study_arm as usize, trial.study_arm.name().to_string()),
+        (ProbeAccuracyGrouping::Condition, trial.planned_arm as usize, trial.planned_arm.name().to_string()),
         (ProbeAccuracyGrouping::Choice, usize::from(question.uses_estimate), choice.to_string()),
     ];
     if let Some((frozen, changed_unseen)) =
@@ -159,7 +159,7 @@ pub fn accuracy(
 /// both assisted and unassisted trials.
 pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<SituationAwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
-        let of = trials.iter().filter(|trial| (trial.study_arm != StudyArm::None) == assisted);
+        let of = trials.iter().filter(|trial| (trial.planned_arm != StudyArm::None) == assisted);
         let answers = of.flat_map(|trial| trial.counted());
         weighted_share(answers.filter_map(|one| Some((one.weight(), !one.is_wrong()?))))
     };

@@ -187,7 +187,7 @@ impl ProbeCollector {
     pub fn finish(mut self, session: &Session) -> ProbedTrial {
         self.close();
         let ProbeCollector { begun, dropped, skipped, questions, .. } = self;
-        ProbedTrial { study_arm: session.study_arm(), begun, dropped, skipped, questions }
+        ProbedTrial { planned_arm: session.planned_arm(), begun, dropped, skipped, questions }
     }
 }
 

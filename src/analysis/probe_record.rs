@@ -177,8 +177,8 @@ impl ProbedQuestion {
 /// The freeze probes of one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedTrial {
-    /// Study arm of the trial.
-    pub study_arm: StudyArm,
+    /// Study arm under which the trial counts.
+    pub planned_arm: StudyArm,
     /// Number of freeze probes that began in the trial.
     pub begun: u64,
     /// Number of probes that did not begin in time and were dropped.

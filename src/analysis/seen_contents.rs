@@ -46,7 +46,10 @@ impl LastSeenContents {
             self.looks.interrupted();
         }
         let is_own = change.human_press().is_some();
-        let is_seen = |sample: &GazeSample| sample.confidence >= MIN_CONFIDENCE && !session.is_frozen();
+        // A late sample, or one that arrives again, says nothing about where the gaze is, and ends no look.
+        let is_seen = |sample: &GazeSample| {
+            sample.confidence >= MIN_CONFIDENCE && !session.is_frozen() && session.gaze.fault.is_none()
+        };
         let is_look = matches!(event, Event::Gaze(sample) if is_seen(sample));
         for index in 0..session.kitchen.locations.len() {
             let place = LocationId(index as u8);

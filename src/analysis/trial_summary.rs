@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::follower::SessionFollower;
 use super::offer_summary::{OfferDurations, TimedOffer};
+use crate::base::path_text::PathText;
 use crate::base::words::{count, decimal};
 use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::ErrorCause;
@@ -204,7 +205,7 @@ pub struct SimulationSummary {
     /// Totals of presses, errors and signals, by study arm.
     pub arms: Vec<StudyArmTotals>,
     /// Paths of the folders of the recordings.
-    pub recordings: Vec<String>,
+    pub recordings: Vec<PathText>,
 }
 
 /// Running sums over trials of errors that follow from false beliefs.

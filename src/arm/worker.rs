@@ -312,6 +312,6 @@ impl RobotTaskExecutor {
 /// Whether a press of the robot is among the best presses, or the wizard chose the press.
 fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, ongoing: OngoingPress) -> bool {
     let best =
-        |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Exact, state, &kitchen.true_recipes());
+        |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Searched, state, &kitchen.true_recipes());
     ongoing.driven || best(cost).contains(&ongoing.button)
 }

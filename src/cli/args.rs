@@ -52,6 +52,7 @@ pub(super) enum CliCommand {
     Kitchen(KitchenArgs),
     Keys(KeysArgs),
     Exclude(ExcludeArgs),
+    Correct(CorrectArgs),
     Codes(CodesArgs),
     Export(ExportArgs),
     Forget(ForgetArgs),
@@ -77,9 +78,9 @@ pub(super) struct ReplayArgs {
     /// presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
-    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, which has another seed
-    /// (several: repeat the option). Without it, each half of the recordings is judged with the thresholds of the other
-    /// half.
+    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, of another participant
+    /// (several: repeat the option). Without it, each half of the participants is judged with the thresholds of the
+    /// other half.
     #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
     pub(super) choose_on: Vec<PathBuf>,
     /// Measure computing times of inference and planning.
@@ -314,6 +315,32 @@ pub(super) struct ExcludeArgs {
     /// Include the recording again.
     #[arg(long)]
     pub(super) back: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: OutputFormat,
+}
+
+/// Corrects the participant's code of a recording that was begun with a wrong one.
+///
+/// The recording must be closed. Its log stays as it is: a file beside it says whose the recording is, and every command
+/// goes by that. Exports and reports that were made before still have the old code.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: tomcom correct sessions/2026-03-14-P02-1 --code P03 --why \"the code of the day before\"\n          \
+                  tomcom correct sessions/2026-03-14-P02-1 --undo\nMore: docs/recordings.md"
+)]
+pub(super) struct CorrectArgs {
+    /// The folder of a recording.
+    pub(super) recording: PathBuf,
+    /// The code of the participant who took part.
+    #[arg(long, required_unless_present = "undo", requires = "why")]
+    pub(super) code: Option<String>,
+    /// Why the code is corrected.
+    #[arg(long)]
+    pub(super) why: Option<String>,
+    /// Take all corrections back: the code in the log holds again.
+    #[arg(long, conflicts_with = "code")]
+    pub(super) undo: bool,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,

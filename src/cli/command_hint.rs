@@ -5,7 +5,6 @@ use std::path::Path;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use crate::base::printable::printable;
 use crate::edge::log::LOG_NAME;
 
 /// Adds to the message about an unknown command which command takes a file of this name; other messages, and those about
@@ -16,7 +15,7 @@ pub(super) fn add(mut error: clap::Error) -> clap::Error {
     }
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return error };
     let is_path = Path::new(word).exists() || word.contains(['/', '.']);
-    let hint = StyledStr::from(hint(&printable(word)));
+    let hint = StyledStr::from(hint(word));
     if error.get(ContextKind::SuggestedSubcommand).is_some() {
         if !is_path {
             return error;

@@ -1,21 +1,24 @@
 //! Commands about raters' codes (`tomcom codes`) and the deletion of a participant's data (`tomcom forget`).
 
-use std::io::{BufRead, IsTerminal};
+use std::io::{BufRead, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::each_chosen;
+use super::list::{each_chosen, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
-use crate::run::code_exchange;
+use crate::run::code_exchange::{self, ImportableCodes};
 use crate::run::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
-use crate::session::participant_code;
+use crate::session::person_code;
 use crate::session::settings::is_code;
+
+/// Longest answer to a question, in bytes; no code of a participant is as long.
+const MAX_ANSWER: u64 = 1 << 12;
 
 /// Prints raters' codes of errors, their agreement, and where they disagree.
 ///
@@ -32,6 +35,9 @@ pub(super) struct CodesArgs {
     /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
+    /// Import codes of raters who have no codes yet without asking.
+    #[arg(long, requires = "import")]
+    yes: bool,
     /// Export all codes to a table with these columns.
     #[arg(long, value_name = "FILE")]
     export: Option<PathBuf>,
@@ -41,19 +47,47 @@ pub(super) struct CodesArgs {
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
-    let chosen = each_chosen(&args.recordings)?;
+    let chosen = gathered(&each_chosen(&args.recordings)?)?.paths;
     let bar = progress(chosen.len() as u64, "recordings");
     let read = crate::run::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));
     bar.finish_and_clear();
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {
-        code_exchange::import(&mut recordings, file)?;
+        let codes = code_exchange::read(&recordings, file)?;
+        if !codes.new_raters.is_empty() && !are_meant(&codes, args.yes)? {
+            put_aside("nothing was imported\n");
+            return Err(Failure::No);
+        }
+        codes.import(&mut recordings)?;
     }
     if let Some(file) = &args.export {
         code_exchange::export(&recordings, file)?;
     }
     let figures = InterRaterSummary::from_recordings(&recordings);
     print(args.format, &figures, || codes::describe(&figures))
+}
+
+/// Tells which raters in a table are new, and asks whether they are meant: a code that was typed wrong, or changed by a
+/// spreadsheet, would make a rater of its own.
+fn are_meant(codes: &ImportableCodes, is_agreed: bool) -> Result<bool, Failure> {
+    let (new, known) = (codes.new_raters.join(", "), codes.known_raters.join(", "));
+    let known = if known.is_empty() { "no rater".to_string() } else { known };
+    put_aside(&format!("new raters in the table: {new}; so far these recordings have codes of: {known}\n"));
+    let input = std::io::stdin();
+    if is_agreed {
+        return Ok(true);
+    }
+    if !input.is_terminal() {
+        let help = "--yes if they are meant, or the table with the raters' codes put right";
+        return Err(Failure::Wrong(miette::miette!(
+            help = help,
+            "found no terminal to ask in whether codes of new raters are to be imported: {new}"
+        )));
+    }
+    put_aside("Import their codes? To do so, type yes: ");
+    let mut answer = String::new();
+    input.lock().read_line(&mut answer)?;
+    Ok(answer.trim() == "yes")
 }
 
 /// Runs `tomcom replay --rater`: lets a rater code the errors of a recording at the console.
@@ -86,11 +120,12 @@ pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2],
 
 /// Refuses a rater without a valid code.
 fn check_rater(rater: &str) -> Result<(), Failure> {
-    if !is_code(rater) {
-        let help = "a code of 1 to 32 letters, digits, - and _, such as R1; never a name";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found the rater \"{rater}\"")));
+    match person_code::fault(rater) {
+        None => Ok(()),
+        Some(fault) => {
+            Err(Failure::Wrong(miette::miette!(help = person_code::REMEDY, "found the rater \"{rater}\": {fault}")))
+        }
     }
-    Ok(())
 }
 
 /// Refuses to code errors without a terminal.
@@ -165,19 +200,10 @@ impl ForgetSummary<'_> {
 pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     let code = &args.code;
     if !is_code(code) {
-        let help = "a code of 1 to 32 letters, digits, - and _, such as P07";
+        let help = "the code of a participant, such as P07";
         return Err(Failure::Wrong(miette::miette!(help = help, "found the participant's code \"{code}\"")));
     }
     let found = forget::find(&args.folder, &std::env::temp_dir(), code)?;
-    if let Some(fault) = participant_code::fault(code).filter(|_| found.is_empty()) {
-        let help =
-            "the code of a participant; recordings of earlier versions with such a code are found by their headers";
-        let folder = args.folder.display();
-        return Err(Failure::Wrong(miette::miette!(
-            help = help,
-            "found the code \"{code}\", and no files in {folder} of a participant with this code: {fault}"
-        )));
-    }
     if !found.is_empty() && !args.yes && !is_meant(args, &found)? {
         return print(args.format, &ForgetSummary::new(&found, false), || "nothing was deleted\n".to_string())
             .and(Err(Failure::No));
@@ -217,7 +243,7 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
         args.code
     ));
     let mut answer = String::new();
-    input.lock().read_line(&mut answer)?;
+    input.lock().take(MAX_ANSWER).read_line(&mut answer)?;
     Ok(answer.trim() == args.code)
 }
 

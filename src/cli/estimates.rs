@@ -1,9 +1,10 @@
 //! Commands that check estimates: beliefs, net benefits of signals, parameters of the human model.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
+use super::list::gathered;
 use super::output::{print, progress};
 use crate::analysis::fitting::people_summary;
 use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
@@ -14,8 +15,9 @@ use crate::run::{accuracy, check_beliefs, fit, fit_people, steadiness};
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
-    let bar = progress((args.recordings.len() + args.choose_on.len()) as u64, "recordings");
-    let found = check_beliefs::check(&args.recordings, &args.choose_on, || bar.inc(1))?;
+    let (recordings, choose_on) = (gathered(&args.recordings)?, gathered(&args.choose_on)?);
+    let bar = progress((recordings.paths.len() + choose_on.paths.len()) as u64, "recordings");
+    let found = check_beliefs::check(&recordings, &choose_on, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || belief_check::describe(&found))
 }
@@ -28,15 +30,16 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     };
     // Each step is planned twice: with the budget of a session, and with the larger one.
     let bar = progress(2 * args.steps + args.reference_steps, "answers of the planner at most");
-    let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
+    let found = accuracy::measure(&gathered(&args.recordings)?, extent, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || planner_accuracy::describe(&found))
 }
 
 /// Runs the command `tomcom replay RECORDING... --offers`.
 pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
-    let bar = progress(args.recordings.len() as u64, "recordings");
-    let found = steadiness::measure(&args.recordings, || bar.inc(1))?;
+    let recordings = gathered(&args.recordings)?;
+    let bar = progress(recordings.paths.len() as u64, "recordings");
+    let found = steadiness::measure(&recordings, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || offer_steadiness::describe(&found))
 }
@@ -55,14 +58,15 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         // The output file is checked before the long search.
         files::check_fitted(path).map_err(|error| unwritable(path, error))?;
     }
-    let trials = fit::FitTrials::read(&args.recordings, args.probes)?;
+    let recordings = gathered(&args.recordings)?;
+    let trials = fit::FitTrials::read(&recordings, args.probes)?;
     let plan = fitting::FitSettings { parameters, start, most_tries: args.tries as usize };
     let write = |file: &HumanModelFile, comment: &str| match &args.out {
         Some(path) => files::write_human_model(path, file, comment).map_err(|error| unwritable(path, error)),
         None => Ok(()),
     };
     if args.people {
-        return fit_people(args, &trials, &plan, write);
+        return fit_people(args, &recordings.paths, &trials, &plan, write);
     }
     let searches = if args.probes { 2 } else { 1 };
     let bar = progress(searches * plan.most_tries as u64, "tries of parameters at most");
@@ -75,11 +79,12 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
 /// Runs the command `tomcom fit RECORDING... --people`.
 fn fit_people(
     args: &FitArgs,
+    recordings: &[PathBuf],
     trials: &fit::FitTrials,
     plan: &fitting::FitSettings,
     write: impl Fn(&HumanModelFile, &str) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    fit_people::require_people(&args.recordings, trials)?;
+    fit_people::require_people(recordings, trials)?;
     let bar = progress(fit_people::most_replays(trials, plan), "replays of recordings at most");
     let found = fit_people::fit(trials, plan, || bar.inc(1));
     bar.finish_and_clear();

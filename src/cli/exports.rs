@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 use serde::Serialize;
-use serde_json::Value;
 
 use super::failure::Failure;
 use super::list::exists;
-use super::mcap_exports;
+use super::mcap_exports::{self, ExportedMcap};
 use super::output::{OutputFormat, print, progress};
 use crate::edge::recordings;
 use crate::run::bids_export::{self, BidsSummary};
@@ -48,7 +47,7 @@ struct ExportSummary {
     /// Summary of the BIDS data set.
     bids: Option<BidsSummary>,
     /// Summary of the MCAP files with their numbers of messages.
-    mcap: Option<Value>,
+    mcap: Option<Vec<ExportedMcap>>,
 }
 
 /// Runs the command `tomcom export`.

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::base::features::MissingFeature;
 use crate::edge::file_error::FileError;
 use crate::edge::forget::ParticipantDeletionError;
-use crate::edge::log::{ExclusionError, RecordingWriteError};
+use crate::edge::log::{DecisionError, RecordingWriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
 use crate::session::settings::SettingError;
 
@@ -40,10 +40,10 @@ impl From<RecordingWriteError> for Failure {
     }
 }
 
-impl From<ExclusionError> for Failure {
-    fn from(error: ExclusionError) -> Failure {
+impl From<DecisionError> for Failure {
+    fn from(error: DecisionError) -> Failure {
         match error {
-            ExclusionError::Recording(error) => Failure::from(error),
+            DecisionError::Recording(error) => Failure::from(error),
             error => Failure::Wrong(miette::Report::new(error)),
         }
     }

@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::{OutputFormat, print, progress};
+use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::log::LOG_NAME;
 use crate::edge::{near_path, recordings};
+use crate::run::gathered::GatheredRecordings;
 use crate::run::pick_recording;
 use crate::run::recording_list::{self, RecordingListDetail};
+use crate::study::planned_trial::copies_in_words;
 
 /// Largest number of recordings that a message names.
 const MOST_NAMED: usize = 12;
@@ -46,6 +48,15 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
 /// Chooses one recording per path: if a path is a folder of recordings, the user chooses a recording at the terminal.
 pub(super) fn each_chosen(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     paths.iter().map(|path| chosen(path)).collect()
+}
+
+/// Gathers the recordings at these paths, each trial once, and tells which are copies.
+pub(super) fn gathered(paths: &[PathBuf]) -> Result<GatheredRecordings, Failure> {
+    let found = GatheredRecordings::find(paths)?;
+    if let Some(copies) = copies_in_words(&found.copies) {
+        put_aside(&format!("{copies}\n"));
+    }
+    Ok(found)
 }
 
 /// Finds the recording at a path: if the path is a folder of recordings, the user chooses a recording at the terminal.

@@ -1,9 +1,10 @@
 //! Opening recordings in the Rerun viewer, with the messages about it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::failure::Failure;
 use super::output::put;
+use crate::base::path_text::PathText;
 use crate::base::time::SessionTime;
 use crate::run::open_viewer::{
     OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, review, running, save,
@@ -20,9 +21,9 @@ impl From<RerunViewerError> for Failure {
 }
 
 /// Writes Rerun streams of these recordings beside their logs.
-pub(super) fn save_all(recordings: &[String]) -> Result<(), Failure> {
+pub(super) fn save_all(recordings: &[PathText]) -> Result<(), Failure> {
     for recording in recordings {
-        save(Path::new(recording))?;
+        save(recording)?;
     }
     Ok(())
 }

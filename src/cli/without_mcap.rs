@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use serde_json::Value;
-
 use super::failure::Failure;
 use crate::base::features::{Feature, MissingFeature};
 
+/// No recording is exported.
+pub(super) type ExportedMcap = ();
+
 /// Refuses the export, since this build lacks MCAP.
-pub(super) fn export(_: &[PathBuf]) -> Result<(Value, String), Failure> {
+pub(super) fn export(_: &[PathBuf]) -> Result<(Vec<ExportedMcap>, String), Failure> {
     Err(MissingFeature(Feature::Mcap).into())
 }

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use super::failure::Failure;
 use crate::base::features::{Feature, MissingFeature};
+use crate::base::path_text::PathText;
 use crate::base::time::SessionTime;
 
 /// Refuses to write Rerun streams, since this build lacks Rerun.
-pub(super) fn save_all(_: &[String]) -> Result<(), Failure> {
+pub(super) fn save_all(_: &[PathText]) -> Result<(), Failure> {
     Err(MissingFeature(Feature::Rerun).into())
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::choices::ConceptArg;
 use super::failure::Failure;
-use super::list::{chosen, each_chosen, exists};
+use super::list::{chosen, each_chosen, exists, gathered};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
@@ -20,7 +20,7 @@ use crate::measures::wizard_performance::TrainingCriterion;
 use crate::run::similarity;
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
-use crate::session::settings::is_code;
+use crate::session::person_code;
 
 /// Compares a wizard's signals with those that assistants would have sent.
 ///
@@ -118,10 +118,10 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         };
         return Ok(review_console::review(&chosen(recording)?, true, Some(&request(args.window)))?);
     }
-    let paths = each_chosen(&args.paths)?;
+    let recordings = gathered(&each_chosen(&args.paths)?)?;
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
-    let bar = progress((paths.len() * windows.len()) as u64, "recordings");
-    let watch = |window: u32| similarity::watch(&paths, &request(window), || bar.inc(1));
+    let bar = progress((recordings.paths.len() * windows.len()) as u64, "recordings");
+    let watch = |window: u32| similarity::watch(&recordings, &request(window), || bar.inc(1));
     let first = watch(windows[0])?;
     let mut figures = ComparisonSummary::from_recordings(&first);
     for &window in &windows[1..] {
@@ -198,9 +198,10 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
 
 /// Parses a wizard's code.
 fn code_of(text: &str) -> Result<String, Failure> {
-    let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"W1\"; never a name";
-    match is_code(text) {
-        true => Ok(text.to_string()),
-        false => Err(Failure::Wrong(miette::miette!(help = remedy, "found --wizard \"{text}\""))),
+    match person_code::fault(text) {
+        None => Ok(text.to_string()),
+        Some(fault) => {
+            Err(Failure::Wrong(miette::miette!(help = person_code::REMEDY, "found --wizard \"{text}\": {fault}")))
+        }
     }
 }

@@ -167,7 +167,7 @@ impl ReferencePlanner {
         let (kitchen, recipes) = (&self.kitchen, self.kitchen.true_recipes());
         loop {
             if future.robot_press.is_none() {
-                let choices = policy::choices(kitchen, cost, Fidelity::Exact, future.state, &recipes);
+                let choices = policy::choices(kitchen, cost, Fidelity::Searched, future.state, &recipes);
                 if !choices.is_empty() {
                     let button = choices[random.random_range(0..choices.len())];
                     future.robot_press = Some((button, future.now_s + press_s, false));
@@ -178,7 +178,8 @@ impl ReferencePlanner {
             };
             future.read_by(kitchen, due_s);
             (future.now_s, future.robot_press) = (due_s, None);
-            if driven || policy::best_presses(kitchen, cost, Fidelity::Exact, future.state, &recipes).contains(&button)
+            if driven
+                || policy::best_presses(kitchen, cost, Fidelity::Searched, future.state, &recipes).contains(&button)
             {
                 let before = future.state;
                 future.state = kitchen.press(before, &recipes, Agent::Robot, button).unwrap_or(before);

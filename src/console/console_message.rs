@@ -5,7 +5,7 @@ use crossterm::event::KeyEvent;
 use super::playback::ReplayAction;
 use crate::session::Event;
 
-/// Input of the console: a key, a mouse event or a change of the terminal.
+/// Input of the console: a key, a mouse event, pasted text or a change of the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleMessage {
     /// A key was pressed, repeated or released.
@@ -20,6 +20,8 @@ pub enum ConsoleMessage {
     Resized(u16, u16),
     /// The terminal gained or lost keyboard focus.
     Focus(bool),
+    /// Text was pasted into the terminal; `None` if the paste had no end, so that it was given up.
+    Paste(Option<String>),
 }
 
 /// A command of the console to the program that runs it.

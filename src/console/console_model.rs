@@ -23,11 +23,12 @@ use super::probe_entry::ProbeEntry;
 use super::rater_session::RaterSession;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;
-use crate::base::words::count;
 use crate::gaze::GazeSample;
+use crate::gaze::recorded_gaze::RecordedGazeSummary;
 use crate::history::belief_track::BeliefHistory;
 use crate::history::signal_judge::SignalJudge;
 use crate::kitchen::{Agent, AspectId};
+use crate::session::preflight_checks::RejectedGaze;
 use crate::session::settings::GazeSource;
 use crate::session::{TimelineEntry, TimelineEvent};
 
@@ -35,9 +36,9 @@ use crate::session::{TimelineEntry, TimelineEvent};
 const NOTICE_S: f64 = 4.0;
 
 /// Largest number of different rejections (address and reason) of gaze senders for which notices are given.
-const REFUSED: usize = 16;
+const REJECTIONS: usize = 16;
 /// Least time between two notices about the same rejected gaze sender, in seconds.
-const REFUSED_AGAIN_S: f64 = 10.0;
+const REJECTED_AGAIN_S: f64 = 10.0;
 /// Number of recent gaze samples that the gaze map draws.
 const TRAIL: usize = 240;
 
@@ -167,16 +168,22 @@ pub struct ConsoleModel {
     pub pointer: Option<[f64; 2]>,
     /// Latest gaze samples with their times, oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
-    /// Number of rejected gaze senders: connections and datagrams that did not come from the eye tracker.
+    /// Number of rejected gaze senders.
     pub rejected_senders: u64,
+    /// The last rejected gaze sender, and when it was rejected.
+    pub rejected_gaze: Option<(RejectedGaze, SessionTime)>,
     /// Notices that were given about rejected gaze senders, with the time of the last one.
-    refused_senders: Vec<(String, SessionTime)>,
+    rejections_told: Vec<(String, SessionTime)>,
     /// Address and pairing code for gaze senders at other computers, if they may connect.
     pub gaze_pairing: Option<GazePairing>,
+    /// What the session reads from its gaze file; `None` for other gaze sources.
+    pub recorded_gaze: Option<RecordedGazeSummary>,
     /// State of the participant's display, if there is one.
     pub display: Option<ParticipantDisplayHealth>,
     /// Session times of the human's errors, in ascending order.
     pub errors: Vec<SessionTime>,
+    /// Number of the human's presses whose judgement rests on a cost to go that is not proven.
+    pub unproven: u64,
     /// Judgement of each signal of the trial at the time when the signal was sent (hit, late or needless).
     pub signals: SignalJudge,
     /// History of the estimate of the participant's beliefs.
@@ -235,10 +242,13 @@ impl ConsoleModel {
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),
             rejected_senders: 0,
-            refused_senders: Vec::new(),
+            rejected_gaze: None,
+            rejections_told: Vec::new(),
             gaze_pairing: None,
+            recorded_gaze: None,
             display: None,
             errors: Vec::new(),
+            unproven: 0,
             signals: SignalJudge::default(),
             belief: BeliefHistory::default(),
             belief_focus: None,
@@ -286,31 +296,26 @@ impl ConsoleModel {
         self.shown_notice().is_some_and(|notice| notice.level == NoticeLevel::Alarm)
     }
 
-    /// Counts rejected gaze senders. A notice is given for the first one and for every doubling of their number, so
-    /// that a flood of senders can neither fill the notices nor replace an alarm.
-    pub fn count_rejected(&mut self, more: u64) {
-        let before = self.rejected_senders;
-        self.rejected_senders += more;
-        let has_doubled = self.rejected_senders.checked_ilog2() > before.checked_ilog2();
-        if has_doubled {
-            let told = count(self.rejected_senders, "sender", "senders");
-            self.warn(format!("gaze of {told} rejected: no JSON object, or not the eye tracker's address"));
-        }
-    }
-
-    /// Counts gaze senders that were not admitted; `address` and `why` describe the last of them. Repeated notices
-    /// about the same address and reason are rate limited, and so is the number of addresses that give notices.
-    pub fn refuse_sender(&mut self, address: &str, why: &str, senders: u64) {
+    /// Notes a rejected gaze sender, the last one of `senders` new ones. Repeated notices about the same address and
+    /// reason are rate limited, and so is the number of those that give notices.
+    pub fn reject_sender(&mut self, rejected: RejectedGaze, senders: u64) {
         self.rejected_senders += senders;
-        let told = format!("gaze from {address} is rejected: {why}");
-        let (now, is_full) = (self.clock, self.refused_senders.len() == REFUSED);
-        match self.refused_senders.iter_mut().find(|(other, _)| *other == told) {
-            Some((_, at)) if now.secs_since(*at) < REFUSED_AGAIN_S => return,
+        let told = rejected.told.clone();
+        self.rejected_gaze = Some((rejected, self.now));
+        let (now, is_full) = (self.clock, self.rejections_told.len() == REJECTIONS);
+        match self.rejections_told.iter_mut().find(|(other, _)| *other == told) {
+            Some((_, at)) if now.secs_since(*at) < REJECTED_AGAIN_S => return,
             Some((_, at)) => *at = now,
             None if is_full => return,
-            None => self.refused_senders.push((told.clone(), now)),
+            None => self.rejections_told.push((told.clone(), now)),
         }
         self.warn(told);
+    }
+
+    /// The gaze sender that was rejected since the last gaze sample arrived, if there is one.
+    pub fn rejected_since(&self, arrived: Option<SessionTime>) -> Option<&RejectedGaze> {
+        let (rejected, at) = self.rejected_gaze.as_ref()?;
+        arrived.is_none_or(|arrived| arrived < *at).then_some(rejected)
     }
 
     /// Adds a gaze sample to the trail that the gaze map draws.

@@ -211,16 +211,27 @@ fn is_typed(form: &AnswerFormat) -> bool {
     matches!(form, AnswerFormat::Number { .. } | AnswerFormat::Text { .. } | AnswerFormat::Slider { .. })
 }
 
-/// Opens the text input for an answer with its first letter. A text that was answered before is kept in it to be
-/// corrected.
+/// Opens the text input for an answer with its first letter.
 fn begin_typing(model: &mut ConsoleModel, protocol: &StudyProtocolState, letter: char) -> Option<ConsoleCommand> {
-    let mut line = match protocol.given(protocol.item) {
-        Some(AnswerValue::Text(words)) => TextInput::with_text(words),
-        _ => TextInput::default(),
-    };
+    let mut line = answer_input(protocol);
     line.key(KeyCode::Char(letter));
     model.dialog = Some(Dialog::Answer(line));
     None
+}
+
+/// The text input for the answer to the shown item. A text that was answered before is kept in it to be corrected.
+fn answer_input(protocol: &StudyProtocolState) -> TextInput {
+    match protocol.given(protocol.item) {
+        Some(AnswerValue::Text(words)) => TextInput::with_text(words),
+        _ => TextInput::default(),
+    }
+}
+
+/// The text input that a typed letter would open on the sheet, if the sheet shows an item that is answered by typing.
+pub(super) fn input_of_sheet(session: &Session) -> Option<TextInput> {
+    let Some(FormContent::Questions(questionnaire)) = sheet(session) else { return None };
+    let protocol = session.protocol.as_ref().filter(|protocol| !protocol.confirmed)?;
+    questionnaire.form(protocol.item).filter(is_typed).map(|_| answer_input(protocol))
 }
 
 /// Handles a key in the text input of an answer. An invalid answer stays in the input, and a notice gives the reason.

@@ -50,6 +50,12 @@ impl ListCursor {
         ListReply::Open
     }
 
+    /// Adds the letters and digits of a pasted text to the filter.
+    pub fn paste(&mut self, text: &str) {
+        self.filter.extend(text.chars().filter(|letter| letter.is_alphanumeric()));
+        self.at = 0;
+    }
+
     /// Whether a row with this text matches the filter: the row's letters and digits contain the filter, or the filter
     /// consists of beginnings of the row's words in their order ("traw" for "tuna raw").
     pub fn keeps(&self, text: &str) -> bool {

@@ -34,6 +34,7 @@ pub mod notice;
 pub mod palette;
 pub mod panel;
 pub mod panels;
+pub mod pasting;
 pub mod picker;
 pub mod playback;
 mod possible;

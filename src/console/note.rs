@@ -42,6 +42,22 @@ impl TextInput {
         }
     }
 
+    /// Inserts pasted text, in which line breaks and other control characters become spaces.
+    ///
+    /// # Errors
+    /// The text does not fit, and is not inserted.
+    pub fn paste(&mut self, text: &str) -> Result<(), String> {
+        let (text, room) = (text.trim_matches(['\r', '\n']).replace("\r\n", "\n"), MOST - self.letters.len());
+        let letters: Vec<char> = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+        if letters.len() > room {
+            let count = letters.len();
+            return Err(format!("nothing pasted: the text has {count} characters, the field has room for {room}"));
+        }
+        self.letters.splice(self.at..self.at, letters.iter().copied());
+        self.at += letters.len();
+        Ok(())
+    }
+
     /// The typed text, without spaces at its ends.
     pub fn text(&self) -> String {
         self.letters.iter().collect::<String>().trim().to_string()

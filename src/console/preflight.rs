@@ -2,6 +2,8 @@
 //! remedies, and the wizard fixes or overrides them. The results are recorded.
 
 use core::net::SocketAddr;
+use std::ffi::OsStr;
+use std::path::Path;
 
 use crossterm::event::KeyCode;
 
@@ -13,7 +15,7 @@ use super::key_action::ManualAction;
 use super::notice::NoticeLevel;
 use super::probe_keys::{ProbeAnswerer, answerer};
 use crate::session::admit::admit;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, space};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
 use crate::session::probes::of_trial;
 use crate::session::{Event, Session};
 
@@ -22,7 +24,12 @@ pub const OVERRIDE: char = 'o';
 
 /// Runs all preflight checks: participant, gaze, display, robot, recording, disk, keyboard, streams.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
-    let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
+    let check_gaze = key(model, &KeyAction::Hand(ManualAction::Calibrate));
+    let rejected = model.rejected_since(session.gaze.arrived);
+    let mut checks = participant(session, model.now, &check_gaze, rejected);
+    let path = session.spec.tracker.file.as_deref().unwrap_or_default();
+    let file = Path::new(path).file_name().map_or_else(Default::default, OsStr::to_string_lossy);
+    checks.extend(model.recorded_gaze.iter().flat_map(|found| recorded_gaze(&file, found)));
     checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
     checks.extend(model.display.as_ref().map(|display| display.check(session.spec.participant.gaze)));
     checks.extend(probes(session, model));

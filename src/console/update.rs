@@ -7,6 +7,7 @@ use super::console_model::ConsoleModel;
 use super::hands;
 use super::key_press;
 use super::mouse;
+use super::pasting;
 use crate::session::{Event, Session, TrialPhase};
 
 /// Handles a message to the console at the time `model.now`.
@@ -25,6 +26,7 @@ pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessa
             model.size = (columns, rows);
             None
         }
+        ConsoleMessage::Paste(text) => pasting::paste(model, session, text.as_deref()),
         ConsoleMessage::Focus(focused) => {
             let changed = std::mem::replace(&mut model.focused, focused) != focused;
             model.pressed = None;

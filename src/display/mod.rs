@@ -19,7 +19,7 @@ mod shown_clock;
 mod sight;
 mod tutorial_page;
 
-pub use consent::consent_sight;
+pub use consent::{ConsentHold, consent_sight};
 pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
 pub use robot_hand::RobotHand;
 pub use robot_pose::RobotHandPose;

@@ -1,13 +1,16 @@
 //! Writes the folder tree of a BIDS data set (Brain Imaging Data Structure).
 
-use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use flate2::{Compression, GzBuilder};
 
 use super::file_error::{FileError, FileResult, read_regular};
-use crate::analysis::bids::{BidsFile, CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME};
+use crate::analysis::bids::{
+    BidsFile, CODE_COLUMN, DESCRIPTION_NAME, LongTableFacts, LongTableRow, PARTICIPANTS_NAME, PROGRAM_NAME,
+};
+use crate::base::time::SessionTime;
 
 /// Advice in error messages when the data set cannot be written.
 const REMEDY: &str = "a new folder on a disk with free space";
@@ -56,6 +59,124 @@ impl BidsTree {
         };
         write().map_err(|reason| FileError::not_written(&path, reason, REMEDY))
     }
+}
+
+/// A long table of a data set that is being written row by row. Rows that come in the order of their times go to a
+/// temporary file at once; a row that comes late is kept in memory until the end.
+#[derive(Debug)]
+pub struct LongTableFile {
+    path: PathBuf,
+    heading: String,
+    /// A file without a name, which goes with this value.
+    rows: BufWriter<File>,
+    newest: SessionTime,
+    late: Vec<(SessionTime, String)>,
+    facts: LongTableFacts,
+}
+
+impl BidsTree {
+    /// Begins a long table; `name` is the path of its file below the root folder, `heading` its first line.
+    ///
+    /// # Errors
+    /// No file can be written to the data set's folder.
+    pub fn begin(&self, name: &str, heading: String) -> FileResult<LongTableFile> {
+        let file =
+            tempfile::tempfile_in(&self.root).map_err(|reason| FileError::not_written(&self.root, reason, REMEDY))?;
+        let (path, rows) = (self.root.join(name), BufWriter::new(file));
+        let (newest, facts) = (SessionTime::ZERO, LongTableFacts::default());
+        Ok(LongTableFile { path, heading, rows, newest, late: Vec::new(), facts })
+    }
+}
+
+impl LongTableFile {
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// The disk is full.
+    pub fn add(&mut self, row: LongTableRow) -> FileResult<()> {
+        if row.time < self.newest {
+            self.late.push((row.time, row.line));
+            return Ok(());
+        }
+        self.newest = row.time;
+        self.put(row.time, &row.line).map_err(|reason| FileError::not_written(&self.path, reason, REMEDY))
+    }
+
+    /// Writes a row with its time to the temporary file.
+    fn put(&mut self, time: SessionTime, line: &str) -> io::Result<()> {
+        self.rows.write_all(&time.0.to_le_bytes())?;
+        self.rows.write_all(line.as_bytes())
+    }
+
+    /// Writes the table with all rows in the order of their times, if it has any. Returns what was counted of them.
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn finish(mut self) -> FileResult<LongTableFacts> {
+        let path = self.path.clone();
+        self.write().map_err(|reason| FileError::not_written(&path, reason, REMEDY))?;
+        Ok(self.facts)
+    }
+
+    fn write(&mut self) -> io::Result<()> {
+        self.rows.flush()?;
+        let file = self.rows.get_mut();
+        file.seek(SeekFrom::Start(0))?;
+        let mut rows = BufReader::new(&*file);
+        // A row came late if its time was below that of a row before: so it comes after all rows of its own time.
+        self.late.sort_by_key(|(time, _)| *time);
+        let mut late = self.late.iter().peekable();
+        let mut next = read_row(&mut rows)?;
+        if next.is_none() && late.peek().is_none() {
+            return Ok(());
+        }
+        fs::create_dir_all(self.path.parent().unwrap_or(Path::new(".")))?;
+        let mut out = BufWriter::new(File::create(&self.path)?);
+        let is_compressed = self.path.extension().is_some_and(|ending| ending == "gz");
+        let mut packed = is_compressed.then(|| GzBuilder::new().write(Vec::new(), Compression::default()));
+        let mut put = |text: &[u8]| match &mut packed {
+            None => out.write_all(text),
+            Some(packed) => {
+                packed.write_all(text)?;
+                out.write_all(packed.get_ref())?;
+                packed.get_mut().clear();
+                Ok(())
+            }
+        };
+        put(self.heading.as_bytes())?;
+        loop {
+            let is_late = late.peek().is_some_and(|(time, _)| next.as_ref().is_none_or(|(other, _)| time < other));
+            let (time, line) = match (is_late, late.next_if(|_| is_late), next.take()) {
+                (true, Some((time, line)), kept) => {
+                    next = kept;
+                    (*time, line.as_bytes().to_vec())
+                }
+                (_, _, Some(row)) => {
+                    next = read_row(&mut rows)?;
+                    row
+                }
+                _ => break,
+            };
+            self.facts.add(time);
+            put(&line)?;
+        }
+        if let Some(packed) = packed {
+            out.write_all(&packed.finish()?)?;
+        }
+        out.flush()
+    }
+}
+
+/// The next row of a temporary file, with its time; `None` at the end.
+fn read_row(rows: &mut impl BufRead) -> io::Result<Option<(SessionTime, Vec<u8>)>> {
+    let mut time = [0; 8];
+    if rows.fill_buf()?.is_empty() {
+        return Ok(None);
+    }
+    rows.read_exact(&mut time)?;
+    let mut line = Vec::new();
+    rows.read_until(b'\n', &mut line)?;
+    Ok(Some((SessionTime(u64::from_le_bytes(time)), line)))
 }
 
 /// Codes of the participants in a BIDS data set that this program wrote; `None` for every other folder.

@@ -23,14 +23,10 @@ impl ExclusiveDatagramSender {
         ExclusiveDatagramSender { senders, holder: None }
     }
 
-    /// Whether a gaze datagram from this network address is read.
-    pub fn admits(&self, from: IpAddr, now: Instant) -> bool {
-        match (self.senders, self.holder) {
-            (GazeSenders::Any, _) | (_, None) => true,
-            (GazeSenders::First, Some((holder, heard))) => {
-                holder == from || now.saturating_duration_since(heard) >= RELEASE
-            }
-        }
+    /// The other address because of which no gaze datagram from this network address is read; `None` if it is read.
+    pub fn excludes(&self, from: IpAddr, now: Instant) -> Option<IpAddr> {
+        let (holder, heard) = self.holder.filter(|_| self.senders == GazeSenders::First)?;
+        (holder != from && now.saturating_duration_since(heard) < RELEASE).then_some(holder)
     }
 
     /// Records that a datagram from this network address contained a gaze sample.

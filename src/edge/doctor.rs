@@ -18,6 +18,7 @@ use super::log::RecordingLock;
 use super::terminal::theme;
 use crate::base::features::Feature;
 use crate::console::view::theme::TerminalBackground;
+use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
 use crate::session::settings::ConsoleSpec;
@@ -39,7 +40,7 @@ pub struct DoctorReport {
 }
 
 /// Checks everything that a session with these settings needs; `out` is the folder for its recordings.
-pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
+pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorReport {
     let mut checks = terminal(&spec.console);
     let place = folder(out);
     // The free disk space matters only if the folder for recordings can be written to.
@@ -50,7 +51,8 @@ pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     #[cfg(feature = "rerun")]
     checks.push(viewer());
     checks.extend(left_out());
-    checks.extend([devices::lsl(spec), devices::gaze(spec)]);
+    checks.push(devices::lsl(spec));
+    checks.extend(devices::gaze(spec, kitchen));
     let healthy = checks.iter().all(|check| check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
 }

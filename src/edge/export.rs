@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 use super::overwrite;
 use super::replace_file::{self, Replacement};
 use super::written_tables::{ListedTables, reader};
-use crate::study::column::{CsvRow, CsvTable};
+use crate::base::spreadsheet::without_formula;
+use crate::study::column::{CsvCell, CsvRow, CsvTable};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 use crate::study::study_part::AnalysedRecording;
@@ -50,9 +51,17 @@ impl<Out: Write> TableRows<Out> {
         TableRows { rows: csv::WriterBuilder::new().has_headers(false).from_writer(out) }
     }
 
-    /// Writes a row of the CSV table.
+    /// Writes a row of the CSV table. Its texts can be what somebody typed, and people open tables with spreadsheets.
     fn write(&mut self, row: &impl CsvRow) -> io::Result<()> {
-        self.rows.serialize(row.cells()).map_err(io::Error::from)
+        let mut cells = row.cells();
+        for cell in &mut cells {
+            if let CsvCell::Text(text) = cell
+                && let Cow::Owned(guarded) = without_formula(text)
+            {
+                *text = Cow::Owned(guarded);
+            }
+        }
+        self.rows.serialize(cells).map_err(io::Error::from)
     }
 }
 
@@ -263,6 +272,9 @@ fn begin_table(path: &Path, table: CsvTable) -> io::Result<Replacement> {
 /// Removes the folder of temporary files that an analysis has left. Files that this program did not write stay, and
 /// then the folder stays, too.
 fn remove_parts(folder: &Path) -> io::Result<()> {
+    if fs::symlink_metadata(folder).is_ok_and(|data| !data.is_dir()) {
+        return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is no folder, but a link or a file"));
+    }
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(reason) if reason.kind() == io::ErrorKind::NotFound => return Ok(()),

@@ -144,7 +144,11 @@ fn one_line(text: String) -> String {
     printable(&text).into_owned()
 }
 
-/// Opens a file in the folder of a recording. Pipes and devices are refused, since reading them could block forever.
+/// Largest size of a file that people write, and of a file that is read as a whole, in bytes.
+pub const MAX_TEXT: u64 = 16 << 20;
+
+/// Opens a regular file for reading. Pipes and devices are refused, since they may never end, and opening a pipe could
+/// block forever.
 ///
 /// # Errors
 /// The file does not exist, cannot be opened, or is no regular file.
@@ -157,17 +161,29 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Reads the text of a file in the folder of a recording.
+/// Reads a regular file as a whole.
 ///
 /// # Errors
-/// The errors of [`open_regular`], or the file is not UTF-8.
-pub fn read_regular(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    open_regular(path)?.read_to_string(&mut text).map(|_| text)
+/// The errors of [`open_regular`], or the file has more than `most` bytes.
+pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_regular(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("it has more than {} MB", most >> 20)));
+    }
+    Ok(bytes)
 }
 
-/// Reads the text of a file.
+/// Reads the text of a regular file of at most [`MAX_TEXT`] bytes: settings, notes, decisions.
+///
+/// # Errors
+/// The errors of [`read_bytes`], or the file is not UTF-8.
+pub fn read_regular(path: &Path) -> io::Result<String> {
+    let bytes = read_bytes(path, MAX_TEXT)?;
+    String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
+}
+
+/// Reads the text of a file that people write, as [`read_regular`] does.
 pub fn read_text(path: &Path) -> FileResult<String> {
-    std::fs::read_to_string(path)
-        .map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
+    read_regular(path).map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
 }

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::file_error::{FileError, FileResult, missing, read_text};
+use super::file_error::{FileError, FileResult, missing, read_regular, read_text};
 use super::key_file::check_keys;
 use super::language::read_words;
 use super::overwrite;
@@ -19,9 +19,10 @@ use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::RecordedFile;
+use crate::session::person_code;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
-use crate::session::settings::{SettingError, is_code};
+use crate::session::settings::SettingError;
 use crate::session::wall_display::RobotDepiction;
 use crate::wizard::settings::WizardKind;
 
@@ -61,11 +62,16 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         spec.display.language = language.to_string();
     }
     let folder = path.parent().unwrap_or(Path::new("."));
-    if let Some(file) = &mut spec.tracker.file {
-        *file = folder.join(&*file).display().to_string();
-    }
-    if let Some(library) = spec.lsl.as_mut().and_then(|lsl| lsl.library.as_mut()) {
-        *library = folder.join(&*library).display().to_string();
+    let library = spec.lsl.as_mut().and_then(|lsl| lsl.library.as_mut());
+    for (key, file) in [("tracker.file", spec.tracker.file.as_mut()), ("lsl.library", library)] {
+        let Some(file) = file else { continue };
+        // A recording's header has its settings as text.
+        let beside = folder.join(&*file).into_os_string().into_string().map_err(|beside| {
+            let found = format!("{}, no UTF-8", Path::new(&beside).display());
+            let remedy = "a session file in a folder whose path is UTF-8".to_string();
+            FileError::at(path, &text, place_of(&text, key, 0), found, remedy)
+        })?;
+        *file = beside;
     }
     if let Some(file) = &spec.human_model {
         if spec.human != HumanModel::default() {
@@ -89,7 +95,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
     }
-    spec.check().and_then(|()| spec.check_participant_codes()).map_err(|error| wrong_setting(path, &text, error))?;
+    spec.check().map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
         let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
@@ -123,7 +129,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
 fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<RecordedFile>> {
     let Some(name) = &spec.console.keys else { return Ok(None) };
     let path = session.parent().unwrap_or(Path::new(".")).join(name);
-    let keys = std::fs::read_to_string(&path).map_err(|reason| {
+    let keys = read_regular(&path).map_err(|reason| {
         let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
         missing(session, text, ("console.keys", 0, name), reason, remedy)
     })?;
@@ -202,9 +208,9 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModelFile> {
 /// Checks the parameters of persons, each in a human model that is otherwise that of the population.
 fn check_people(path: &Path, text: &str, population: &HumanModel, people: Option<&FittedPeople>) -> FileResult<()> {
     for (code, own) in people.iter().flat_map(|people| &people.0) {
-        if !is_code(code) {
-            let found = format!("the code \"{code}\"");
-            let remedy = "codes of 1 to 32 letters, digits, - and _, such as [people.P07]; never names".to_string();
+        if let Some(fault) = person_code::fault(code) {
+            let found = format!("the code \"{code}\": {fault}");
+            let remedy = person_code::REMEDY.to_string();
             return Err(FileError::at(path, text, place_of(text, "people", 0), found, remedy));
         }
         for (parameter, value) in own {
@@ -272,7 +278,7 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileRes
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
     let recipes_path = folder.join(layout.recipes.get_ref());
-    let recipes_text = std::fs::read_to_string(&recipes_path).map_err(|reason| {
+    let recipes_text = read_regular(&recipes_path).map_err(|reason| {
         let found = format!("recipes = \"{}\", which cannot be read: {reason}", layout.recipes.get_ref());
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)

@@ -3,22 +3,28 @@
 //! another computer whose address is not listed, the first line must be the pairing code; the program replies, so that
 //! the sender can tell whether the code was right.
 
-use std::net::IpAddr;
+use std::io;
+use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::Sender;
-use tokio::time::timeout;
+use tokio::time::{sleep, timeout, timeout_at};
 
+use super::arrival::{Arrival, ArrivalWatch};
 use super::connection_table::ConnectionHandle;
 use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
-use super::gaze_line::{begins_object, code_in, parse};
+use super::gaze_line::{begins_object, code_in, long_line_fault, opening_fault, parse};
+use super::gaze_rejections::RejectionReporter;
+use super::sender_clock::SenderClock;
 
 /// Longest line of a gaze connection, in bytes.
 const MAX_LINE: usize = 4096;
+/// Most bytes that are read at once: what a sender sends together is stamped together.
+const CHUNK: usize = 1 << 16;
 /// Number of bytes, without blanks, that show whether a connection begins with a JSON object.
 const OPENING: usize = 2;
 /// Time limit for the first line of a gaze connection.
@@ -33,36 +39,47 @@ pub(super) type SharedGate = Arc<Mutex<GazeAccessCheck>>;
 pub(super) struct GazeConnection {
     /// TCP stream of the connection.
     pub stream: TcpStream,
-    /// Network address of the sender of gaze.
-    pub from: IpAddr,
+    /// Network address of the sender of gaze, with port 0: a sender that connects again counts once.
+    pub from: SocketAddr,
+    /// Watch of the data that arrive on the connection.
+    pub watch: ArrivalWatch,
     /// Entry of this connection in the table of network connections.
     pub place: ConnectionHandle,
     /// Access check for senders of gaze, shared by all connections.
     pub gate: SharedGate,
+    /// Reporter of rejected senders.
+    pub rejections: RejectionReporter,
     /// Channel by which the connection's gaze messages reach the session.
     pub news: Sender<TrackerMessage>,
 }
 
 /// Reads a gaze connection until the connection ends, is rejected, or is replaced by another one.
 pub(super) async fn attend(connection: GazeConnection) {
-    let GazeConnection { stream, from, place, gate, news } = connection;
-    let is_paired = lock(&gate).admission(from) == GazeAdmission::Open;
-    let mut reader =
-        SampleReader { stream, from, place: &place, gate: &gate, news: &news, lines: LineReader::default(), is_paired };
-    let is_tracker = tokio::select! {
-        biased;
-        () = place.closed() => false,
-        is_tracker = reader.read() => is_tracker,
+    let GazeConnection { stream, from, watch, place, gate, rejections, news } = connection;
+    let is_paired = lock(&gate).admission(from.ip()) == GazeAdmission::Open;
+    let mut reader = SampleReader {
+        stream,
+        from,
+        watch,
+        place: &place,
+        gate: &gate,
+        news: &news,
+        lines: LineReader::default(),
+        clock: SenderClock::new(Instant::now()),
+        is_paired,
     };
-    if !is_tracker {
-        reject(&news);
+    let rejected = tokio::select! {
+        biased;
+        () = place.closed() => Err(GazeSenderRejection::GaveWay),
+        rejected = reader.read() => rejected,
+    };
+    if let Err(why) = rejected {
+        rejections.report(from, why, Instant::now());
     }
-}
-
-/// Counts one rejected sender of gaze.
-pub(super) fn reject(news: &Sender<TrackerMessage>) {
-    // A queue that is closed or full has worse consequences than a wrong count of rejected senders.
-    let _ = news.try_send(TrackerMessage::Rejected(1));
+    if reader.clock.is_faulty() {
+        // Nothing is wrong with the stamps of the next sender, as far as is known.
+        let _ = news.send(TrackerMessage::Stamps(None)).await;
+    }
 }
 
 /// Locks the shared access check, which stays usable after a panic in another thread.
@@ -86,13 +103,11 @@ struct LineReader {
     opening: Vec<u8>,
     /// Whether the first line of the connection is complete.
     has_line: bool,
-    /// Whether a gaze sample has arrived on the connection.
-    has_begun: bool,
 }
 
 impl LineReader {
-    /// Adds a byte to the present line; returns the content of the line if the byte ends it.
-    fn take(&mut self, byte: u8) -> Option<LineContent> {
+    /// Adds a byte that arrived at this instant to the present line; returns the content of the line if the byte ends it.
+    fn take(&mut self, byte: u8, arrived: Instant) -> Option<LineContent> {
         if !self.has_line && self.opening.len() < OPENING && !byte.is_ascii_whitespace() {
             self.opening.push(byte);
         }
@@ -104,16 +119,16 @@ impl LineReader {
             }
             return None;
         }
-        self.end()
+        self.end(arrived)
     }
 
     /// Ends the present line and returns the line's content; `None` if the line has none.
-    fn end(&mut self) -> Option<LineContent> {
+    fn end(&mut self, arrived: Instant) -> Option<LineContent> {
         let code = if self.has_line || self.is_too_long { None } else { code_in(&self.line) };
         let found = match (code, self.is_too_long) {
             (Some(code), _) => Some(LineContent::Pairing(code)),
             (None, true) => Some(LineContent::News(TrackerMessage::Malformed(1))),
-            (None, false) => parse(&self.line, Instant::now()).map(LineContent::News),
+            (None, false) => parse(&self.line, arrived).map(LineContent::News),
         };
         self.line.clear();
         self.is_too_long = false;
@@ -121,68 +136,116 @@ impl LineReader {
         found
     }
 
-    /// Whether the beginning of the first line shows that the sender is not an eye tracker's program. Takes the same
-    /// time for a line of any length, since it is asked after every byte.
-    fn is_foreign(&self) -> bool {
-        !self.has_line && (self.is_too_long || begins_object(&self.opening) == Some(false))
+    /// What shows that the sender is not an eye tracker's program, if the beginning of the first line does; `rest` are
+    /// the bytes that arrived after it. Takes the same time for a line of any length, since it is asked after every byte.
+    fn fault(&self, rest: &[u8]) -> Option<GazeSenderRejection> {
+        match self.has_line {
+            true => None,
+            false if begins_object(&self.opening) == Some(false) => Some(opening_fault(&[&self.line, rest].concat())),
+            false => self.is_too_long.then(|| long_line_fault(&self.line, MAX_LINE)),
+        }
     }
 }
 
 /// Reads the lines of a gaze connection.
 struct SampleReader<'a> {
     stream: TcpStream,
-    from: IpAddr,
+    from: SocketAddr,
+    watch: ArrivalWatch,
     place: &'a ConnectionHandle,
     gate: &'a SharedGate,
     news: &'a Sender<TrackerMessage>,
     lines: LineReader,
+    clock: SenderClock,
     /// Whether the sender of gaze is admitted, so that its lines are read.
     is_paired: bool,
 }
 
 impl SampleReader<'_> {
-    /// Reads lines until the gaze connection ends; TCP slows down a sender that is too fast. Returns false if the
-    /// sender has to be counted as rejected.
-    async fn read(&mut self) -> bool {
-        let mut buffer = vec![0; MAX_LINE];
+    /// Reads lines until the gaze connection ends; TCP slows down a sender that is too fast.
+    ///
+    /// # Errors
+    /// Why the sender is rejected.
+    async fn read(&mut self) -> Result<(), GazeSenderRejection> {
+        let mut buffer = vec![0; CHUNK];
         let first_by = tokio::time::Instant::now() + FIRST_LINE;
         loop {
-            let left = first_by.saturating_duration_since(tokio::time::Instant::now());
-            let patience = if self.lines.has_line { Duration::MAX } else { left };
-            let Ok(count) = timeout(patience, self.stream.read(&mut buffer)).await else { return false };
-            let Ok(count @ 1..) = count else { break };
-            self.place.heard(Instant::now());
-            for &byte in &buffer[..count] {
-                let found = self.lines.take(byte);
-                if self.lines.is_foreign() {
-                    return false;
-                }
-                if let Some(found) = found
-                    && !self.handle(found).await
-                {
-                    return true;
+            let readable = self.watch.wait(|| self.stream.readable());
+            if self.lines.has_line {
+                // An error shows when the stream is read.
+                let _ = readable.await;
+            } else if timeout_at(first_by, readable).await.is_err() {
+                return Err(match self.lines.line.is_empty() {
+                    true => GazeSenderRejection::Silent(FIRST_LINE.as_secs()),
+                    false => GazeSenderRejection::NoLineBreak,
+                });
+            }
+            loop {
+                let asked = Instant::now();
+                let count = match self.stream.try_read(&mut buffer) {
+                    Ok(count @ 1..) => count,
+                    Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                        self.watch.was_empty(asked);
+                        break;
+                    }
+                    Ok(0) | Err(_) => return self.end().await,
+                };
+                if !self.take(&buffer[..count], self.watch.arrival(Instant::now())).await? {
+                    return Ok(());
                 }
             }
         }
-        // The last line of a connection may lack its newline.
-        if !self.lines.is_too_long
-            && let Some(found) = self.lines.end()
-        {
-            self.handle(found).await;
-        }
-        true
     }
 
-    /// Handles the content of a gaze line; returns whether further lines are read.
-    async fn handle(&mut self, found: LineContent) -> bool {
+    /// Handles the end of the connection, whose last line may lack its newline.
+    async fn end(&mut self) -> Result<(), GazeSenderRejection> {
+        let arrival = self.watch.arrival(Instant::now());
+        if !self.lines.is_too_long
+            && let Some(found) = self.lines.end(arrival.counted())
+        {
+            match found {
+                LineContent::News(found) if self.is_paired => self.tell(vec![found], arrival).await,
+                content => self.pair(content).await,
+            };
+        }
+        Ok(())
+    }
+
+    /// Handles bytes that arrived together; returns whether further ones are read.
+    async fn take(&mut self, bytes: &[u8], arrival: Arrival) -> Result<bool, GazeSenderRejection> {
+        let mut together = Vec::new();
+        for (index, &byte) in bytes.iter().enumerate() {
+            let content = self.lines.take(byte, arrival.counted());
+            if let Some(why) = self.lines.fault(&bytes[index + 1..]) {
+                return Err(why);
+            }
+            match content {
+                None => {}
+                Some(LineContent::News(found)) if self.is_paired => together.push(found),
+                Some(content) => {
+                    let reads_on = self.pair(content).await;
+                    if !reads_on {
+                        return Ok(false);
+                    }
+                }
+            }
+        }
+        Ok(self.tell(together, arrival).await)
+    }
+
+    /// Pairs with a sender by the content of its first line; returns whether further lines are read.
+    async fn pair(&mut self, found: LineContent) -> bool {
         let code = match found {
-            LineContent::News(found) if self.is_paired => return self.tell(found).await,
             LineContent::News(_) => None,
             LineContent::Pairing(code) => Some(code),
         };
         let verdict = match self.is_paired {
             true => Ok(()),
-            false => lock(self.gate).pair(self.from, code.as_deref(), Instant::now()),
+            false => {
+                let delay = code.as_deref().map(|code| lock(self.gate).delay(code, Instant::now()));
+                sleep(delay.unwrap_or_default()).await;
+                lock(self.gate).pair(self.from, code.as_deref(), Instant::now())
+            }
         };
         self.is_paired = verdict.is_ok();
         let answer = match verdict {
@@ -198,19 +261,20 @@ impl SampleReader<'_> {
         self.is_paired
     }
 
-    /// Passes on the content of a line, preceded by `Began` before the first sample; returns false if the receiver of
-    /// gaze messages is gone.
-    async fn tell(&mut self, found: TrackerMessage) -> bool {
-        if matches!(found, TrackerMessage::Sample(..)) && !self.lines.has_begun {
-            self.lines.has_begun = true;
+    /// Passes on the contents of lines that arrived together; returns false if the receiver of gaze messages is gone.
+    async fn tell(&mut self, together: Vec<TrackerMessage>, arrival: Arrival) -> bool {
+        if together.iter().any(|one| matches!(one, TrackerMessage::Sample(..))) {
             // The connection table's limits never reject an admitted sender: no more connections can be open than may
-            // be admitted.
+            // be admitted. Only samples keep a connection's place, and nothing else that it sends.
             let _ = self.place.admit();
-            if self.news.send(TrackerMessage::Began).await.is_err() {
+            self.place.heard(Instant::now());
+        }
+        for one in self.clock.stamp(together, arrival) {
+            if self.news.send(one).await.is_err() {
                 return false;
             }
         }
-        self.news.send(found).await.is_ok()
+        true
     }
 }
 
@@ -222,7 +286,7 @@ mod tests {
     use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
     use crate::gaze::GazeSample;
     use tokio::net::TcpListener;
-    use tokio::sync::mpsc::channel;
+    use tokio::sync::mpsc::{Receiver, channel};
 
     const ONE: ConnectionLimits = ConnectionLimits {
         most: 1,
@@ -232,46 +296,77 @@ mod tests {
         silence: Duration::from_secs(5),
     };
 
+    /// A gaze connection that is attended, with the tracker's end of it.
+    struct Attended {
+        tracker: TcpStream,
+        lines: Receiver<TrackerMessage>,
+        table: Arc<ConnectionTable>,
+        reader: tokio::task::JoinHandle<()>,
+    }
+
+    impl Attended {
+        async fn begin() -> Attended {
+            // The test opens the listener itself, at port 0, so that the system chooses a free port.
+            let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
+            let tracker = TcpStream::connect(listener.local_addr().expect("an address")).await.expect("connected");
+            let (stream, from) = listener.accept().await.expect("a tracker");
+            let (news, lines) = channel(64);
+            let rejections = RejectionReporter::new(news.clone());
+            let gate = Arc::new(Mutex::new(GazeAccessCheck::new(&[], None, rejections.clone())));
+            let (table, now) = (ConnectionTable::new(ONE), Instant::now());
+            let place = table.arrive(from.ip(), now).expect("a place").place;
+            let watch = ArrivalWatch::new(now);
+            let reader = tokio::spawn(attend(GazeConnection { stream, from, watch, place, gate, rejections, news }));
+            Attended { tracker, lines, table, reader }
+        }
+
+        async fn send(&mut self, text: &str) {
+            self.tracker.write_all(text.as_bytes()).await.expect("sent");
+        }
+    }
+
     #[tokio::test]
     async fn samples_arrive_and_what_is_none_is_counted() {
-        // The test opens the listener itself, at port 0, so that the system chooses a free port.
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
-        let address = listener.local_addr().expect("an address");
-        let (sender, mut lines) = channel(64);
-        let reader = tokio::spawn(async move {
-            let (stream, from) = listener.accept().await.expect("a tracker");
-            let gate = Arc::new(Mutex::new(GazeAccessCheck::new(&[], None, sender.clone())));
-            let table = ConnectionTable::new(ONE);
-            let place = table.arrive(from.ip(), Instant::now()).expect("a place").place;
-            attend(GazeConnection { stream, from: from.ip(), place, gate, news: sender }).await;
-        });
-        let mut tracker = TcpStream::connect(address).await.expect("connected");
+        let mut attended = Attended::begin().await;
         let text = [
-            "{\"t\": 1.5, \"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n",
-            "\n{\"x\": 0.1, \"y\": 2, \"confidence\": 0, \"more\": 1}\r\n",
+            "{\"x\": 0.1, \"y\": 2, \"confidence\": 0, \"more\": 1}\r\n",
             "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1.01}\n{\"x\": 0.5, \"y\": 0.5, \"confidence\": -0.1}\n",
-            "{\"t\": 1764057600123.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
-            "{\"t\": -3.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
+            "{\"t\": 1e20, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
             "{\"x\": NaN, \"y\": 2, \"confidence\": 1}\nnonsense\n",
             &"9".repeat(3 * MAX_LINE),
-            "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n",
+            "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}",
         ];
-        tracker.write_all(text.concat().as_bytes()).await.expect("sent");
+        attended.send(&text.concat()).await;
+        let Attended { tracker, mut lines, reader, .. } = attended;
         drop(tracker);
         reader.await.expect("the reader ends with its tracker");
         let mut found = Vec::new();
         while let Some(line) = lines.recv().await {
             found.push(line);
         }
-        let sample = |x, y, confidence, device_ns| {
-            TrackerMessage::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) }, None)
-        };
-        assert_eq!(found.remove(0), TrackerMessage::Began);
-        let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
-        assert_eq!(found[..2], expected);
-        assert_eq!(found[2..4], vec![TrackerMessage::Malformed(1); 2]);
-        let milliseconds = sample(0.0, 0.0, 1.0, Some(1_764_057_600_123_500_032));
-        assert_eq!(found[4..6], [milliseconds, TrackerMessage::WrongTime(-3.5)]);
-        assert_eq!(found[6..], vec![TrackerMessage::Malformed(1); 4]);
+        let sample = |x, y, confidence| TrackerMessage::Sample(GazeSample::new(x, y, confidence), None);
+        assert_eq!(found.remove(0), sample(0.1, 2.0, 0.0));
+        // The last line lacks its newline.
+        assert_eq!(found.pop(), Some(sample(0.25, 0.5, 0.9)));
+        assert_eq!(found.remove(2), TrackerMessage::WrongTime(1e20));
+        assert_eq!(found, vec![TrackerMessage::Malformed(1); 6]);
+    }
+
+    #[tokio::test]
+    async fn only_samples_keep_a_place() {
+        let mut attended = Attended::begin().await;
+        attended.send("{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n").await;
+        assert!(matches!(attended.lines.recv().await, Some(TrackerMessage::Sample(..))));
+        let heard = Instant::now();
+        // Spaces and lines without a sample follow; the line that is counted shows that they were read.
+        attended.send(&" ".repeat(50)).await;
+        attended.send("nonsense\n").await;
+        assert_eq!(attended.lines.recv().await, Some(TrackerMessage::Malformed(1)));
+        let place = attended.table.arrive(Ipv4Addr::LOCALHOST.into(), heard + ONE.silence);
+        assert!(place.is_some_and(|new| new.made_room), "the place is free 5 s after the sample");
+        attended.reader.await.expect("the reader ends");
+        let why = GazeSenderRejection::GaveWay;
+        let from = Ipv4Addr::LOCALHOST.into();
+        assert_eq!(attended.lines.recv().await, Some(TrackerMessage::Rejected { from, why, senders: 1 }));
     }
 }

@@ -5,14 +5,11 @@ use std::collections::VecDeque;
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
 
-use tokio::sync::mpsc::Sender;
-
-use super::gaze_input::{GazeSenderRejection, TrackerMessage};
+use super::gaze_input::GazeSenderRejection;
 use super::gaze_line::code_in;
+use super::gaze_rejections::RejectionReporter;
 use super::pairing::{PairingCodeCheck, PairingVerdict};
 
-/// Least time between two notices about rejected senders, of which there can be thousands.
-const NOTICE: Duration = Duration::from_millis(100);
 /// Number of paired senders of datagrams that are remembered.
 const MAX_PAIRED: usize = 64;
 
@@ -27,7 +24,7 @@ pub(super) enum GazeAdmission {
     Never,
 }
 
-/// Access check for senders of gaze, which also reports rejected senders. Connections and datagrams have separate
+/// Access check for senders of gaze, which reports those that it rejects. Connections and datagrams have separate
 /// access checks, so that wrong codes in datagrams, whose sender addresses can be forged, lock no connection out.
 #[derive(Debug)]
 pub(super) struct GazeAccessCheck {
@@ -36,18 +33,15 @@ pub(super) struct GazeAccessCheck {
     desk: Option<PairingCodeCheck>,
     /// Senders of datagrams that have sent the right code, oldest first.
     paired: VecDeque<SocketAddr>,
-    news: Sender<TrackerMessage>,
-    /// Time of the last report about rejected senders, and number of senders rejected since that report.
-    told: Option<Instant>,
-    untold: u64,
+    rejections: RejectionReporter,
 }
 
 impl GazeAccessCheck {
     /// An access check for listed addresses, and for senders that know the pairing code `code`.
-    pub fn new(listed: &[IpAddr], code: Option<&String>, news: Sender<TrackerMessage>) -> GazeAccessCheck {
+    pub fn new(listed: &[IpAddr], code: Option<&String>, rejections: RejectionReporter) -> GazeAccessCheck {
         let desk = code.map(|code| PairingCodeCheck::new(code.clone()));
         let listed = listed.iter().map(IpAddr::to_canonical).collect();
-        GazeAccessCheck { listed, desk, paired: VecDeque::new(), news, told: None, untold: 0 }
+        GazeAccessCheck { listed, desk, paired: VecDeque::new(), rejections }
     }
 
     /// Condition under which gaze from this network address is read.
@@ -61,18 +55,23 @@ impl GazeAccessCheck {
         }
     }
 
+    /// Time to wait before the pairing code of a sender is to be checked ([`GazeAccessCheck::pair`]).
+    pub fn delay(&self, code: &str, now: Instant) -> Duration {
+        self.desk.as_ref().map_or(Duration::ZERO, |desk| desk.delay(None, code, now))
+    }
+
     /// Checks the pairing code of a sender that needs a code, and reports the sender if it is rejected.
     ///
     /// # Errors
     /// Why the sender is rejected, and for how long codes from the sender's address are not checked.
     pub fn pair(
         &mut self,
-        from: IpAddr,
+        from: SocketAddr,
         code: Option<&str>,
         now: Instant,
     ) -> Result<(), (GazeSenderRejection, Duration)> {
         let verdict = match (&mut self.desk, code) {
-            (Some(desk), Some(code)) => Some(desk.attempt(from, None, code, now)),
+            (Some(desk), Some(code)) => Some(desk.attempt(from.ip(), None, code, now)),
             _ => None,
         };
         let (why, wait) = match verdict {
@@ -81,7 +80,7 @@ impl GazeAccessCheck {
             Some(PairingVerdict::Locked(wait)) => (GazeSenderRejection::Locked, wait),
             None => (GazeSenderRejection::Unpaired, Duration::ZERO),
         };
-        self.refuse(from, why, now);
+        self.rejections.report(from, why.clone(), now);
         Err((why, wait))
     }
 
@@ -94,8 +93,12 @@ impl GazeAccessCheck {
         match self.admission(from.ip()) {
             GazeAdmission::Open => Some(lines),
             GazeAdmission::ByCode if self.paired.contains(&from) => Some(lines),
+            GazeAdmission::ByCode if code.as_ref().is_some_and(|code| !self.delay(code, now).is_zero()) => {
+                self.rejections.report(from, GazeSenderRejection::Locked, now);
+                None
+            }
             GazeAdmission::ByCode => {
-                self.pair(from.ip(), code.as_deref(), now).ok()?;
+                self.pair(from, code.as_deref(), now).ok()?;
                 self.paired.push_back(from);
                 if self.paired.len() > MAX_PAIRED {
                     self.paired.pop_front();
@@ -103,22 +106,9 @@ impl GazeAccessCheck {
                 Some(lines)
             }
             GazeAdmission::Never => {
-                self.refuse(from.ip(), GazeSenderRejection::Unlisted, now);
+                self.rejections.report(from, GazeSenderRejection::Unlisted, now);
                 None
             }
-        }
-    }
-
-    /// Reports a rejected sender of gaze to the session.
-    pub fn refuse(&mut self, from: IpAddr, why: GazeSenderRejection, now: Instant) {
-        self.untold += 1;
-        if self.told.is_some_and(|told| now.saturating_duration_since(told) < NOTICE) {
-            return;
-        }
-        let refused = TrackerMessage::Refused { from: from.to_canonical(), why, senders: self.untold };
-        // A message queue that is closed or full has worse consequences than a missing notice.
-        if self.news.try_send(refused).is_ok() {
-            (self.told, self.untold) = (Some(now), 0);
         }
     }
 }
@@ -126,14 +116,18 @@ impl GazeAccessCheck {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::edge::gaze_input::TrackerMessage;
     use tokio::sync::mpsc::{Receiver, channel};
+
+    /// Least time between two notices about rejected senders.
+    const NOTICE: Duration = Duration::from_millis(100);
 
     const SAMPLE: &[u8] = b"{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
 
     fn gate(listed: &[&str], code: Option<&str>) -> (GazeAccessCheck, Receiver<TrackerMessage>) {
         let (news, told) = channel(16);
         let listed: Vec<IpAddr> = listed.iter().map(|address| address.parse().expect("an address")).collect();
-        (GazeAccessCheck::new(&listed, code.map(str::to_string).as_ref(), news), told)
+        (GazeAccessCheck::new(&listed, code.map(str::to_string).as_ref(), RejectionReporter::new(news)), told)
     }
 
     fn sender(port: u16) -> SocketAddr {
@@ -157,10 +151,10 @@ mod tests {
         now += NOTICE;
         assert_eq!(gate.lines(sender(2), &paired, now), None, "locked");
         assert_eq!(gate.lines(sender(1), SAMPLE, now), Some(SAMPLE), "who is paired stays");
-        let refused = |why, senders| Ok(TrackerMessage::Refused { from: sender(0).ip(), why, senders });
-        assert_eq!(told.try_recv(), refused(GazeSenderRejection::Unpaired, 1));
-        assert_eq!(told.try_recv(), refused(GazeSenderRejection::WrongCode, 2));
-        assert_eq!(told.try_recv(), refused(GazeSenderRejection::Locked, 1));
+        let rejected = |why, senders| Ok(TrackerMessage::Rejected { from: sender(0).ip(), why, senders });
+        assert_eq!(told.try_recv(), rejected(GazeSenderRejection::Unpaired, 1));
+        assert_eq!(told.try_recv(), rejected(GazeSenderRejection::WrongCode, 1));
+        assert_eq!(told.try_recv(), rejected(GazeSenderRejection::Locked, 0));
         assert!(told.try_recv().is_err());
         now += Duration::from_secs(1);
         assert!(gate.lines(sender(2), &paired, now).is_some());
@@ -182,8 +176,8 @@ mod tests {
             [GazeAdmission::Open, GazeAdmission::Open, GazeAdmission::Never]
         );
         assert_eq!(gate.lines(SocketAddr::new(other, 1), SAMPLE, now), None);
-        let refused = TrackerMessage::Refused { from: other, why: GazeSenderRejection::Unlisted, senders: 1 };
-        assert_eq!(told.try_recv(), Ok(refused));
+        let rejected = TrackerMessage::Rejected { from: other, why: GazeSenderRejection::Unlisted, senders: 1 };
+        assert_eq!(told.try_recv(), Ok(rejected));
         // Test: a sender of gaze that needs no code may still send one.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"anything\"}\n{}", now), Some(&b"\n{}"[..]));
     }

@@ -1,17 +1,22 @@
 //! Format of the lines of the gaze input: samples {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1, "age":
-//! seconds}, and the line with which a sender at another computer pairs, {"pair": "CODE"}. Coordinates are fractions of
-//! the wall display, with the origin at the top left; t is the time on the tracker's own clock, age the time since the
-//! sample was taken.
+//! seconds}, of which only x and y are needed, and the line with which a sender at another computer pairs, {"pair":
+//! "CODE"}. Coordinates are fractions of the wall display, with the origin at the top left; t is the time on the
+//! tracker's own clock, age the time since the sample was taken.
 
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
-use super::gaze_input::TrackerMessage;
+use super::gaze_input::{GazeSenderRejection, TrackerMessage};
+use crate::base::printable::printable;
 use crate::gaze::GazeSample;
 
 /// Largest age of a gaze sample, in seconds; a larger age is an error of the sender.
 const MAX_AGE_S: f64 = 60.0;
+/// Number of characters that are shown of data that are no JSON object.
+const SHOWN: usize = 24;
+/// Beginnings of requests in HTTP (RFC 9110, section 9).
+const HTTP: [&[u8]; 7] = [b"GET ", b"POST ", b"PUT ", b"HEAD ", b"OPTIONS ", b"DELETE ", b"PATCH "];
 
 #[derive(Deserialize)]
 struct SampleLine {
@@ -19,7 +24,8 @@ struct SampleLine {
     t: Option<f64>,
     x: f64,
     y: f64,
-    confidence: f64,
+    #[serde(default)]
+    confidence: Option<f64>,
     #[serde(default)]
     age: Option<f64>,
 }
@@ -40,6 +46,39 @@ pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
     }
 }
 
+/// Why data that do not begin a JSON object are no lines of gaze.
+pub(super) fn opening_fault(bytes: &[u8]) -> GazeSenderRejection {
+    let text = bytes.trim_ascii_start();
+    // In UTF-16 every second byte of ASCII is zero.
+    let is_ascii = |byte: u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    let is_wide = |zero: usize| {
+        let mut pairs = text.chunks_exact(2).take(4);
+        text.len() >= 2 && pairs.all(|pair| pair[zero] == 0 && is_ascii(pair[1 - zero]))
+    };
+    if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide(0) || is_wide(1) {
+        return GazeSenderRejection::Utf16;
+    }
+    if text.starts_with(b"\xef\xbb\xbf") {
+        return GazeSenderRejection::ByteOrderMark;
+    }
+    if HTTP.iter().any(|method| text.starts_with(method)) {
+        return GazeSenderRejection::HttpRequest;
+    }
+    let start: String = String::from_utf8_lossy(&text[..text.len().min(4 * SHOWN)]).chars().take(SHOWN).collect();
+    GazeSenderRejection::NoObject(printable(start.trim_end()).into_owned())
+}
+
+/// Why a first line that is longer than `most` bytes is no line of gaze.
+pub(super) fn long_line_fault(line: &[u8], most: usize) -> GazeSenderRejection {
+    let mut signs = line.iter().filter(|byte| !byte.is_ascii_whitespace() && **byte != b',').peekable();
+    while let Some(sign) = signs.next() {
+        if *sign == b'}' && signs.peek() == Some(&&b'{') {
+            return GazeSenderRejection::NoLineBreak;
+        }
+    }
+    GazeSenderRejection::LongLine(most)
+}
+
 /// The pairing code in a line of the gaze input; `None` if the line is no pairing line.
 pub fn code_in(line: &[u8]) -> Option<String> {
     serde_json::from_slice::<PairingLine>(line).ok().map(|line| line.pair)
@@ -50,33 +89,36 @@ pub fn parse(line: &[u8], arrived: Instant) -> Option<TrackerMessage> {
     if line.trim_ascii().is_empty() {
         return None;
     }
-    let Ok(found) = serde_json::from_slice::<SampleLine>(line) else { return Some(TrackerMessage::Malformed(1)) };
+    let found = serde_json::from_slice::<SampleLine>(line).or_else(|_| serde_json::from_slice(&without_nan(line)));
+    let Ok(found) = found else { return Some(TrackerMessage::Malformed(1)) };
     let has_age = found.age.is_none_or(|age_s| (0.0..=MAX_AGE_S).contains(&age_s));
     // Points outside the display are valid; a confidence outside 0 to 1 shows that the sender uses another format.
-    if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence) && has_age) {
+    let is_share = found.confidence.is_none_or(|confidence| (0.0..=1.0).contains(&confidence));
+    if !(found.x.is_finite() && found.y.is_finite() && is_share && has_age) {
         return Some(TrackerMessage::Malformed(1));
     }
     let device_ns = match found.t.map(|t| device_ns(t).ok_or(t)).transpose() {
         Ok(device_ns) => device_ns,
         Err(t) => return Some(TrackerMessage::WrongTime(t)),
     };
-    let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
+    let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence.unwrap_or(f64::NAN)) };
     let taken = found.age.and_then(|age_s| arrived.checked_sub(Duration::from_secs_f64(age_s)));
     Some(TrackerMessage::Sample(sample, taken))
 }
 
-/// Converts a gaze sample's time stamp to nanoseconds; `None` if the stamp is invalid. Stamps of up to ten digits are
-/// seconds of any clock. Longer stamps are milliseconds, microseconds or nanoseconds since 1970, which differ by three
-/// digits each.
-fn device_ns(t: f64) -> Option<u64> {
-    let ns_per_unit = match t {
-        0.0..1e10 => 1e9,
-        1e11..1e13 => 1e6,
-        1e14..1e16 => 1e3,
-        1e17..1e19 => 1.0,
-        _ => return None,
-    };
-    Some((t * ns_per_unit).round() as u64)
+/// Converts a gaze sample's time stamp to nanoseconds; `None` if the stamp is too large to be a time. Stamps are seconds
+/// of any clock, which may be negative; larger ones are milliseconds, microseconds or nanoseconds since 1970, which differ
+/// by three digits each. A stamp counts in the largest unit in which it is at most the year 2262.
+fn device_ns(t: f64) -> Option<i64> {
+    const MOST: f64 = i64::MAX as f64;
+    let ns = [1e9, 1e6, 1e3, 1.0].map(|ns_per_unit| (t * ns_per_unit).round());
+    ns.into_iter().find(|ns| ns.abs() < MOST).map(|ns| ns as i64)
+}
+
+/// A line in which numbers that are not known are `null`. Python's `json` writes them as `NaN`, which is no JSON. Words in
+/// strings do not matter, since all that is read of a line is numbers.
+fn without_nan(line: &[u8]) -> Vec<u8> {
+    String::from_utf8_lossy(line).replace("NaN", "null").into_bytes()
 }
 
 #[cfg(test)]
@@ -84,16 +126,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_stamps_are_seconds_or_finer_units_since_1970_or_refused() {
+    fn every_finite_time_stamp_is_seconds_or_finer_units_since_1970() {
         let since_1970_s = 1_764_057_600.25;
         for unit in [1.0, 1e3, 1e6, 1e9] {
             let ns = device_ns(since_1970_s * unit).expect("a time");
             assert!(ns.abs_diff(1_764_057_600_250_000_000) < 500, "{unit}: {ns}");
+            assert_eq!(device_ns(-since_1970_s * unit), Some(-ns), "{unit}");
         }
-        assert_eq!(device_ns(12.5), Some(12_500_000_000));
-        for wrong in [-0.001, 5e10, 5e13, 5e16, 1e20, f64::NAN, f64::INFINITY] {
+        assert_eq!([12.5, -0.001, -3.5].map(device_ns), [12_500_000_000, -1_000_000, -3_500_000_000].map(Some));
+        // Test: between the usual ranges of two units.
+        assert_eq!([5e10, -5e13, 5e16].map(device_ns), [5e16, -5e16, 5e16].map(|ns| Some(ns as i64)));
+        for wrong in [1e20, -1e20, f64::MAX, f64::NAN, f64::INFINITY] {
             assert_eq!(device_ns(wrong), None, "{wrong}");
         }
+    }
+
+    #[test]
+    fn what_is_found_instead_of_lines_is_told() {
+        let utf16 = |text: &str, order: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(order).collect::<Vec<u8>>();
+        let line = "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
+        for marked in [line.to_string(), format!("\u{feff}{line}")] {
+            for order in [u16::to_le_bytes, u16::to_be_bytes] {
+                assert_eq!(opening_fault(&utf16(&marked, order)), GazeSenderRejection::Utf16, "{marked:?}");
+            }
+        }
+        let found = |text: &str| opening_fault(text.as_bytes());
+        assert_eq!(found(&format!("\u{feff}{line}")), GazeSenderRejection::ByteOrderMark);
+        let stun = opening_fault(b"\x00\x01\x00\x08\x21\x12\xa4\x42");
+        assert!(matches!(stun, GazeSenderRejection::NoObject(_)), "{stun:?}");
+        assert_eq!(found("\r\nPOST / HTTP/1.1\r\n"), GazeSenderRejection::HttpRequest);
+        assert_eq!(found("{'x': 0.5}\n"), GazeSenderRejection::NoObject("{'x': 0.5}".to_string()));
+        assert_eq!(
+            found("\u{1b}[2J0.5;0.5;1;and more than fits"),
+            GazeSenderRejection::NoObject("\\u001b[2J0.5;0.5;1;and more t".to_string())
+        );
+        let objects = "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}, ".repeat(3);
+        assert_eq!(long_line_fault(objects.as_bytes(), 100), GazeSenderRejection::NoLineBreak);
+        assert_eq!(long_line_fault(&[b'{'; 200], 100), GazeSenderRejection::LongLine(100));
     }
 
     #[test]
@@ -109,6 +178,20 @@ mod tests {
         assert_eq!(with("null"), TrackerMessage::Sample(sample, None));
         for wrong in ["-0.001", "60.1", "\"1\"", "1e999"] {
             assert_eq!(with(wrong), TrackerMessage::Malformed(1), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_sample_without_confidence_is_a_sample() {
+        for confidence in ["", ", \"confidence\": null", ", \"confidence\": NaN"] {
+            let line = format!("{{\"x\": 0.25, \"y\": 1{confidence}}}");
+            let Some(TrackerMessage::Sample(sample, None)) = parse(line.as_bytes(), Instant::now()) else {
+                panic!("{line}: no sample")
+            };
+            assert!(sample.confidence.is_nan() && (sample.x, sample.y) == (0.25, 1.0), "{line}: {sample:?}");
+        }
+        for wrong in ["{\"x\": NaN, \"y\": 1, \"confidence\": NaN}", "{\"x\": 0, \"y\": 1, \"confidence\": \"high\"}"] {
+            assert_eq!(parse(wrong.as_bytes(), Instant::now()), Some(TrackerMessage::Malformed(1)), "{wrong}");
         }
     }
 

@@ -15,8 +15,8 @@ use std::time::UNIX_EPOCH;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::file_error::open_regular;
-use super::log::LOG_NAME;
+use super::file_error::{open_regular, read_regular};
+use super::log::{LOG_NAME, corrected_code};
 use super::replace_file;
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
@@ -103,9 +103,10 @@ impl ClosedLogHeader {
             return None;
         }
         let SettingsGlance { participant, trial } = header.session;
+        let correction = corrected_code(recording, &participant.code).ok()?;
         Some(ClosedLogHeader {
             digest: tail.digest(),
-            code: participant.code,
+            code: correction.map_or(participant.code, |correction| correction.after),
             condition: trial.condition,
             date: header.started,
         })
@@ -160,7 +161,7 @@ impl ListCache {
     /// The cache in this folder. Lines of the cache file that cannot be read are skipped.
     pub fn in_folder(folder: &Path) -> ListCache {
         let path = folder.join("lists.jsonl");
-        let text = open_regular(&path).and_then(io::read_to_string).unwrap_or_default();
+        let text = read_regular(&path).unwrap_or_default();
         let lines = text.lines().filter_map(|line| serde_json::from_str::<KeptLine>(line).ok());
         let kept = lines.map(|line| (line.log, line.figures)).collect();
         ListCache { path: Some(path), kept }

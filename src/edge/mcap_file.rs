@@ -1,8 +1,7 @@
 //! Writes a recording as an MCAP file, the container format of robotics tools.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::{self, BufWriter};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use mcap::records::{MessageHeader, Metadata};
@@ -10,24 +9,22 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::log::MCAP_NAME;
 use super::overwrite;
+use super::replace_file::Replacement;
 use crate::analysis::foxglove::{McapChannel, McapMessage};
 
 /// First bytes of every MCAP file (its magic number).
 const BEGINS: &[u8] = b"\x89MCAP0\r\n";
 /// Name of this program in the header of the MCAP file.
 const LIBRARY: &str = "tomcom";
-/// Suffix of the name of an MCAP file that is still being written.
-const BEGUN: &str = ".new";
 /// Encoding of an MCAP file's messages and of their schemas.
 const ENCODING: &str = "json";
 const SCHEMA_ENCODING: &str = "jsonschema";
 
 /// An MCAP file that is being written. The file gets its final name when it is complete.
 pub struct McapFile {
-    writer: Writer<BufWriter<File>>,
+    writer: Writer<Replacement>,
     /// For each channel, its number in the file and its number of messages so far.
     channels: BTreeMap<McapChannel, (u16, u32)>,
-    begun: PathBuf,
     path: PathBuf,
 }
 
@@ -43,9 +40,8 @@ impl McapFile {
             head.starts_with(BEGINS) && head.windows(written.len()).take(256).any(|part| part == written)
         };
         overwrite::check(&path, "an MCAP", is_own)?;
-        let begun = folder.join(format!("{MCAP_NAME}{BEGUN}"));
         let options = WriteOptions::new().library(format!("{LIBRARY} {}", env!("CARGO_PKG_VERSION"))).compression(None);
-        let mut writer = options.create(BufWriter::new(File::create(&begun)?)).map_err(reason)?;
+        let mut writer = options.create(Replacement::begin(&path)?).map_err(reason)?;
         let mut channels = BTreeMap::new();
         for channel in McapChannel::ALL {
             let schema = format!("{:#}", channel.schema());
@@ -54,7 +50,7 @@ impl McapFile {
             let number = writer.add_channel(schema, channel.topic(), ENCODING, &BTreeMap::new()).map_err(reason)?;
             channels.insert(channel, (number, 0));
         }
-        Ok(McapFile { writer, channels, begun, path })
+        Ok(McapFile { writer, channels, path })
     }
 
     /// Writes a message to its channel in the MCAP file.
@@ -81,9 +77,9 @@ impl McapFile {
     pub fn finish(mut self, about: BTreeMap<String, String>) -> io::Result<(PathBuf, BTreeMap<&'static str, u32>)> {
         self.writer.write_metadata(&Metadata { name: LIBRARY.to_string(), metadata: about }).map_err(reason)?;
         self.writer.finish().map_err(reason)?;
-        fs::rename(&self.begun, &self.path)?;
+        self.writer.into_inner().finish()?;
         let counts = self.channels.iter().map(|(channel, (_, messages))| (channel.topic(), *messages)).collect();
-        Ok((self.path.clone(), counts))
+        Ok((self.path, counts))
     }
 }
 

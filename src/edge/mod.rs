@@ -1,5 +1,6 @@
 //! Everything that touches the outside of the program: files, terminal, network, clocks.
 
+mod arrival;
 pub mod ask;
 pub mod battery_file;
 pub mod bids_tree;
@@ -22,6 +23,7 @@ mod gaze_gate;
 pub mod gaze_input;
 pub mod gaze_json;
 pub mod gaze_line;
+mod gaze_rejections;
 mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
@@ -44,18 +46,20 @@ pub mod pool_file;
 pub mod power_files;
 pub mod pupil;
 pub mod recordings;
-mod replace_file;
+pub mod replace_file;
 #[cfg(feature = "rerun")]
 pub mod rerun;
 pub mod rescue;
 #[cfg(feature = "rerun")]
 pub mod rrd;
+mod sender_clock;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
 pub mod study_part_file;
-pub mod temporary;
 pub mod terminal;
+pub mod terminal_bytes;
+pub mod terminal_input;
 mod tracker_folder;
 pub mod training;
 mod type_error;

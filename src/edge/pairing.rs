@@ -1,7 +1,8 @@
 //! Check of pairing codes, which pages of the display and gaze senders send. Each wrong code locks its sender's network
 //! address for a while, and each further one locks it longer. A lock holds for all connections of an address together.
-//! Of all addresses together, only a few wrong codes per second are checked, since the sender address of a datagram can
-//! be forged.
+//! Wrong codes of many addresses lock nobody else: beyond a few in a second, all codes are answered later, the right one
+//! too. The number of open connections then bounds how many codes can be tried. The sender address of a datagram can be
+//! forged, so of datagrams only these few are checked at all.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::IpAddr;
@@ -18,8 +19,11 @@ const SLIPS: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(300);
 /// Time after the end of an address's lock at which the address's wrong codes are forgotten.
 const FORGOTTEN: Duration = Duration::from_secs(3600);
-/// Largest number of wrong codes of all addresses together that are checked within [`WAIT`].
+/// Largest number of wrong codes of all addresses together, within [`WAIT`], that slow down no other sender.
 const MOST_WRONG: u32 = 10;
+/// Time after which a code is checked if there were more wrong ones. 256 connections then try 128 codes a second: in an
+/// hour, 1 of 2,300 chances to find a code of 30 bits.
+const SLOWED: Duration = Duration::from_secs(2);
 /// Number of addresses whose wrong codes are remembered; beyond it, the address whose lock ends first is forgotten.
 const MAX_ADDRESSES: usize = 1024;
 /// Number of paired participant pages that are remembered.
@@ -59,20 +63,34 @@ impl PairingCodeCheck {
         PairingCodeCheck { code, wrong: BTreeMap::new(), recent: None, known: VecDeque::new() }
     }
 
+    /// Time to wait before a code from the page with this name is to be checked ([`PairingCodeCheck::attempt`]). A page
+    /// that has paired before need not wait with the right code.
+    pub fn delay(&self, page: Option<&str>, typed: &str, now: Instant) -> Duration {
+        let is_crowded = self.recent(now).is_some_and(|(_, count)| count >= MOST_WRONG);
+        if is_crowded && !self.is_known(page, typed) { SLOWED } else { Duration::ZERO }
+    }
+
+    /// The present counting interval for wrong codes of all addresses; `None` if it is over.
+    fn recent(&self, now: Instant) -> Option<(Instant, u32)> {
+        self.recent.filter(|(since, _)| now < *since + WAIT)
+    }
+
+    /// Whether the code is right and comes from a page that has paired before.
+    fn is_known(&self, page: Option<&str>, typed: &str) -> bool {
+        is_code(typed, &self.code) && page.is_some_and(|page| self.known.iter().any(|known| known == page))
+    }
+
     /// Checks a code that came from this address or from the page with this name. A page that has paired before is
     /// admitted with the right code even while its address is locked, so that nobody can lock out the participant's
     /// page.
     pub fn attempt(&mut self, address: IpAddr, page: Option<&str>, typed: &str, now: Instant) -> PairingVerdict {
         let (address, is_right) = (network_of(address), is_code(typed, &self.code));
-        if is_right && page.is_some_and(|page| self.known.iter().any(|known| known == page)) {
+        if self.is_known(page, typed) {
             return PairingVerdict::Right;
         }
         let before = self.wrong.get(&address).filter(|wrong| now < wrong.locked_until + FORGOTTEN).copied();
         if let Some(wrong) = before.filter(|wrong| now < wrong.locked_until) {
             return PairingVerdict::Locked(wrong.locked_until - now);
-        }
-        if let Some(left) = self.crowd_lock(now) {
-            return PairingVerdict::Locked(left);
         }
         if is_right {
             self.wrong.remove(&address);
@@ -82,7 +100,7 @@ impl PairingCodeCheck {
             }
             return PairingVerdict::Right;
         }
-        self.recent = self.recent.map(|(since, count)| (since, count + 1)).or(Some((now, 1)));
+        self.recent = self.recent(now).map(|(since, count)| (since, count.saturating_add(1))).or(Some((now, 1)));
         let count = before.map_or(0, |wrong| wrong.count).saturating_add(1);
         let wait = wait_after(count);
         self.wrong.insert(address, WrongCodes { count, locked_until: now + wait });
@@ -91,13 +109,6 @@ impl PairingCodeCheck {
             first.map(|first| self.wrong.remove(&first));
         }
         PairingVerdict::Wrong(wait)
-    }
-
-    /// Time for which no code of any sender is checked, since there were too many wrong ones; `None` if codes are
-    /// checked.
-    fn crowd_lock(&mut self, now: Instant) -> Option<Duration> {
-        self.recent = self.recent.filter(|(since, _)| now < *since + WAIT);
-        self.recent.filter(|(_, count)| *count >= MOST_WRONG).map(|(since, _)| since + WAIT - now)
     }
 }
 
@@ -170,11 +181,30 @@ mod tests {
     }
 
     #[test]
-    fn addresses_that_are_made_up_buy_no_more_than_ten_guesses_a_second() {
+    fn a_new_page_is_let_in_later_while_wrong_codes_come_from_everywhere() {
+        let (mut desk, start) = (desk(), Instant::now());
+        for step in 0..60_000_u32 {
+            let now = start + Duration::from_millis(2) * step;
+            desk.attempt(IpAddr::V4(step.into()), None, "WRONG2", now);
+            if step % 1000 == 999 {
+                let name = format!("page {step}");
+                assert_eq!(desk.delay(Some(&name), "ABC234", now), SLOWED, "every answer is slower");
+                assert_eq!(desk.attempt(THERE, Some(&name), "ABC234", now + SLOWED), PairingVerdict::Right);
+                assert_eq!(desk.delay(Some(&name), "ABC234", now), Duration::ZERO, "it has paired before");
+                assert_eq!(desk.delay(Some(&name), "AAAAAA", now), SLOWED, "its name is no code");
+            }
+        }
+        let later = start + Duration::from_secs(122);
+        assert_eq!(desk.delay(Some("new"), "ABC234", later), Duration::ZERO, "afterwards all is as before");
+    }
+
+    #[test]
+    fn datagrams_of_made_up_addresses_buy_no_more_than_ten_guesses_a_second() {
         let (mut desk, start) = (desk(), Instant::now());
         let guess = |desk: &mut PairingCodeCheck, step: u32| {
             let now = start + Duration::from_micros(100) * step;
-            matches!(desk.attempt(IpAddr::V4(step.into()), None, "WRONG2", now), PairingVerdict::Wrong(_))
+            desk.delay(None, "WRONG2", now).is_zero()
+                && matches!(desk.attempt(IpAddr::V4(step.into()), None, "WRONG2", now), PairingVerdict::Wrong(_))
         };
         let checked = (0..600_000).filter(|step| guess(&mut desk, *step)).count();
         assert!((590..=600).contains(&checked), "{checked} codes in a minute");

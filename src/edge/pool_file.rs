@@ -1,16 +1,19 @@
 //! Files of pools (simulated participants for power analyses) in the format JSON Lines
 //! ([`crate::study::simulation_pool`]).
 
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file_error::{FileError, FileResult, read_text};
+use super::file_error::{FileError, FileResult, read_bytes};
 use super::overwrite;
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 
+/// Largest size of a pool's file, in bytes.
+const MAX_POOL: u64 = 1 << 30;
 const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
 
 /// Reads the parts of a pool of simulated participants and joins them.
@@ -26,7 +29,9 @@ pub fn read_pool(paths: &[PathBuf]) -> FileResult<SimulationPool> {
 }
 
 fn read_part(path: &Path) -> FileResult<SimulationPool> {
-    let text = read_text(path)?;
+    let unreadable = |reason| FileError::unreadable(path, reason, REMEDY);
+    let text = String::from_utf8(read_bytes(path, MAX_POOL).map_err(unreadable)?)
+        .map_err(|error| unreadable(io::Error::new(io::ErrorKind::InvalidData, error.utf8_error())))?;
     let mut lines = Vec::new();
     let mut start = 0;
     for line in text.split_inclusive('\n') {

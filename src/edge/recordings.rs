@@ -1,21 +1,21 @@
 //! Overview of a folder of recordings, from their logs alone, without replaying them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::{self, BufRead, BufReader, ErrorKind};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, read_header, ruling};
+use super::log::{LOG_NAME, MAX_LINE, RecordingLock, first_line, log_digest, read_header, ruling};
 use crate::session::header::{FORMAT, PreviousPart};
 use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
-/// count as one recording. Simulated recordings and other files do not count.
+/// count as one recording, and copies of a log once. Simulated recordings and other files do not count.
 ///
 /// # Errors
 /// The folder or a recording in it cannot be read.
@@ -38,9 +38,29 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
             found.insert(name, part);
         }
     }
+    remove_copies(folder, &mut found)?;
     let continued: Vec<String> = found.values().filter_map(|part| part.continues.clone()).collect();
     let last = found.iter().filter(|(name, _)| !continued.contains(name));
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
+}
+
+/// Removes the copies of recordings, such as those that a file manager makes: a copy of a cut recording would be offered
+/// to be continued, instead of the recording.
+fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResult<()> {
+    let place = |part: &Part| (part.code.clone(), part.step.period, part.step.attempt, part.continues.clone());
+    let mut places: BTreeMap<_, Vec<String>> = BTreeMap::new();
+    for (name, part) in &*found {
+        places.entry(place(part)).or_default().push(name.clone());
+    }
+    for names in places.into_values().filter(|names| names.len() > 1) {
+        let mut logs = BTreeSet::new();
+        for name in names {
+            if !logs.insert(log_digest(&folder.join(&name).join(LOG_NAME))?) {
+                found.remove(&name);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Recordings that a path means: the recording itself, or all recordings in the folder, sorted by name. Of a recording
@@ -77,10 +97,9 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     for path in &found {
         let log = path.join(LOG_NAME);
         let file = open_regular(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
-        let mut line = String::new();
         // An invalid header is reported when the recording is read.
-        let read = BufReader::new(file).read_line(&mut line).ok();
-        let header = read.and_then(|_| serde_json::from_str::<PartHeaderGlance>(&line).ok());
+        let line = first_line(&mut BufReader::new(file)).unwrap_or_default();
+        let header = serde_json::from_slice::<PartHeaderGlance>(&line).ok();
         continued.extend(header.and_then(|header| header.continues).map(|before| folder.join(before.recording)));
     }
     found.retain(|path| !continued.contains(path));
@@ -98,6 +117,8 @@ struct PartHeaderGlance {
 #[derive(Debug)]
 struct Part {
     code: String,
+    /// The code in the log, if it was corrected afterwards.
+    recorded_as: Option<String>,
     step: PlanPosition,
     continues: Option<String>,
     consent: bool,
@@ -112,6 +133,8 @@ struct Part {
     /// Whether an event excludes the recording from the analysis or includes it again, and the reason of an exclusion.
     excluded: Option<Option<String>>,
     ended: bool,
+    /// Whether a program is writing the log at present.
+    running: bool,
 }
 
 impl Part {
@@ -127,7 +150,7 @@ impl Part {
         let mut line = Vec::new();
         let mut next = |line: &mut Vec<u8>| {
             line.clear();
-            let read = lines.read_until(b'\n', line);
+            let read = lines.by_ref().take(MAX_LINE as u64).read_until(b'\n', line);
             let read = read.map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
             // A last line of the log without a line end was cut off, or is still being written.
             Ok::<bool, FileError>(read > 0 && line.last() == Some(&b'\n'))
@@ -145,6 +168,7 @@ impl Part {
         };
         let mut part = Part {
             code: header.session.participant.code,
+            recorded_as: header.correction.map(|correction| correction.before),
             step,
             continues: header.continues.map(|before| before.recording),
             consent: false,
@@ -157,6 +181,7 @@ impl Part {
             aborted: None,
             excluded: None,
             ended: false,
+            running: path.parent().is_some_and(|folder| RecordingLock::holder(folder).is_some()),
         };
         while next(&mut line)? {
             if !is_sample(&line)
@@ -203,7 +228,9 @@ impl Part {
         let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.aborted.as_ref());
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
-        let outcome = if !self.ended {
+        let outcome = if !self.ended && self.running {
+            RecordingOutcome::Running
+        } else if !self.ended {
             RecordingOutcome::Open
         } else if let Some(reason) = aborted {
             void(&format!("aborted ({reason})"))
@@ -217,6 +244,7 @@ impl Part {
         PlanRecording {
             recording: name.to_string(),
             code: self.code.clone(),
+            recorded_as: self.recorded_as.clone(),
             step: self.step.clone(),
             consent: any(|part| part.consent),
             instructed: any(|part| part.instructed),

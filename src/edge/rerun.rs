@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use nalgebra::Isometry3;
-use re_sdk::log::ChunkBatcherConfig;
+use re_sdk::log::{ChunkBatcherConfig, TimeColumn};
 use re_sdk::sink::FileSink;
 use re_sdk::web_viewer::WebViewerConfig;
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
@@ -33,6 +33,9 @@ use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// Version of Rerun with which streams are written; viewers of the same version can read the streams.
 pub const VERSION: &str = "0.36.3";
+/// Timelines of session time and of events, beside that of the trial's clock.
+const SESSION_TIME: &str = "session_time";
+const STEP: &str = "step";
 /// A millisecond in nanoseconds.
 const MS: u64 = 1_000_000;
 /// Largest delay with which connected viewers get data.
@@ -91,6 +94,22 @@ struct OpenStream {
     gaze_every: SessionTime,
     /// Time of the last gaze sample in the stream.
     gaze_at: Option<SessionTime>,
+    /// Values of the stream's timelines for the rows that are written next.
+    now: [i64; 3],
+    /// Gaze samples of the present piece.
+    sights: Sights,
+}
+
+/// Gaze samples of one entity, which are written together at the end of their piece: a recording of hours has millions,
+/// and a row for each would take most of the time.
+#[derive(Default)]
+struct Sights {
+    entity: String,
+    /// For each sample, the values of the stream's timelines.
+    times: Vec<[i64; 3]>,
+    at: Vec<[f32; 2]>,
+    around: Vec<[f32; 2]>,
+    colours: Vec<Color>,
 }
 
 impl RerunWriter {
@@ -129,7 +148,7 @@ impl RerunWriter {
     /// Writes rows that hold for the whole stream, without a time.
     pub fn fixed(&self, lane: &ShownRecording, rows: &[EntityUpdate]) {
         for row in rows {
-            let (entity, components) = written(lane, row);
+            let (entity, components) = (entity(lane, row), components(row));
             self.streams.iter().for_each(|one| one.log(&entity, true, &components));
         }
     }
@@ -138,10 +157,23 @@ impl RerunWriter {
     pub fn moment(&mut self, lane: &ShownRecording, moment: &SceneUpdate) -> u64 {
         self.streams.iter_mut().for_each(|one| one.go_to(moment));
         for row in &moment.rows {
-            let (entity, components) = written(lane, row);
-            let is_gaze = matches!(row.shown, EntityData::Sight { .. });
-            for one in &mut self.streams {
-                if !is_gaze || one.shows_gaze(moment.time) {
+            let entity = entity(lane, row);
+            let sight = match row.shown {
+                EntityData::Sight { at, around, colour } => Some((at, around, colour_of(colour))),
+                _ => None,
+            };
+            // A file gets gaze samples together with the others of their piece, viewers get each of them at once.
+            if let Some(sight) = sight {
+                let files = self.streams.iter_mut().filter(|one| one.piece.is_some());
+                files.for_each(|one| one.see(&entity, moment.time, sight));
+            }
+            let is_at_once = |one: &OpenStream| sight.is_none() || one.piece.is_none();
+            if !self.streams.iter().any(is_at_once) {
+                continue;
+            }
+            let components = components(row);
+            for one in self.streams.iter_mut().filter(|one| is_at_once(one)) {
+                if sight.is_none() || one.shows_gaze(moment.time) {
                     one.log(&entity, false, &components);
                 }
             }
@@ -149,15 +181,26 @@ impl RerunWriter {
         moment.rows.len() as u64
     }
 
+    /// Closes the stream's file, to which nothing is written any more; returns false if there is none. Viewers still get
+    /// the stream.
+    pub fn close_file(&mut self) -> bool {
+        let before = self.streams.len();
+        self.streams.retain(|one| one.piece.is_none());
+        self.streams.len() < before
+    }
+
     /// Completes the stream's file, if there is one; connected viewers keep the data that they have.
-    pub fn finish(&self) {
-        self.streams.iter().for_each(|one| one.stream.finalize_deferred_sinks());
+    pub fn finish(&mut self) {
+        self.streams.iter_mut().for_each(|one| {
+            one.write_sights();
+            one.stream.finalize_deferred_sinks();
+        });
     }
 }
 
 impl OpenStream {
     fn new(stream: RecordingStream, piece: Option<SessionTime>, gaze_every: SessionTime) -> OpenStream {
-        OpenStream { stream, piece, nth: 0, gaze_every, gaze_at: None }
+        OpenStream { stream, piece, nth: 0, gaze_every, gaze_at: None, now: [0; 3], sights: Sights::default() }
     }
 
     /// Sets the time of the rows that are written to the stream next.
@@ -165,14 +208,56 @@ impl OpenStream {
         let nth = self.piece.map_or(0, |piece| moment.time.0 / piece.0);
         if nth != self.nth {
             self.nth = nth;
+            self.write_sights();
             // Errors of the stream's file are reported when the file is completed.
             let _ = self.stream.flush_async();
         }
-        let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
+        let whole = |number: u64| i64::try_from(number).unwrap_or(i64::MAX);
         // The timeline shows whole milliseconds, which are easier to read; no two updates are closer together.
-        self.stream.set_time(TRIAL_TIME, nanoseconds(moment.trial.0 / MS * MS));
-        self.stream.set_time("session_time", nanoseconds(moment.time.0));
-        self.stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
+        self.now = [whole(moment.trial.0 / MS * MS), whole(moment.time.0), whole(moment.step)];
+        let [trial, session, step] = self.now;
+        self.stream.set_time(TRIAL_TIME, re_sdk::TimeCell::from_duration_nanos(trial));
+        self.stream.set_time(SESSION_TIME, re_sdk::TimeCell::from_duration_nanos(session));
+        self.stream.set_time_sequence(STEP, step);
+    }
+
+    /// Keeps a gaze sample until the end of its piece.
+    fn see(&mut self, entity: &str, time: SessionTime, (at, around, colour): ([f64; 2], f64, Color)) {
+        if !self.shows_gaze(time) {
+            return;
+        }
+        if self.sights.entity != entity {
+            self.write_sights();
+            self.sights.entity = entity.to_string();
+        }
+        self.sights.times.push(self.now);
+        self.sights.at.push(at.map(|length| length as f32));
+        self.sights.around.push([around as f32; 2]);
+        self.sights.colours.push(colour);
+    }
+
+    /// Writes the gaze samples that wait.
+    fn write_sights(&mut self) {
+        let Sights { entity, times, at, around, colours } = std::mem::take(&mut self.sights);
+        if times.is_empty() {
+            return;
+        }
+        let timeline = |index: usize| times.iter().map(move |values| values[index]).collect::<Vec<i64>>();
+        let indexes = [
+            TimeColumn::new_duration_nanos(TRIAL_TIME, timeline(0)),
+            TimeColumn::new_duration_nanos(SESSION_TIME, timeline(1)),
+            TimeColumn::new_sequence(STEP, timeline(2)),
+        ];
+        // The same elements as those of `sight_in_2d`, for many samples.
+        let circles = archetypes::Ellipses2D::from_half_sizes(around)
+            .with_centers(at.iter().copied())
+            .with_colors(colours.iter().copied())
+            .with_line_radii(times.iter().map(|_| LINE_MM));
+        let points = archetypes::Points2D::new(at).with_radii(times.iter().map(|_| SIGHT_MM)).with_colors(colours);
+        // Writing fails only if components cannot be serialised, and these components can.
+        if let (Ok(circles), Ok(points)) = (circles.columns_of_unit_batches(), points.columns_of_unit_batches()) {
+            let _ = self.stream.send_columns(entity.as_str(), indexes, circles.chain(points));
+        }
     }
 
     /// Whether a gaze sample at this time is written to the stream (samples that come too fast are left out).
@@ -190,14 +275,23 @@ impl OpenStream {
     }
 }
 
-/// Name and components of a row's entity, as Rerun writes them.
-fn written(lane: &ShownRecording, row: &EntityUpdate) -> (String, Vec<SerializedComponentBatch>) {
-    let entity = match lane.root.as_str() {
+impl Drop for OpenStream {
+    fn drop(&mut self) {
+        self.write_sights();
+    }
+}
+
+/// Name of a row's entity.
+fn entity(lane: &ShownRecording, row: &EntityUpdate) -> String {
+    match lane.root.as_str() {
         "" => row.entity.clone(),
         root => format!("{root}/{}", row.entity),
-    };
-    let parts = parts(&row.shown);
-    (entity, parts.iter().flat_map(|part| part.as_serialized_batches()).collect())
+    }
+}
+
+/// Components of a row's entity, as Rerun writes them.
+fn components(row: &EntityUpdate) -> Vec<SerializedComponentBatch> {
+    parts(&row.shown).iter().flat_map(|part| part.as_serialized_batches()).collect()
 }
 
 /// A Rerun stream without an output yet. The stream passes rows on in pieces of this duration of the wall clock.

@@ -8,19 +8,23 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::file_error::read_regular;
-use super::temporary::new_folder;
+use crate::base::path_text::PathText;
 
 /// Prefix of the folders for rescued recordings in the system's folder for temporary files.
 pub const RESCUED: &str = "tomcom-rescued-";
 /// File name of the note in the folder of a rescued recording.
 pub const RESCUE_NOTE_NAME: &str = "rescued.toml";
 
-/// Creates a folder for a rescued recording in the system's folder for temporary files.
+/// Creates a folder for a rescued recording in the system's folder for temporary files, which only the user of the
+/// program can read.
 ///
 /// # Errors
 /// The folder cannot be created.
 pub fn new_rescue_folder() -> io::Result<PathBuf> {
-    new_folder(&std::env::temp_dir(), &format!("{RESCUED}{}", std::process::id()))
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    Ok(builder.prefix(RESCUED).tempdir()?.keep())
 }
 
 /// Note beside a rescued log that tells the recording's original folder.
@@ -28,7 +32,7 @@ pub fn new_rescue_folder() -> io::Result<PathBuf> {
 #[serde(deny_unknown_fields)]
 pub struct RescueNote {
     /// Original folder of the recording, with symbolic links resolved.
-    pub home: PathBuf,
+    pub home: PathText,
 }
 
 impl RescueNote {

@@ -1,7 +1,6 @@
 //! State of a Rerun file (`.rrd`), from the file itself and from the checksums in the seal file beside it: whether it
 //! is complete, which program version wrote it, whether it is unchanged, and whether it shows the present log.
 
-use std::fs;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -9,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::file_error::{open_regular, read_regular};
 pub use super::log::RRD_NAME;
+use super::replace_file;
 use super::rerun::VERSION;
 use super::stream_head::{BEGINS, MARK, MARK_END};
 use crate::scene;
@@ -117,7 +117,8 @@ impl Seal {
 pub fn seal(stream: &Path, logs: &[PathBuf]) -> io::Result<()> {
     let logs = logs.iter().map(|log| Sum::from_file(log)).collect::<io::Result<_>>()?;
     let seal = Seal { stream: Sum::from_file(stream)?, logs };
-    fs::write(Seal::path(stream), toml::to_string(&seal).map_err(io::Error::other)?)
+    let text = toml::to_string(&seal).map_err(io::Error::other)?;
+    replace_file::put(&Seal::path(stream), text.as_bytes())
 }
 
 /// Determines the state of a Rerun file, compared with the logs that it should show.
@@ -156,13 +157,14 @@ pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RerunFileState> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
-    use crate::edge::temporary::new_folder;
 
     #[test]
     fn a_file_says_whether_it_is_whole_and_ours_and_its_seal_whether_it_shows_this_log() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-rrd-{}", std::process::id())).unwrap();
-        let (path, logs) = (folder.join(RRD_NAME), [folder.join("events.jsonl")]);
+        let folder = tempfile::tempdir().unwrap();
+        let (path, logs) = (folder.path().join(RRD_NAME), [folder.path().join("events.jsonl")]);
         let is = |state: RerunFileState| assert_eq!(super::state(&path, &logs).unwrap(), state);
         fs::write(&logs[0], "the log").unwrap();
         is(RerunFileState::Missing);
@@ -188,6 +190,5 @@ mod tests {
         is(RerunFileState::Whole);
         fs::write(&logs[0], "the lag").unwrap();
         is(RerunFileState::Stale);
-        fs::remove_dir_all(folder).unwrap();
     }
 }

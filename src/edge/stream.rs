@@ -1,12 +1,13 @@
 //! Live Rerun stream of scene updates to viewers and a file, written by a separate thread. The session never waits: if
-//! the thread is too slow, updates are dropped and counted.
+//! the thread is too slow, updates are dropped and counted. On a full disk the session gives up the stream's file, which
+//! can be made from the log.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::time::Duration;
 
@@ -18,6 +19,8 @@ use crate::scene::{EntityUpdate, SceneUpdate};
 const WAITING: usize = 4096;
 /// Longest time for which the end of a session waits for the stream's file to be completed.
 const END: Duration = Duration::from_secs(5);
+/// Longest time for which a session on a full disk waits until the stream's file is closed.
+const CLOSED: Duration = Duration::from_secs(1);
 /// Number of further network ports that are tried if the wanted port is in use.
 pub const PORTS: u16 = 20;
 
@@ -30,11 +33,13 @@ pub struct StreamCounts {
     pub dropped: u64,
 }
 
-/// Counters that session and writing thread share.
+/// State that session and writing thread share.
 #[derive(Debug, Default)]
 struct Counters {
     written: AtomicU64,
     dropped: AtomicU64,
+    /// Whether the writing thread has to close the stream's file, which the session gave up.
+    without_file: AtomicBool,
 }
 
 /// A live Rerun stream that is open.
@@ -45,7 +50,8 @@ pub struct RerunStream {
     file: Option<PathBuf>,
     news: SyncSender<Vec<SceneUpdate>>,
     counters: Arc<Counters>,
-    done: Receiver<()>,
+    /// Receives a message when the stream's file is closed.
+    closed: Receiver<()>,
 }
 
 impl RerunStream {
@@ -69,20 +75,25 @@ impl RerunStream {
         let lane = ShownRecording::default();
         let mut writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);
-        let (end, done) = channel();
+        let (close, closed) = channel();
         let counters = Arc::new(Counters::default());
         let counted = counters.clone();
         std::thread::Builder::new().name("rerun".to_string()).spawn(move || {
             writer.fixed(&lane, &fixed);
             counted.written.fetch_add(writer.moment(&lane, &opening), Relaxed);
-            for moment in told.iter().flatten() {
-                counted.written.fetch_add(writer.moment(&lane, &moment), Relaxed);
+            for moments in told {
+                if counted.without_file.load(Relaxed) && writer.close_file() {
+                    let _ = close.send(());
+                }
+                for moment in moments {
+                    counted.written.fetch_add(writer.moment(&lane, &moment), Relaxed);
+                }
             }
             // The stream's file is completed first, since a viewer that does not read may delay the rest.
             writer.finish();
-            let _ = end.send(());
+            let _ = close.send(());
         })?;
-        Ok(RerunStream { server, file: outlets.file, news, counters, done })
+        Ok(RerunStream { server, file: outlets.file, news, counters, closed })
     }
 
     /// Passes scene updates to the writing thread, or drops the updates if the thread is too slow.
@@ -96,6 +107,23 @@ impl RerunStream {
         }
     }
 
+    /// Deletes the stream's file, to make room on a full disk, while viewers still get the stream. Returns false if there
+    /// is no file.
+    pub fn give_up_file(&mut self) -> bool {
+        let Some(path) = self.file.take() else { return false };
+        // The file's space is free only when the writing thread has closed the file, or when its content is removed.
+        let file = File::options().write(true).open(&path);
+        let _ = fs::remove_file(&path);
+        self.counters.without_file.store(true, Relaxed);
+        // If too much waits to be written, the thread is awake anyway.
+        let _ = self.news.try_send(Vec::new());
+        let _ = self.closed.recv_timeout(CLOSED);
+        if let Ok(file) = file {
+            let _ = file.set_len(0);
+        }
+        true
+    }
+
     /// Numbers of rows that were written to the Rerun stream and dropped so far.
     pub fn fares(&self) -> StreamCounts {
         StreamCounts { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
@@ -104,9 +132,9 @@ impl RerunStream {
     /// Ends the stream, and waits for a limited time for its file, whose path is returned. An incomplete file is
     /// deleted, since it can be made from the log.
     pub fn close(self) -> Option<PathBuf> {
-        let RerunStream { file, news, counters, done, .. } = self;
+        let RerunStream { file, news, counters, closed, .. } = self;
         drop(news);
-        let is_whole = done.recv_timeout(END).is_ok() && counters.dropped.load(Relaxed) == 0;
+        let is_whole = closed.recv_timeout(END).is_ok() && counters.dropped.load(Relaxed) == 0;
         if let Some(file) = file.as_ref().filter(|_| !is_whole) {
             let _ = fs::remove_file(file);
         }
@@ -143,13 +171,12 @@ mod tests {
     use super::*;
     use crate::base::time::SessionTime;
     use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
-    use crate::edge::temporary::new_folder;
     use crate::scene::EntityData;
 
     #[test]
     fn what_is_told_is_in_the_file_when_the_stream_is_closed_and_a_taken_port_is_no_trouble() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-stream-{}", std::process::id())).unwrap();
-        let path = folder.join(RRD_NAME);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(RRD_NAME);
         let other = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let taken = other.local_addr().unwrap();
         let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string() };
@@ -167,5 +194,26 @@ mod tests {
         assert_eq!(stream.close().as_ref(), Some(&path));
         assert_eq!(rrd::state(&path, &[]).unwrap(), RerunFileState::Unsealed, "it is whole, and waits for its seal");
         fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_file_that_is_given_up_is_gone_while_the_stream_goes_on() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let path = folder.join(RRD_NAME);
+        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string() };
+        let moment = |step: u64| SceneUpdate {
+            time: SessionTime(step * 1_000_000),
+            trial: SessionTime(step * 1_000_000),
+            step,
+            rows: vec![EntityUpdate::new("a", EntityData::Value(step as f64))],
+        };
+        let mut stream = RerunStream::open(&identity, Some(&path), None, Vec::new(), moment(0)).unwrap();
+        (1..100).for_each(|step| stream.tell(vec![moment(step)]));
+        assert!(path.exists() && stream.give_up_file() && !path.exists());
+        assert!(!stream.give_up_file(), "there is none any more");
+        (100..200).for_each(|step| stream.tell(vec![moment(step)]));
+        assert_eq!(stream.close(), None);
+        assert_eq!(fs::read_dir(folder).unwrap().count(), 0, "nothing is written to it any more");
     }
 }

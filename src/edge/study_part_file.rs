@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -15,6 +15,8 @@ use super::overwrite;
 use super::replace_file::Replacement;
 use crate::study::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartKitchen};
 
+/// Longest line of a part, in bytes: the rows of events of one recording.
+const MAX_LINE: u64 = 1 << 28;
 const REMEDY: &str = "a part that tomcom study wrote with --shard, unchanged";
 
 /// Writer of the file of a study's part; the file gets its name when it is complete.
@@ -153,7 +155,7 @@ impl PartReader {
 /// cut.
 fn next_line(path: &Path, lines: &mut BufReader<File>, number: &mut usize) -> FileResult<Option<String>> {
     let mut text = String::new();
-    lines.read_line(&mut text).map_err(|reason| FileError::unreadable(path, reason, REMEDY))?;
+    lines.by_ref().take(MAX_LINE).read_line(&mut text).map_err(|reason| FileError::unreadable(path, reason, REMEDY))?;
     if text.is_empty() {
         return Ok(None);
     }

@@ -1,5 +1,4 @@
-//! The terminal: set up for the console (raw mode), restored on every way out, with keys and mouse as messages. Frames
-//! are written without blocking.
+//! The terminal: set up for the console (raw mode), and restored on every way out. Frames are written without blocking.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,16 +6,14 @@ use std::sync::{Arc, Mutex, Once};
 use std::time::Duration;
 
 use crossterm::event::{
-    DisableFocusChange, DisableMouseCapture, EnableFocusChange, EnableMouseCapture, Event, EventStream,
-    KeyboardEnhancementFlags, MouseButton, MouseEvent, MouseEventKind, PopKeyboardEnhancementFlags,
-    PushKeyboardEnhancementFlags,
+    DisableBracketedPaste, DisableFocusChange, DisableMouseCapture, EnableBracketedPaste, EnableFocusChange,
+    EnableMouseCapture, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags, PushKeyboardEnhancementFlags,
 };
 use crossterm::terminal::{
     BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
     enable_raw_mode, size,
 };
 use crossterm::{cursor, queue};
-use futures::StreamExt;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
@@ -27,7 +24,7 @@ use crate::console::recording_picker::RecordingPicker;
 use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
-use crate::console::{ConsoleMessage, ConsoleModel, view};
+use crate::console::{ConsoleModel, view};
 use crate::session::Session;
 use crate::session::settings::{ColourTheme, ConsoleSpec};
 
@@ -138,12 +135,12 @@ impl TerminalScreen {
         self.compose(|frame| view(session, model, frame))
     }
 
-    /// Composes a frame with a question on an otherwise empty screen.
+    /// Composes a frame with a question, and a notice below it, on an otherwise empty screen.
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn ask(&mut self, question: &StartQuestion, theme: Theme) -> io::Result<()> {
-        self.compose(|frame| draw_question(question, theme, frame))
+    pub fn ask(&mut self, question: &StartQuestion, notice: Option<&str>, theme: Theme) -> io::Result<()> {
+        self.compose(|frame| draw_question(question, notice, theme, frame))
     }
 
     /// Composes a frame with a list of recordings on an otherwise empty screen.
@@ -215,7 +212,8 @@ fn way_in() -> io::Result<Vec<u8>> {
         | KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES;
     let mut bytes = Vec::new();
     queue!(bytes, EnterAlternateScreen, cursor::Hide, EnableFocusChange, PushKeyboardEnhancementFlags(keys))?;
-    queue!(bytes, EnableMouseCapture)?;
+    // Pasted text is marked as such, so that its letters are not keys.
+    queue!(bytes, EnableMouseCapture, EnableBracketedPaste)?;
     Ok(bytes)
 }
 
@@ -226,40 +224,13 @@ fn way_out() -> Vec<u8> {
         bytes,
         EndSynchronizedUpdate,
         PopKeyboardEnhancementFlags,
+        DisableBracketedPaste,
         DisableMouseCapture,
         DisableFocusChange,
         LeaveAlternateScreen,
         cursor::Show
     );
     bytes
-}
-
-/// Input from the terminal: keys, mouse, and changes of its size or focus.
-#[derive(Debug, Default)]
-pub struct TerminalInput {
-    events: EventStream,
-}
-
-impl TerminalInput {
-    /// The next message from the terminal; `None` when the terminal is closed.
-    pub async fn next(&mut self) -> Option<ConsoleMessage> {
-        loop {
-            let message = match self.events.next().await?.ok()? {
-                Event::Key(key) => ConsoleMessage::Key(key),
-                Event::Mouse(MouseEvent { kind, column, row, .. }) => match kind {
-                    MouseEventKind::Down(MouseButton::Left) => ConsoleMessage::Click(column, row),
-                    MouseEventKind::ScrollUp => ConsoleMessage::Wheel(column, row, 1),
-                    MouseEventKind::ScrollDown => ConsoleMessage::Wheel(column, row, -1),
-                    _ => ConsoleMessage::Pointer(column, row),
-                },
-                Event::Resize(columns, rows) => ConsoleMessage::Resized(columns, rows),
-                Event::FocusGained => ConsoleMessage::Focus(true),
-                Event::FocusLost => ConsoleMessage::Focus(false),
-                Event::Paste(_) => continue,
-            };
-            return Some(message);
-        }
-    }
 }
 
 /// Theme of the console: colours unless `NO_COLOR` is set (no-color.org), for this background unless the settings name

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use super::file_error::{FileError, FileResult};
+use super::file_error::{FileError, FileResult, read_regular};
 use super::replace_file;
 use crate::analysis::training_record::WizardTrainingRecord;
 
@@ -35,7 +35,7 @@ pub fn read(folder: &Path, wizard: &str) -> FileResult<Vec<WizardTrainingRecord>
     let mut records = Vec::new();
     for number in 1.. {
         let path = path(folder, wizard, number);
-        let text = match fs::read_to_string(&path) {
+        let text = match read_regular(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => break,
             Err(error) => return Err(FileError::unreadable(&path, error, remedy)),

@@ -8,6 +8,9 @@
 pub mod calibration;
 pub mod device_clock;
 pub mod quality;
+pub mod recorded_gaze;
+pub mod recorded_times;
+pub mod stamp_check;
 pub mod surface;
 pub mod tags;
 
@@ -29,9 +32,10 @@ pub struct GazeSample {
     pub y: f64,
     /// The tracker's confidence in the sample, 0 to 1.
     pub confidence: f64,
-    /// Time of the sample on the tracker's clock in nanoseconds, if the tracker reports it.
+    /// Time of the sample on the tracker's clock in nanoseconds, if the tracker reports it. It may be negative: trackers
+    /// choose what their time counts from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub device_ns: Option<u64>,
+    pub device_ns: Option<i64>,
     /// Session time at which the sample was taken, if the offset of the tracker's clock is known; otherwise the
     /// sample's arrival time counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -42,6 +46,16 @@ impl GazeSample {
     /// A gaze sample without a device time.
     pub fn new(x: f64, y: f64, confidence: f64) -> GazeSample {
         GazeSample { x, y, confidence, device_ns: None, taken_ns: None }
+    }
+
+    /// Session time at which the sample was taken, for a sample that arrived at `arrived`: no later than its arrival.
+    pub fn taken(&self, arrived: SessionTime) -> SessionTime {
+        self.taken_ns.map_or(arrived, |taken| taken.min(arrived))
+    }
+
+    /// Whether the gaze is on the display, and not beside it.
+    pub fn is_on_display(&self) -> bool {
+        (0.0..=1.0).contains(&self.x) && (0.0..=1.0).contains(&self.y)
     }
 
     /// The gaze sample as it is recorded: position to a hundred thousandth of the display (15 um on a wall display, far

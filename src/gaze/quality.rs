@@ -11,8 +11,9 @@ use crate::base::time::SessionTime;
 pub const TOO_OLD_S: f64 = 0.5;
 /// Upper limit of an eye tracker's sampling rate, in Hz.
 pub const MAX_HZ: f64 = 2000.0;
-/// Number of gaze samples that may arrive at once after a pause.
-const BURST: f64 = 1000.0;
+/// Number of gaze samples that may arrive at once after a pause: those of 10 s at the highest rate, since samples wait
+/// while the program or the network stands still.
+const BURST: f64 = 10.0 * MAX_HZ;
 /// Number of recent gaze samples among which duplicates are detected.
 const RECENT: usize = 32;
 
@@ -69,7 +70,7 @@ impl DroppedInputCounts {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeFaultDetector {
     newest: Option<SessionTime>,
-    recent: Vec<(Option<u64>, [u64; 2])>,
+    recent: Vec<(Option<i64>, [u64; 2])>,
     next: usize,
     /// Number of faults found so far in the gaze stream, by kind.
     pub counts: GazeFaultCounts,

@@ -1,5 +1,7 @@
 //! History of the belief estimate, at the resolution that screens need.
 
+use std::sync::Arc;
+
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, State};
 use crate::measures::sequences::FALSE_BELOW;
@@ -43,10 +45,11 @@ pub struct BeliefSnapshot {
     pub time: SessionTime,
     /// Whether only gaze samples, and no other events, came since the previous snapshot.
     by_gaze: bool,
-    /// Estimate of the participant's belief about each state aspect.
-    pub held: Vec<AspectBeliefSnapshot>,
+    /// Estimate of the participant's belief about each state aspect. Copies of a snapshot share it, since a replay and its
+    /// screen both keep the whole history.
+    pub held: Arc<[AspectBeliefSnapshot]>,
     /// For each state aspect, the start of the present false belief about the aspect; `None` where the belief is right.
-    wrong_since: Vec<Option<SessionTime>>,
+    wrong_since: Arc<[Option<SessionTime>]>,
 }
 
 impl BeliefSnapshot {
@@ -73,7 +76,7 @@ impl BeliefSnapshot {
                 p_wrong: mean[wrong] as f32,
             }
         };
-        let held: Vec<AspectBeliefSnapshot> = (0..kitchen.aspects.len()).map(held).collect();
+        let held: Arc<[AspectBeliefSnapshot]> = (0..kitchen.aspects.len()).map(held).collect();
         let wrong_since = held.iter().map(|held| held.is_false().then_some(time)).collect();
         BeliefSnapshot { time, by_gaze, held, wrong_since }
     }
@@ -95,7 +98,7 @@ impl BeliefHistory {
     /// Adds a snapshot of the estimate, unless only gaze samples with little effect came since the previous snapshot.
     pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
-            let mut pairs = last.held.iter().zip(&moment.held);
+            let mut pairs = last.held.iter().zip(moment.held.iter());
             let is_news = pairs.any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
             // In a pause the estimate stands although gaze samples come.
             if !is_news && (moment.time.secs_since(last.time) < STEP_S || moment.held == last.held) {
@@ -103,9 +106,8 @@ impl BeliefHistory {
             }
         }
         if let Some(last) = self.moments.last() {
-            for (since, earlier) in moment.wrong_since.iter_mut().zip(&last.wrong_since) {
-                *since = since.and(*earlier).or(*since);
-            }
+            let pairs = moment.wrong_since.iter().zip(last.wrong_since.iter());
+            moment.wrong_since = pairs.map(|(since, earlier)| since.and(*earlier).or(*since)).collect();
         }
         self.moments.push(moment);
     }

@@ -28,7 +28,7 @@ pub struct CommunicationContext {
     /// The true state of the kitchen at that event.
     pub state: State,
     /// Estimated belief by state aspect, without the effect of signals that were sent within the matching window.
-    pub held: Vec<AspectBeliefSnapshot>,
+    pub held: Arc<[AspectBeliefSnapshot]>,
     /// Recommendation of each assistant, in the order of the assistants' lanes.
     pub advice: Vec<Recommendation>,
     /// Content of the wizard's screen; `None` before the screen was first drawn, and without a wizard.

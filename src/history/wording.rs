@@ -275,8 +275,19 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
         TrackerEvent::DisplayFound => "eye tracker detects the display tags".to_string(),
         TrackerEvent::DisplayLost => "eye tracker does not detect the display tags".to_string(),
         TrackerEvent::OtherSurfaces { names } => format!("eye tracker detects other surfaces: {}", quoted(names)),
+        TrackerEvent::SeveralStreams { streams } if streams.is_empty() => {
+            "one gaze stream fits the settings".to_string()
+        }
+        TrackerEvent::SeveralStreams { streams } => {
+            format!("{} gaze streams fit the settings: {}", streams.len(), streams.join("; "))
+        }
+        TrackerEvent::Stamps { fault: Some(fault) } => {
+            format!("{}: gaze counts as taken when it arrives", fault.words())
+        }
+        TrackerEvent::Stamps { fault: None } => "the time stamps of gaze are those of a clock again".to_string(),
         TrackerEvent::Recording { state } => match state {
             TrackerRecording::Begun => "Pupil Capture records the trial",
+            TrackerRecording::GoesOn => "Pupil Capture's recording of this trial goes on, and is ended with the trial",
             TrackerRecording::NotBegun => "Pupil Capture started no recording: it is already recording, or cannot",
             TrackerRecording::Ended => "Pupil Capture's recording ended before the trial",
             TrackerRecording::NotAnnotated => {

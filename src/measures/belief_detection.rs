@@ -13,7 +13,7 @@
 use serde::Serialize;
 
 use super::detection::{Calibration, auc};
-use super::flags::{AspectGroups, FlagPerformance, FlagThresholds};
+use super::flags::{AspectGroups, FlagPerformance, ThresholdChoice};
 pub use super::press_view::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
 use crate::kitchen::{AspectKind, Kitchen};
 
@@ -64,13 +64,12 @@ pub struct FalseBeliefDetection {
 }
 
 impl FalseBeliefDetection {
-    /// Compares estimates with known beliefs. `thresholds` are the values from which on an aspect is flagged; with
-    /// `None` the thresholds are chosen on other trials than the trials on which they are evaluated (see
-    /// [`FlagPerformance`]).
+    /// Compares estimates with known beliefs. `thresholds` says how the values are chosen from which on an aspect is
+    /// flagged; with `None` flags are not evaluated.
     pub fn from_trials(
         kitchen: &Kitchen,
         trials: &[TrialBeliefs],
-        thresholds: Option<FlagThresholds>,
+        thresholds: Option<ThresholdChoice>,
     ) -> FalseBeliefDetection {
         let predicted = BeliefsBeforePress::p_false;
         let changed =
@@ -96,7 +95,8 @@ impl FalseBeliefDetection {
             auc_baseline: pool(&groups[0], &changed),
             auc_recency: pool(&groups[0], &recent),
             auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &predicted))),
-            flags: FlagPerformance::from_trials(trials, &groups, thresholds),
+            flags: thresholds
+                .map_or_else(FlagPerformance::default, |choice| FlagPerformance::from_trials(trials, &groups, choice)),
             ece: calibration.ece,
             calibration,
             aspects: both.iter().map(aspect).collect(),

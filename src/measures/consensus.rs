@@ -46,6 +46,11 @@ impl RaterConsensus {
         self.raters.join("+")
     }
 
+    /// The first of the two raters who has coded no error: without codes of both, there is nothing to settle.
+    pub fn without_codes(&self, codes: [&RaterCodes; 2]) -> Option<&str> {
+        self.raters.iter().zip(codes).find(|(_, codes)| codes.0.is_empty()).map(|(rater, _)| rater.as_str())
+    }
+
     /// Adds the errors that both raters coded alike.
     pub fn with_agreed(mut self, codes: [&RaterCodes; 2]) -> RaterConsensus {
         for (press, code) in codes[0].agreed(codes[1]).0 {

@@ -5,11 +5,14 @@
 //! and the excess is at most 2 (preparation of one order at some cost of the other), or the press may have been
 //! overtaken by the robot (a race). Where no press of the human helps, the least regret is 1 and the excess is counted
 //! from 1. An ineffective press is judged like any other press.
+//!
+//! Costs to go are proven to be the least ([`CostToGo::proven_all_orders`]), as far as a budget of searched states for each
+//! press suffices. A verdict that rests on a value that is not proven says so.
 
 use std::sync::Arc;
 
 use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::cost_to_go::{CostToGo, ProofBudget, ProvenCost};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, KitchenChange, Press, State};
 
@@ -31,6 +34,8 @@ pub struct PressVerdict {
     pub race: bool,
     /// Whether the press counts as an error.
     pub error: bool,
+    /// Whether all costs to go on which the verdict rests are proven to be the least.
+    pub is_proven: bool,
 }
 
 /// Judges presses of the human; stores when somebody else last changed each location.
@@ -75,29 +80,33 @@ impl PressJudge {
     pub fn human_pressed(&self, cost: &mut CostToGo, now: SessionTime, press: &Press) -> PressVerdict {
         let (kitchen, &Press { button, before, after, .. }) = (&self.kitchen, press);
         let recipes = kitchen.true_recipes();
-        let here = cost.all_orders(before, &recipes) as i32;
+        let (mut budget, mut is_proven) = (ProofBudget::default(), true);
+        let mut presses = |found: ProvenCost| {
+            is_proven &= found.is_proven;
+            found.presses as i32
+        };
+        let here = presses(cost.proven_all_orders(before, &recipes, &mut budget));
         let mut regret_to = |state: State| match state == before {
             true => 1,
-            false => 1 + cost.all_orders(state, &recipes) as i32 - here,
+            false => 1 + presses(cost.proven_all_orders(state, &recipes, &mut budget)) - here,
         };
         let regret = regret_to(after);
-        let presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
-        let least = presses
-            .filter_map(|press| kitchen.press(before, &recipes, Agent::Human, press))
+        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let least = buttons
+            .filter_map(|button| kitchen.press(before, &recipes, Agent::Human, button))
             .map(&mut regret_to)
             .fold(1, i32::min);
         let excess = regret - least;
         let race = self.is_race(now, button);
         let mut nearer = || {
-            let costs =
-                |cost: &mut CostToGo, order| (cost.order(after, &recipes, order), cost.order(before, &recipes, order));
             kitchen.wanted(before).any(|(order, _)| {
-                let (then, now) = costs(cost, order);
+                let [then, now] =
+                    [after, before].map(|state| presses(cost.proven_order(state, &recipes, order, &mut budget)));
                 then < now
             })
         };
         let error = !race && excess >= 1 && !(excess <= PREPARATION_EXCESS && nearer());
-        PressVerdict { regret, excess, race, error }
+        PressVerdict { regret, excess, race, error, is_proven }
     }
 
     /// Whether somebody else changed a place where this button acts within [`RACE_S`] before now.

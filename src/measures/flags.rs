@@ -6,9 +6,10 @@
 //! false flag is a flag on an aspect that is believed right. There is one threshold for locations and one for recipes.
 //! The chosen thresholds detect most episodes with at most [`MOST_FALSE_FLAGS`], and with aspects flagged at most
 //! [`MOST_WRONGLY_FLAGGED`] of the time while the aspects are believed right; among equal thresholds, those with the
-//! fewest false flags are chosen. Thresholds are evaluated on other trials than those on which the thresholds were
-//! chosen: on the trials that are named, else by cross-fitting, in which every second trial is evaluated with the
-//! thresholds of the other trials, and the counts are added.
+//! fewest false flags are chosen. Thresholds are evaluated on trials of other participants than those on whose trials the
+//! thresholds were chosen: given thresholds on the trials that are named, else by cross-fitting, in which the trials of each
+//! half of the participants are evaluated with the thresholds of the other half, and the counts are added. A participant's
+//! trials are never in both halves, since the same person errs alike in all of them.
 
 use serde::Serialize;
 
@@ -36,16 +37,25 @@ pub struct FlagThresholds {
     pub recipes: f64,
 }
 
+/// How flag thresholds are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ThresholdChoice<'a> {
+    /// These thresholds, which were chosen on recordings of other participants.
+    Given(FlagThresholds),
+    /// By cross-fitting; holds the index of the participant of each trial.
+    CrossFitted(&'a [usize]),
+}
+
 /// The trials on which flag thresholds were chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThresholdSource {
     /// Thresholds were chosen on other recordings than the evaluated ones.
     OtherRecordings,
-    /// Cross-fitting: each half of the trials is evaluated with the thresholds of the other half.
+    /// Cross-fitting: the trials of each half of the participants are evaluated with the thresholds of the other half.
     OtherHalf,
-    /// The only trial, on which the thresholds are evaluated, too: the detection rates are then too optimistic.
-    SameTrial,
+    /// Thresholds were chosen on the trials of the only participant, and are not evaluated: no other participant is there.
+    OneParticipant,
 }
 
 /// Detections and false alarms of flags on aspects that are probably believed wrong.
@@ -59,7 +69,7 @@ pub struct FlagPerformance {
     pub false_flags_per_20_actions: Option<f64>,
     /// Share of (press, aspect) pairs with a right belief that were flagged.
     pub wrongly_flagged: Option<f64>,
-    /// The flag thresholds; with [`ThresholdSource::OtherHalf`] the thresholds that all trials together would give.
+    /// The flag thresholds; with [`ThresholdSource::OtherHalf`] the thresholds that all trials together give.
     pub thresholds: Option<FlagThresholds>,
     /// The trials on which the thresholds were chosen.
     pub thresholds_from: Option<ThresholdSource>,
@@ -99,29 +109,33 @@ struct FlagCounts {
 }
 
 impl FlagPerformance {
-    /// Evaluates flags on trials, with these thresholds from other recordings, or, without given thresholds, with
-    /// thresholds that are chosen by cross-fitting.
-    pub fn from_trials(
-        trials: &[TrialBeliefs],
-        groups: &AspectGroups,
-        thresholds: Option<FlagThresholds>,
-    ) -> FlagPerformance {
+    /// Evaluates flags on trials, with thresholds that are chosen in this way. With one participant, the rates of
+    /// cross-fitted thresholds are `None`.
+    pub fn from_trials(trials: &[TrialBeliefs], groups: &AspectGroups, choice: ThresholdChoice) -> FlagPerformance {
         let all: Vec<&TrialBeliefs> = trials.iter().collect();
         if !is_known(&all) {
             return FlagPerformance::default();
         }
-        let half = |parity: usize| -> Vec<&TrialBeliefs> { trials.iter().skip(parity).step_by(2).collect() };
-        let halves = [half(0), half(1)];
-        let of_all = thresholds.unwrap_or_else(|| best_thresholds(&all, groups));
-        let (counts, from) = match thresholds {
-            Some(_) => (FlagCounts::from_trials(&all, groups, of_all), ThresholdSource::OtherRecordings),
-            None if halves.iter().all(|half| is_known(half)) => {
+        let (thresholds, counts, from) = match choice {
+            ThresholdChoice::Given(thresholds) => {
+                let counts = FlagCounts::from_trials(&all, groups, thresholds);
+                (thresholds, counts, ThresholdSource::OtherRecordings)
+            }
+            ThresholdChoice::CrossFitted(participants) => {
+                let thresholds = best_thresholds(&all, groups);
+                let Some(halves) = halves(trials, participants) else {
+                    return FlagPerformance {
+                        episodes: Some(FlagCounts::from_trials(&all, groups, thresholds).episodes as u64),
+                        thresholds: Some(thresholds),
+                        thresholds_from: Some(ThresholdSource::OneParticipant),
+                        ..FlagPerformance::default()
+                    };
+                };
                 let counts = [0, 1].map(|one| {
                     FlagCounts::from_trials(&halves[one], groups, best_thresholds(&halves[1 - one], groups))
                 });
-                (counts[0].plus(counts[1]), ThresholdSource::OtherHalf)
+                (thresholds, counts[0].plus(counts[1]), ThresholdSource::OtherHalf)
             }
-            None => (FlagCounts::from_trials(&all, groups, of_all), ThresholdSource::SameTrial),
         };
         let share = |part: usize, all: usize| (all > 0).then(|| part as f64 / all as f64);
         FlagPerformance {
@@ -129,7 +143,7 @@ impl FlagPerformance {
             flagged_before_third_error: share(counts.caught, counts.episodes),
             false_flags_per_20_actions: share(counts.false_flags, counts.presses).map(|rate| PER_PRESSES * rate),
             wrongly_flagged: share(counts.wrongly, counts.right),
-            thresholds: Some(of_all),
+            thresholds: Some(thresholds),
             thresholds_from: Some(from),
         }
     }
@@ -159,6 +173,20 @@ impl FlagCounts {
             right: self.right + other.right,
         }
     }
+}
+
+/// The trials with presses in two halves of the participants, of whom every second one is in the other half; `None` with
+/// fewer than two participants.
+fn halves<'a>(trials: &'a [TrialBeliefs], participants: &[usize]) -> Option<[Vec<&'a TrialBeliefs>; 2]> {
+    let with_presses = || trials.iter().zip(participants).filter(|(trial, _)| !trial.is_empty());
+    let mut there: Vec<usize> = with_presses().map(|(_, &participant)| participant).collect();
+    there.sort_unstable();
+    there.dedup();
+    let half = |parity: usize| -> Vec<&TrialBeliefs> {
+        let is_in = |participant: usize| there.binary_search(&participant).is_ok_and(|rank| rank % 2 == parity);
+        with_presses().filter(|&(_, &participant)| is_in(participant)).map(|(trial, _)| trial).collect()
+    };
+    (there.len() >= 2).then(|| [half(0), half(1)])
 }
 
 /// Whether beliefs and estimates are known before every press of the trials; false without presses.

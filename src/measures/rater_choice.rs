@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::cause_codes::RaterCodes;
 
 /// Two raters with their codes of one recording. The raters are in alphabetical order, which has no meaning.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RaterPair {
     /// The names of the raters.
     pub raters: [String; 2],
@@ -36,6 +38,18 @@ impl RaterPair {
         raters.sort();
         let codes = raters.each_ref().map(|rater| all.get(rater).cloned().unwrap_or_default());
         RaterPair { raters, codes }
+    }
+
+    /// Name of the pair of raters in tables: "R1+R2".
+    pub fn name(&self) -> String {
+        self.raters.join("+")
+    }
+
+    /// Whether both raters gave the same codes to all of this many errors: then one file may be a copy of the other.
+    pub fn is_identical(&self, errors: usize) -> bool {
+        let [one, other] = &self.codes;
+        // One error that both coded alike says nothing.
+        errors > 1 && one.0.len() == errors && one == other
     }
 }
 

@@ -99,12 +99,12 @@ pub fn decide(
         return PolicyDecision::Idle(IdleReason::NoOrder);
     }
     let recipes = kitchen.true_recipes();
-    let all = best_presses(kitchen, cost, Fidelity::Exact, state, &recipes);
+    let all = best_presses(kitchen, cost, Fidelity::Searched, state, &recipes);
     let best: Vec<ButtonId> = all.iter().copied().filter(|button| !skipped.contains(button)).collect();
     if best.len() < all.len() && best.is_empty() {
         return PolicyDecision::Idle(IdleReason::Skipped);
     }
-    match chosen(kitchen, cost, Fidelity::Exact, state, &recipes, best)[..] {
+    match chosen(kitchen, cost, Fidelity::Searched, state, &recipes, best)[..] {
         [] => PolicyDecision::Idle(IdleReason::HumanTurn),
         // A press that throws a content away is never a random choice, so no random number is drawn.
         [only] if kitchen.button(Agent::Robot, only).action == ButtonAction::Trash => PolicyDecision::Press(only),

@@ -1,10 +1,9 @@
 //! Command `tomcom replay RECORDING... --accuracy`: reads recordings and runs the planners for
 //! [`crate::analysis::planner_accuracy`].
 
-use std::path::PathBuf;
-
+use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck};
 use super::timing::monotonic_ns;
 use crate::analysis::planner_accuracy::{
     ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests, ThreadPlanner,
@@ -25,13 +24,12 @@ pub struct AccuracyStepCounts {
 /// # Errors
 /// A recording cannot be read or replayed, or the recordings are of different kitchens.
 pub fn measure(
-    recordings: &[PathBuf],
+    recordings: &GatheredRecordings,
     extent: AccuracyStepCounts,
     done: impl Fn() + Sync,
 ) -> FileResult<PlannerAccuracySummary> {
-    each_once(recordings)?;
     let (mut one_kitchen, mut asked) = (SameKitchenCheck::default(), Vec::new());
-    for recording in recordings {
+    for recording in &recordings.paths {
         let mut replay = RecordingReplay::open(recording)?;
         one_kitchen.admit(recording, &replay.session().kitchen)?;
         asked.push(ask(&mut replay)?);
@@ -44,7 +42,7 @@ pub fn measure(
     Ok(bench.summary(&steps))
 }
 
-/// The requests for advice that the assistant gets after the presses of a recording.
+/// The requests for advice that the assistant gets in a recording.
 fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
     let session = replay.log().session();
     let mut questions = Vec::new();

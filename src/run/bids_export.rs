@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::gathered::GatheredRecordings;
 use super::kept_cost::KeptCost;
 use super::{consents, standing};
 use crate::analysis::bids::{
-    BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
-    RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
+    BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, LongTable, LongTableFacts, PressOutcome,
+    QuestionnairePhenotypes, RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
+use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
 use crate::edge::file_error::{FileError, FileResult};
@@ -21,14 +23,17 @@ use crate::session::event::Event;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::{LogHeader, apply};
+use crate::study::planned_trial::{RecordingCopy, copies_in_words};
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
     /// Folder of the BIDS data set.
-    pub folder: PathBuf,
+    pub folder: PathText,
     /// Participants' codes that are no valid BIDS labels, each with the label that replaces the code.
     pub changed_codes: Vec<(String, String)>,
+    /// Recordings that are copies of others, and are not exported.
+    pub copies: Vec<RecordingCopy>,
     /// The exported recordings with their places in the data set.
     pub recordings: Vec<BidsRecording>,
     /// Number of exported tables with answers to questionnaires.
@@ -41,7 +46,7 @@ pub struct BidsSummary {
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsRecording {
     /// Folder of the recording.
-    pub recording: PathBuf,
+    pub recording: PathText,
     /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
     /// Numbers of rows in the recording's BIDS tables.
@@ -62,8 +67,9 @@ struct Planned {
 /// # Errors
 /// A recording cannot be read or is still being written, or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
-    let named = recordings.iter().map(|path| Ok((path.clone(), header(path)?))).collect::<FileResult<Vec<_>>>()?;
-    let whole = without_parts(named);
+    let GatheredRecordings { paths, copies } = GatheredRecordings::find(recordings)?;
+    let whole =
+        paths.into_iter().map(|path| header(&path).map(|header| (path, header))).collect::<FileResult<Vec<_>>>()?;
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
@@ -71,15 +77,9 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let mut sessions: BTreeMap<String, Vec<BidsSessionRow>> = BTreeMap::new();
     let mut told = Vec::new();
     for one in &planned {
-        let (files, row, counts) = read(one, with_words, &mut cost, &mut phenotypes)?;
-        let task = letters_and_digits(&row.1);
-        let (sub, ses) = (format!("sub-{}", one.label), format!("ses-{}", one.session));
-        let place = format!("{sub}/{ses}/beh/{sub}_{ses}_task-{task}");
-        for file in files {
-            tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
-        }
-        sessions.entry(one.label.clone()).or_default().push(row.0);
-        told.push(BidsRecording { recording: one.recording.clone(), place, rows: counts });
+        let (row, recording) = read(one, with_words, &mut cost, &mut phenotypes, &tree)?;
+        sessions.entry(one.label.clone()).or_default().push(row);
+        told.push(recording);
         done();
     }
     for (label, rows) in &sessions {
@@ -92,8 +92,9 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let root = dataset_files(&plans, &participants(&planned)?, with_words);
     asked.iter().chain(&root).try_for_each(|file| tree.write(file))?;
     Ok(BidsSummary {
-        folder: folder.to_path_buf(),
+        folder: folder.to_path_buf().into(),
         changed_codes: labels.changed(),
+        copies,
         recordings: told,
         questionnaires: asked.len() / 2,
         words: with_words,
@@ -108,19 +109,6 @@ fn header(recording: &Path) -> FileResult<LogHeader> {
         return Err(FileError::from_finding(recording, "a recording that is still being written".to_string(), remedy));
     }
     Ok(log.header)
-}
-
-/// The recordings, each once, without parts that another recording continues: a later part is read together with all
-/// its earlier parts.
-fn without_parts(named: Vec<(PathBuf, LogHeader)>) -> Vec<(PathBuf, LogHeader)> {
-    let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-    let before = |(path, header): &(PathBuf, LogHeader)| {
-        let folder = if path.is_dir() { place(path) } else { place(path).parent()?.to_path_buf() };
-        Some(folder.parent()?.join(&header.continues.as_ref()?.recording))
-    };
-    let continued: Vec<PathBuf> = named.iter().filter_map(before).collect();
-    let mut seen = BTreeSet::new();
-    named.into_iter().filter(|(path, _)| !continued.contains(&place(path)) && seen.insert(place(path))).collect()
 }
 
 /// Places of the recordings in the data set: by the participant's label, then by plan, date and name of the recording.
@@ -139,18 +127,26 @@ fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabelMap) -> Vec<Plan
     all.into_iter().map(place).collect()
 }
 
-/// Reads a recording: its files, its row of the table of sessions (with the kitchen's name), and its numbers of rows.
+/// Reads a recording and writes its files. Returns its row of the table of sessions.
 fn read(
     one: &Planned,
     with_words: bool,
     cost: &mut KeptCost,
     phenotypes: &mut QuestionnairePhenotypes,
-) -> FileResult<(Vec<BidsFile>, (BidsSessionRow, String), BidsRowCounts)> {
+    tree: &BidsTree,
+) -> FileResult<(BidsSessionRow, BidsRecording)> {
     let mut log = LogReader::open(&one.recording)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
     let cost = cost.for_kitchen(&kitchen);
     let (mut judge, mut tables) = (PressJudge::new(kitchen.clone()), RecordingTables::new(&session, with_words));
+    let (sub, ses) = (format!("sub-{}", one.label), format!("ses-{}", one.session));
+    let place = format!("{sub}/{ses}/beh/{sub}_{ses}_task-{}", letters_and_digits(&kitchen.name));
+    let begin = |table: LongTable| {
+        let (name, heading) = tables.long_table(table);
+        Ok((table, tree.begin(&format!("{place}_{name}"), heading)?))
+    };
+    let mut long = LongTable::ALL.into_iter().map(begin).collect::<FileResult<Vec<_>>>()?;
     while let Some(line) = log.next_line()? {
         let change = apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?.change;
         let error = judge.note(cost, line.stamped.time, &change).map(|verdict| verdict.error);
@@ -163,6 +159,11 @@ fn read(
             _ => None,
         };
         tables.note(&line.stamped, &session, outcome);
+        for row in tables.take_rows() {
+            if let Some((_, file)) = long.iter_mut().find(|(table, _)| *table == row.table) {
+                file.add(row)?;
+            }
+        }
         if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
             phenotypes.note(&one.label, &one.session, &session);
         }
@@ -172,8 +173,15 @@ fn read(
     let name = one.recording.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let labels = (one.session.as_str(), name.as_str());
     let row = BidsSessionRow::new(labels, &one.header, &session, tables.ended(), [is_complete, counts]);
-    let (files, rows) = tables.into_files(&session);
-    Ok((files, (row, kitchen.name.clone()), rows))
+    let mut facts = [LongTableFacts::default(); 3];
+    for (facts, (_, file)) in facts.iter_mut().zip(long) {
+        *facts = file.finish()?;
+    }
+    let (files, rows) = tables.into_files(&session, &facts);
+    for file in files {
+        tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
+    }
+    Ok((row, BidsRecording { recording: one.recording.clone().into(), place, rows }))
 }
 
 fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
@@ -221,6 +229,7 @@ pub fn describe(summary: &BidsSummary) -> String {
         )
     };
     let changed: String = changed.map(line).collect();
+    let copies = copies_in_words(&summary.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     let left = rows(|rows| rows.words_left_out);
     let words = match left {
         0 => String::new(),
@@ -231,7 +240,7 @@ pub fn describe(summary: &BidsSummary) -> String {
     };
     format!(
         "{}: {}\n{recordings}rows: {} events, {} gaze samples, {} fixations and blinks, {} arm samples, {} beliefs; \
-         {}\n{changed}{words}",
+         {}\n{copies}{changed}{words}",
         summary.folder.display(),
         count(summary.recordings.len() as u64, "recording", "recordings"),
         rows(|rows| rows.events),

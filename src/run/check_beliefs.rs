@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_figures::ProbeSummary;
@@ -20,13 +21,24 @@ use crate::session::settings::ParticipantKind;
 /// each recording.
 ///
 /// # Errors
-/// A recording cannot be read or replayed; the recordings are of different kitchens; a recording is both checked and in
-/// `choose_on`; the beliefs in `choose_on` are not known.
-pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheck> {
-    let all: Vec<PathBuf> = recordings.iter().chain(choose_on).cloned().collect();
-    let BeliefCheckTrials { kitchen, mut trials, probes } = views(&all, done)?;
+/// A recording cannot be read or replayed; the recordings are of different kitchens; a recording, or a participant, is
+/// both checked and in `choose_on`; the beliefs in `choose_on` are not known.
+pub fn check(
+    recordings: &GatheredRecordings,
+    choose_on: &GatheredRecordings,
+    done: impl Fn() + Sync,
+) -> FileResult<BeliefCheck> {
+    let all = recordings.beside(choose_on)?;
+    let recordings = &recordings.paths;
+    let BeliefCheckTrials { kitchen, mut trials, mut participants, probes } = views(&all, done)?;
     let other = trials.split_off(recordings.len());
-    let thresholds = match choose_on.first() {
+    let others = participants.split_off(recordings.len());
+    if let Some((code, recording)) = others.iter().zip(&choose_on.paths).find(|(code, _)| participants.contains(code)) {
+        let found = format!("a recording of {code}, of whom a recording is checked, too");
+        let remedy = "--choose-on with recordings of other participants".to_string();
+        return Err(FileError::from_finding(recording, found, remedy));
+    }
+    let thresholds = match choose_on.paths.first() {
         None => None,
         Some(first) => Some(chosen_thresholds(&other, &aspect_groups(&kitchen)).ok_or_else(|| {
             let found =
@@ -34,13 +46,10 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
             FileError::from_finding(first, found, "recordings of simulated participants".to_string())
         })?),
     };
-    let checked = probes[..recordings.len()].iter().flatten();
-    let probes = ProbeSummary::from_trials(checked.map(|(participant, probed)| (participant.as_str(), probed)));
-    Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds, probes))
+    let checked = participants.iter().zip(&probes).filter_map(|(code, probed)| Some((code.as_str(), probed.as_ref()?)));
+    let probes = ProbeSummary::from_trials(checked);
+    Ok(BeliefCheck::from_trials(&kitchen, &trials, &participants, thresholds, probes))
 }
-
-/// Code of a participant, with the freeze probes of one of their trials.
-pub type ProbedParticipant = (String, ProbedTrial);
 
 /// Trials of one kitchen whose belief estimates are checked.
 #[derive(Clone, Debug)]
@@ -49,29 +58,40 @@ pub struct BeliefCheckTrials {
     pub kitchen: Arc<Kitchen>,
     /// The trials' presses with estimates, in the order of the recordings.
     pub trials: Vec<TrialBeliefs>,
-    /// Freeze probes of each trial, with the participant's code; `None` for trials without probes.
-    pub probes: Vec<Option<ProbedParticipant>>,
+    /// Code of the participant of each trial, with the seed in front if the participant is simulated.
+    pub participants: Vec<String>,
+    /// Freeze probes of each trial; `None` for trials without probes.
+    pub probes: Vec<Option<ProbedTrial>>,
 }
 
 /// Replays recordings on all processors and collects their presses. `done` is called after each recording.
 ///
 /// # Errors
 /// The same errors as those of [`check`].
-pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
-    each_once(recordings)?;
+fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     let results = parallel::each(recordings, |recording| view(recording), done);
-    let (mut one_kitchen, mut trials, mut probes) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
+    let (mut trials, mut participants, mut probes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut one_kitchen = SameKitchenCheck::default();
     for (result, recording) in results.into_iter().zip(recordings) {
-        let (kitchen, trial, probed) = result?;
+        let RecordingView { kitchen, trial, participant, probed } = result?;
         one_kitchen.admit(recording, &kitchen)?;
         trials.push(trial);
+        participants.push(participant);
         probes.push(probed);
     }
-    Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, probes })
+    Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, participants, probes })
+}
+
+/// What the check takes from one recording.
+struct RecordingView {
+    kitchen: Arc<Kitchen>,
+    trial: TrialBeliefs,
+    participant: String,
+    probed: Option<ProbedTrial>,
 }
 
 /// The presses with estimates, and the freeze probes, of one recording.
-fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialBeliefs, Option<ProbedParticipant>)> {
+fn view(recording: &Path) -> FileResult<RecordingView> {
     let mut replay = RecordingReplay::open(recording)?;
     let mut probes = ProbeCollector::default();
     let mut views = TrialBeliefCollector::default();
@@ -91,5 +111,5 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialBeliefs, Option<Prob
         _ => spec.participant.code.clone(),
     };
     let probed = Some(probes.finish(session)).filter(ProbedTrial::is_any);
-    Ok((session.kitchen.clone(), views.trial, probed.map(|probed| (participant, probed))))
+    Ok(RecordingView { kitchen: session.kitchen.clone(), trial: views.trial, participant, probed })
 }

@@ -13,7 +13,9 @@ use crate::edge::log::{consensus_file, rater_codes};
 use crate::history::wording;
 use crate::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
 use crate::measures::consensus::{RaterConsensus, unsettled};
+use crate::measures::rater_choice::RaterPair;
 use crate::session::settings::ParticipantKind;
+use crate::study::figures::IdenticalCodes;
 
 /// A recording with raters' codes of its errors.
 #[derive(Clone, Debug)]
@@ -78,6 +80,18 @@ impl CodedRecording {
     pub fn current(&self, consensus: &RaterConsensus) -> RaterCodes {
         let none = RaterCodes::default();
         consensus.current(consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none)))
+    }
+
+    /// Pairs of raters who gave the same codes to all errors.
+    fn identical(&self) -> Vec<IdenticalCodes> {
+        let (raters, errors) = (self.codes.keys(), self.codable.errors.len());
+        let pairs = raters.clone().enumerate().flat_map(|(index, one)| {
+            raters.clone().skip(index + 1).map(|other| RaterPair::named(&self.codes, &[one.clone(), other.clone()]))
+        });
+        let identical = pairs.filter(|pair| pair.is_identical(errors));
+        let told =
+            |pair: RaterPair| IdenticalCodes { recording: self.name(), raters: pair.name(), errors: errors as u64 };
+        identical.map(told).collect()
     }
 
     fn settled(&self) -> Option<ConsensusSummary> {
@@ -153,6 +167,9 @@ pub struct CodedRecordingSummary {
     pub coded: BTreeMap<String, u64>,
     /// Consensus of two raters; null without one.
     pub consensus: Option<ConsensusSummary>,
+    /// Pairs of raters ("R1+R2") who gave the same codes to all errors; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub identical: Vec<IdenticalCodes>,
 }
 
 /// Consensus of two raters about a recording's errors.
@@ -249,6 +266,7 @@ impl InterRaterSummary {
             errors: one.codable.errors.len() as u64,
             coded: one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect(),
             consensus: one.settled(),
+            identical: one.identical(),
         };
         let pair = |(of, with): (String, String), table: AgreementTable| RaterPairSummary {
             of,
@@ -280,6 +298,9 @@ pub fn describe(figures: &InterRaterSummary) -> String {
         };
         text += &format!("{}: {}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
         text += &one.consensus.as_ref().map_or(String::new(), describe_consensus);
+        for identical in &one.identical {
+            text += &format!("  {}\n", identical.in_words());
+        }
     }
     let number = |value: Option<f64>| decimal(value, 2);
     for pair in figures.agreements.iter().chain(&figures.known) {

@@ -8,6 +8,7 @@ use crate::edge::file_error::FileError;
 use crate::edge::log::{RecordingWriteError, consensus_file, rater_codes};
 use crate::measures::cause_codes::{CodableErrors, RaterCodes};
 use crate::measures::consensus::{RaterConsensus, unsettled};
+use crate::session::person_code;
 
 /// The coding session of one rater, with the codes that the rater gave earlier.
 ///
@@ -17,6 +18,11 @@ pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSessio
     let follower = &film.replay.follower;
     let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
     let mut all = rater_codes::read_all(film.replay.log().folder(), &codable)?;
+    if let Some(other) = person_code::differing_in_case(rater, all.keys().map(String::as_str)) {
+        let found = format!("the rater {rater}, beside codes of the rater {other}");
+        let remedy = format!("--rater {other}, or a code that differs in more than capital letters");
+        return Err(FileError::from_finding(film.replay.log().folder(), found, remedy).into());
+    }
     let codes = all.remove(rater).unwrap_or_default();
     let party = CodingRaters::Rater(rater.to_string());
     let mut session = RaterSession::new(party, ListedError::all(follower), codes);

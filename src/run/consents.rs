@@ -15,13 +15,13 @@ use crate::study::recorded_consent::RecordedConsent;
 /// The recording cannot be read.
 pub(super) fn read(recording: &Path) -> FileResult<Option<RecordedConsent>> {
     let mut log = LogReader::open(recording)?;
+    let participant = log.header.session.participant.code.clone();
     if let [first, _, ..] = &log.logs()[..] {
         log = LogReader::open(first)?;
     }
     while let Some(line) = log.next_line()? {
         match line.stamped.event {
             Event::Protocol(ProtocolEvent::ConsentGiven { on, digest, .. }) => {
-                let participant = log.header.session.participant.code.clone();
                 return Ok(Some(RecordedConsent { participant, on, started: log.header.started.clone(), digest }));
             }
             // Consent is given before the first phase of the recording, or not at all.

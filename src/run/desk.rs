@@ -21,9 +21,8 @@ use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::gaze_json;
 use crate::edge::lsl::{self, InletThreadGuard, LslError};
 use crate::edge::pupil::{self, CaptureConfiguration, CaptureRequest};
-use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
-use crate::gaze::surface::SurfaceHomography;
-use crate::gaze::tags::{DisplayTags, TagError};
+use crate::edge::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, theme};
+use crate::edge::terminal_input::TerminalInput;
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::accuracy_check::AcceptedGazeCheck;
@@ -44,7 +43,7 @@ mod lsl_desk;
 
 use lsl_desk::LslDesk;
 use wall::WallDisplay;
-pub(super) use wall::{PageInput, is_consent};
+pub(super) use wall::{PageInput, hear_consent};
 
 /// Terminal and devices that all recordings of a series share.
 pub(super) struct OperatorDesk {
@@ -78,6 +77,8 @@ pub(super) struct GazeTracker {
     link: Option<TrackerMessage>,
     sees_display: Option<TrackerMessage>,
     other_surfaces: Option<TrackerMessage>,
+    several_streams: Option<TrackerMessage>,
+    stamps: Option<TrackerMessage>,
     /// Last gaze accuracy check that the wizard accepted.
     calibrated: Option<AcceptedGazeCheck>,
 }
@@ -115,7 +116,8 @@ impl OperatorDesk {
     pub fn without_devices(console: &ConsoleSpec) -> Result<OperatorDesk, TerminalError> {
         let screen = TerminalScreen::take().map_err(TerminalError)?;
         let theme = theme(console, screen.ground);
-        let seat = OperatorInput { hands: TerminalInput::default(), end: Box::pin(asked_to_end()) };
+        let hands = TerminalInput::start().map_err(TerminalError)?;
+        let seat = OperatorInput { hands, end: Box::pin(asked_to_end()) };
         let (tracker, wall, lsl) = (GazeTracker::default(), WallDisplay::default(), LslDesk::default());
         Ok(OperatorDesk { screen, theme, seat, tracker, wall, lsl })
     }
@@ -136,13 +138,7 @@ impl OperatorInput {
 impl GazeTracker {
     async fn open(spec: &SessionSpec, kitchen: &Kitchen, desk: &LslDesk) -> Result<GazeTracker, LiveError> {
         let (participant, tracker) = (&spec.participant, &spec.tracker);
-        let surface = || {
-            let hull = || DisplayTags::place(kitchen).map(|tags| tags.hull()).map_err(LiveError::Tags);
-            let corners = tracker.corners.map_or_else(hull, Ok)?;
-            let found = format!("corners = {corners:?}");
-            let remedy = "a convex quadrangle".to_string();
-            SurfaceHomography::new(corners).ok_or(LiveError::Tags(TagError { found, remedy }))
-        };
+        let surface = || tracker.surface_map(kitchen).map_err(LiveError::Tags);
         match participant.gaze {
             GazeSource::Json => {
                 let at = SocketAddr::new(participant.gaze_listen, participant.gaze_port);
@@ -161,7 +157,7 @@ impl GazeTracker {
             }
             GazeSource::File => {
                 let path = tracker.file.as_deref().unwrap_or_default();
-                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker.file_start_s)?);
+                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker)?);
                 Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
             }
             GazeSource::Lsl => {
@@ -195,6 +191,8 @@ impl GazeTracker {
             }
             TrackerMessage::SeesDisplay(_) => (self.sees_display, self.other_surfaces) = (Some(news.clone()), None),
             TrackerMessage::OtherSurfaces(_) => self.other_surfaces = Some(news.clone()),
+            TrackerMessage::SeveralStreams(_) => self.several_streams = Some(news.clone()),
+            TrackerMessage::Stamps(_) => self.stamps = Some(news.clone()),
             _ => {}
         }
     }
@@ -202,6 +200,7 @@ impl GazeTracker {
     /// Messages with the tracker's present state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = TrackerMessage> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
+        let known = known.chain(&self.several_streams).chain(&self.stamps);
         known.cloned().collect::<Vec<_>>().into_iter()
     }
 

@@ -32,7 +32,7 @@ const WATCH: Duration = Duration::from_millis(250);
 pub(super) enum LoopEvent {
     /// The program has to end: a termination signal arrived, or the terminal was closed.
     EndRequest,
-    /// An input from the terminal: key, mouse, new size or focus.
+    /// An input from the terminal: key, mouse, pasted text, new size or focus.
     Terminal(ConsoleMessage),
     /// An internal event of the session is due.
     EngineDue,
@@ -77,8 +77,8 @@ impl Default for ShellDeadlines {
 /// Content that a console's shell wants to be shown.
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
-    /// A question to the wizard before a recording.
-    Question(&'a StartQuestion, Theme),
+    /// A question to the wizard before a recording, with a notice below it.
+    Question(&'a StartQuestion, Option<&'static str>, Theme),
     /// A list of recordings to choose from.
     Recordings(&'a RecordingPicker, Theme),
 }
@@ -201,7 +201,7 @@ fn draw<S: ConsoleShell>(shell: &mut S, screen: &mut TerminalScreen) -> Result<(
     shell.prepare();
     let drawn = match shell.view() {
         ShellView::Console(session, model) => screen.draw(session, model),
-        ShellView::Question(question, theme) => screen.ask(question, theme),
+        ShellView::Question(question, notice, theme) => screen.ask(question, notice, theme),
         ShellView::Recordings(picker, theme) => screen.list(picker, theme),
     };
     drawn.map_err(TerminalError)?;

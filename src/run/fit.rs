@@ -4,8 +4,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::gathered::GatheredRecordings;
 use super::parallel::WorkerPool;
-use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::fitting::fitted_answers::IntervalNarrowing;
 use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings};
 use crate::edge::file_error::{FileError, FileResult};
@@ -41,8 +42,8 @@ impl FitTrials {
     /// # Errors
     /// A recording cannot be read or replayed; the recordings are of different kitchens; there are no answers although
     /// `probes` asks for them.
-    pub fn read(recordings: &[PathBuf], probes: bool) -> FileResult<FitTrials> {
-        each_once(recordings)?;
+    pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
+        let recordings = &recordings.paths;
         let (mut one_kitchen, mut observations, mut models) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
         let mut people = Vec::new();
         for recording in recordings {

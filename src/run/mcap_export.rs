@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::foxglove::McapMessageConverter;
+use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogEnding, LogReader};
@@ -20,7 +21,7 @@ use crate::session::study_arm::StudyArm;
 #[derive(Clone, Debug, Serialize)]
 pub struct McapSummary {
     /// Path of the recording's MCAP file.
-    pub file: PathBuf,
+    pub file: PathText,
     /// Number of messages in each channel of the MCAP file.
     pub messages: BTreeMap<&'static str, u32>,
 }
@@ -60,7 +61,7 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
     }
     let about = about(&folder, &log.header, follower.session.study_arm());
     let (file, messages) = file.finish(about).map_err(unwritable)?;
-    Ok(McapSummary { file, messages })
+    Ok(McapSummary { file: file.into(), messages })
 }
 
 /// Metadata of the recording in the MCAP file. `arm`: study arm as it was carried out. Times in the file are session

@@ -27,6 +27,8 @@ mod event_loop;
 pub mod fit;
 #[cfg(feature = "cli")]
 pub mod fit_people;
+#[cfg(feature = "cli")]
+pub mod gathered;
 pub mod headless;
 #[cfg(feature = "cli")]
 pub mod kept_cost;

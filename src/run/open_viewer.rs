@@ -1,22 +1,23 @@
 //! Command `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from
 //! the log.
 
-use std::fs;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+use tempfile::TempPath;
 
 use super::replay::RecordingReplay;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
 use crate::edge::overwrite;
+use crate::edge::replace_file::Replacement;
 use crate::edge::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
 use crate::edge::stream::{PORTS, is_free};
 use crate::edge::stream_head;
-use crate::edge::temporary::new_file;
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, ViewerAvailability};
 use crate::mind::dirichlet::DirichletBelief;
@@ -31,8 +32,6 @@ const WEB_PORT: u16 = 9090;
 const LOOK: Duration = Duration::from_millis(50);
 /// Largest number of characters that recordings' names take in the name of a temporary stream file.
 const NAMED: usize = 50;
-/// Ending of the name of a stream file while it is being written.
-const BEGUN: &str = ".new";
 
 /// Error of showing recordings in the Rerun viewer.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -239,7 +238,7 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
 
 /// The stream file of these recordings: the existing file if it is up to date, else a file rebuilt from the logs.
 fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, RerunViewerError> {
-    let (mut locked, mut because, mut logs) = (None, None, None);
+    let (mut locked, mut because, mut logs, mut temporary) = (None, None, None, None);
     let path = match (place, recordings) {
         (StreamPlace::File(place), _) => place.to_path_buf(),
         (_, [recording]) => {
@@ -261,10 +260,10 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
                 (Err(RecordingWriteError::Unwritable { path, reason, .. }), StreamPlace::BesideLog) => {
                     return Err(RerunViewerError::Unwritable { path, reason });
                 }
-                _ => elsewhere(recordings)?,
+                _ => temporary.insert(elsewhere(recordings)?).to_path_buf(),
             }
         }
-        (_, several) => elsewhere(several)?,
+        (_, several) => temporary.insert(elsewhere(several)?).to_path_buf(),
     };
     // Beside the log, a stream that is damaged is replaced, too.
     if locked.is_none() {
@@ -272,7 +271,8 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
     }
     let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
-    match sealed {
+    let kept = |()| temporary.map_or(Ok(()), |path| path.keep().map(drop).map_err(io::Error::from));
+    match sealed.and_then(kept) {
         Ok(()) => Ok(RerunStreamFile { path, made: true, because }),
         Err(reason) => Err(RerunViewerError::Unwritable { path, reason }),
     }
@@ -283,47 +283,33 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
 /// # Errors
 /// There is a file at the path that this program did not write.
 fn check_foreign(path: &Path) -> Result<(), RerunViewerError> {
-    for path in [path, &begun(path)] {
-        let is_own = |_: &[u8]| stream_head::identity(path).is_ok_and(|found| found.is_some());
-        if let Err(reason) = overwrite::check(path, "a stream", is_own) {
-            return Err(RerunViewerError::Unwritable { path: path.to_path_buf(), reason });
-        }
-    }
-    Ok(())
-}
-
-/// Path of a stream file while it is being written.
-fn begun(path: &Path) -> PathBuf {
-    let mut begun = path.as_os_str().to_os_string();
-    begun.push(BEGUN);
-    PathBuf::from(begun)
+    let is_own = |_: &[u8]| stream_head::identity(path).is_ok_and(|found| found.is_some());
+    overwrite::check(path, "a stream", is_own)
+        .map_err(|reason| RerunViewerError::Unwritable { path: path.to_path_buf(), reason })
 }
 
 /// Builds the stream file of these recordings. An existing stream file is replaced only when the new one is complete,
 /// so a damaged log does not destroy it.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewerError> {
-    let begun = begun(path);
-    let outlets = StreamOutlets { file: Some(begun.clone()), server: None, at: None };
-    let written = playing(recordings).map_err(RerunViewerError::from).and_then(|all| write(all, recordings, &outlets));
-    match written {
-        Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
-        failed => {
-            // A temporary file that cannot be removed does no harm.
-            let _ = fs::remove_file(&begun);
-            failed.map(|written| written.map(|_| ()))
-        }
-    }
+    let begun = match Replacement::begin(path) {
+        Ok(begun) => begun,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    let outlets = StreamOutlets { file: Some(begun.new_path().to_path_buf()), server: None, at: None };
+    let written = write(playing(recordings)?, recordings, &outlets)?;
+    Ok(written.and_then(|_| begun.finish()))
 }
 
-/// Creates an empty file for a stream in the system's folder for temporary files; returns its path.
-fn elsewhere(recordings: &[PathBuf]) -> Result<PathBuf, RerunViewerError> {
+/// Creates an empty file for a stream in the system's folder for temporary files, which only the user of the program can
+/// read. It is removed again if it is not kept.
+fn elsewhere(recordings: &[PathBuf]) -> Result<TempPath, RerunViewerError> {
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     // A file name has at most 255 bytes on most systems.
     let names: String = names.join("-and-").chars().take(NAMED).collect();
-    let (below, stem) = (std::env::temp_dir(), format!("tomcom-{names}-{}", std::process::id()));
-    let made = new_file(&below, &stem, &format!(".rrd{BEGUN}"));
-    let (begun, _) = made.map_err(|reason| RerunViewerError::Unwritable { path: below.join(stem), reason })?;
-    Ok(begun.with_extension(""))
+    let prefix = format!("tomcom-{names}-");
+    let made = tempfile::Builder::new().prefix(&prefix).suffix(".rrd").tempfile();
+    let path = std::env::temp_dir().join(prefix);
+    Ok(made.map_err(|reason| RerunViewerError::Unwritable { path, reason })?.into_temp_path())
 }
 
 fn name(recording: &Path) -> String {

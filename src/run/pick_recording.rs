@@ -86,6 +86,10 @@ impl ConsoleShell for OpenPicker {
                 self.picker.scroll(steps);
                 None
             }
+            ConsoleMessage::Paste(text) => {
+                self.picker.cursor.paste(&text.unwrap_or_default());
+                None
+            }
             _ => None,
         })
     }

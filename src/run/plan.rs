@@ -1,17 +1,18 @@
 //! Command `tomcom plan`: participants, groups, progress and next recordings of a study.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{slot_name, stands};
+use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::KitchenWithSources;
 use crate::edge::{frozen_file, recordings};
-use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study};
+use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
 use crate::study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
@@ -69,7 +70,7 @@ pub struct FrozenPlanSummary {
     /// Number of recordings of the plan that existed already.
     pub recordings_before: u64,
     /// Path of the frozen plan's file.
-    pub file: PathBuf,
+    pub file: PathText,
 }
 
 impl FrozenPlanSummary {
@@ -103,7 +104,7 @@ pub fn freeze(
     let recordings_before = steps.map(|step| step.recordings.len() as u64).sum();
     let frozen = FrozenPlan::new(study, [&kitchen.layout.text, &kitchen.recipes.text], recordings_before);
     let digest = frozen_file::freeze(file, &frozen)?;
-    Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf() })
+    Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf().into() })
 }
 
 /// Progress of the study as text for the terminal.
@@ -138,16 +139,31 @@ pub fn describe(figures: &StudyProgress) -> String {
 fn attempts(progress: &ParticipantProgress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {
+        let is_complete = |attempt: &&TrialAttempt| attempt.outcome == RecordingOutcome::Complete;
+        let complete: Vec<&str> =
+            stand.recordings.iter().filter(is_complete).map(|one| one.recording.as_str()).collect();
+        if let ([_, _, ..], Some(_)) = (&complete[..], stand.slot.period) {
+            let name = slot_name(progress, slot);
+            lines += &format!(
+                "      {name} is done in {}; one of them counts, so leave the others out: tomcom exclude\n",
+                complete.join(" and in ")
+            );
+        }
         for attempt in &stand.recordings {
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
+            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.name()));
+            let recorded = attempt.recorded_as.as_ref();
+            let corrected = recorded.map_or(String::new(), |code| format!(", recorded as {code}{arm}"));
             let how = match &attempt.outcome {
-                RecordingOutcome::Complete if attempt.other_version => "done",
+                RecordingOutcome::Complete if attempt.other_version || recorded.is_some() => "done",
                 RecordingOutcome::Complete => continue,
                 RecordingOutcome::Open => "open",
+                RecordingOutcome::Running => "being recorded",
                 RecordingOutcome::Excluded { reason } => &format!("excluded ({reason})"),
                 RecordingOutcome::Void { reason } => reason,
             };
-            lines += &format!("      {} in {}: {how}{version}\n", slot_name(progress, slot), attempt.recording);
+            lines +=
+                &format!("      {} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);
         }
     }
     lines

@@ -1,16 +1,18 @@
 //! Replays a recording: applies its events with the same [`apply`](crate::session::apply()) as the live session.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
+use crate::analysis::watcher::follows_at_once;
+use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader};
+use crate::edge::log::{LogLine, LogReader};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, KitchenChange};
-use crate::session::{Event, Session, TimestampedEvent};
+use crate::session::advice_moments::leads_to_advice;
+use crate::session::{Session, TimestampedEvent};
 
 /// A recording that is being replayed, with the session at the replay's present position.
 #[derive(Debug)]
@@ -19,6 +21,11 @@ pub struct RecordingReplay {
     /// The session up to the replay's present position, with what follows from its events: judged presses and the
     /// estimate.
     pub follower: SessionFollower,
+    /// A line that was read and is not applied yet.
+    held: Option<LogLine>,
+    /// The newest event after which the assistant is asked for advice: sequence number and time. The assistant is asked
+    /// once all immediate consequences of the event are applied.
+    to_ask: Option<(u64, SessionTime)>,
 }
 
 /// An event that a replay has just applied, with the change of the kitchen.
@@ -44,7 +51,7 @@ impl RecordingReplay {
     /// A replay of a log. The cost to go `cost` must be of the log's kitchen, and can come from another replay.
     pub fn over(log: LogReader, cost: CostToGo) -> RecordingReplay {
         let follower = SessionFollower::new(log.session(), cost);
-        RecordingReplay { log, follower }
+        RecordingReplay { log, follower, held: None, to_ask: None }
     }
 
     /// This replay without attribution of errors to causes, which takes long.
@@ -57,9 +64,23 @@ impl RecordingReplay {
     /// # Errors
     /// A line is not an event, or the event is not possible in the session's present state.
     pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
-        let Some(line) = self.log.next_line()? else { return Ok(None) };
-        let applied = self.follower.apply(&line.stamped).map_err(|error| self.log.refused(&line, error))?;
-        Ok(Some(ReplayedEvent { stamped: line.stamped, change: applied.change }))
+        let Some(line) = self.next_line()? else { return Ok(None) };
+        self.apply(&line).map(Some)
+    }
+
+    fn next_line(&mut self) -> FileResult<Option<LogLine>> {
+        match self.held.take() {
+            Some(line) => Ok(Some(line)),
+            None => self.log.next_line(),
+        }
+    }
+
+    fn apply(&mut self, line: &LogLine) -> FileResult<ReplayedEvent> {
+        let applied = self.follower.apply(&line.stamped).map_err(|error| self.log.refused(line, error))?;
+        if leads_to_advice(self.session(), &line.stamped.event) {
+            self.to_ask = Some((line.stamped.seq, line.stamped.time));
+        }
+        Ok(ReplayedEvent { stamped: line.stamped.clone(), change: applied.change })
     }
 
     /// Applies all remaining events.
@@ -71,23 +92,24 @@ impl RecordingReplay {
         Ok(())
     }
 
-    /// Replays up to the next request for advice after a press; `None` at the present end of the log.
+    /// Replays up to the next request for advice, which is made after the same events, and with the same immediate
+    /// consequences applied, as in the running session; `None` at the present end of the log.
     ///
     /// # Errors
     /// The errors of [`RecordingReplay::step`].
     pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
-        let mut pressed = None;
-        while let Some(ReplayedEvent { stamped, change }) = self.step()? {
-            if change.press().is_some() {
-                pressed = Some(stamped.seq);
+        loop {
+            let line = self.next_line()?;
+            let follows = |time: SessionTime| line.as_ref().is_some_and(|line| follows_at_once(&line.stamped, time));
+            if let Some((seq, time)) = self.to_ask.take_if(|(_, time)| !follows(*time))
+                && self.session().is_running()
+            {
+                self.held = line;
+                return Ok(Some(AdviceRequest::from_follower(&mut self.follower, seq, time)));
             }
-            // The request is made at the next gaze sample: by then the robot has chosen its next press, so that the
-            // request includes the robot's intent.
-            if let (Event::Gaze(_), Some(seq)) = (stamped.event, pressed) {
-                return Ok(Some(AdviceRequest::from_follower(&mut self.follower, seq, stamped.time)));
-            }
+            let Some(line) = line else { return Ok(None) };
+            self.apply(&line)?;
         }
-        Ok(None)
     }
 
     /// The session after the events that were replayed so far.
@@ -99,28 +121,6 @@ impl RecordingReplay {
     pub fn log(&self) -> &LogReader {
         &self.log
     }
-}
-
-/// Canonical path of a recording's log, the same for every path that leads to the recording.
-pub fn log_place(recording: &Path) -> PathBuf {
-    let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.to_path_buf() };
-    // A recording that does not exist is reported later, when the program opens it.
-    log.canonicalize().unwrap_or(log)
-}
-
-/// Checks that no recording is given twice.
-///
-/// # Errors
-/// A recording is given twice, perhaps by different paths.
-pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
-    let mut known = BTreeSet::new();
-    for recording in recordings {
-        if !known.insert(log_place(recording)) {
-            let remedy = "each recording once".to_string();
-            return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
-        }
-    }
-    Ok(())
 }
 
 /// Checks that all recordings are of one kitchen.

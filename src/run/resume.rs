@@ -26,6 +26,10 @@ pub enum ResumeError {
     #[error("{}: the session of this recording was brought to its end, so it cannot be continued", .0.display())]
     #[diagnostic(help("continue a recording that was cut; a new session: tomcom operate"))]
     Ended(PathBuf),
+    /// The header of a part names the previous part as text, and this folder's name is no text.
+    #[error("{}: the name of this recording's folder is not UTF-8, so a new part cannot name it", .0.display())]
+    #[diagnostic(help("rename the folder; letters, digits and - are safe everywhere"))]
+    Name(PathBuf),
     /// The recording is of a simulated trial, which cannot be continued.
     #[error("{}: this recording is simulated, and only a person's session can be continued", .0.display())]
     #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
@@ -77,6 +81,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     let there = recording.canonicalize();
     let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
     let folder = if there.is_dir() { there } else { there.parent().unwrap_or(Path::new("/")).to_path_buf() };
+    let Some(name) = folder.file_name().unwrap_or_default().to_str() else { return Err(ResumeError::Name(folder)) };
     let log = LogReader::open(&folder.join(LOG_NAME))?;
     if log.header.started.is_none() {
         return Err(ResumeError::Simulated(folder));
@@ -86,7 +91,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     check_continued(&folder)?;
     let RepeatedRecording { log, mut again, difference, .. } = RepeatedRecording::from_log(log)?;
     if let Some(difference) = difference {
-        return Err(ResumeError::Differs { log: difference.log, seq: difference.seq });
+        return Err(ResumeError::Differs { log: difference.log.0, seq: difference.seq });
     }
     if !log.is_cut() {
         return Err(ResumeError::Ended(folder));
@@ -96,8 +101,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     if again.engine.session().can_be_paused() {
         first.extend(again.engine.input(time, Event::TrialPaused).events);
     }
-    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let continues = PreviousPart { recording: name, events: log.events(), t_ns: time };
+    let continues = PreviousPart { recording: name.to_string(), events: log.events(), t_ns: time };
     let old = log.header;
     let mut header = LogHeader::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);

@@ -137,7 +137,8 @@ impl Review {
             comparison,
         };
         review.tell(0);
-        review.stand_at(review.film.trial_start());
+        let start = review.film.trial_start();
+        review.stand_at(start);
         let plays = review.model.coding.is_none();
         review.playback(|playback| playback.playing = plays);
         review.begin_coding();
@@ -227,9 +228,9 @@ impl Review {
     }
 
     /// Passes the events from this position on to the comparison of wizard and assistants.
-    fn tell(&self, from: usize) {
+    fn tell(&mut self, from: usize) {
         if let Some(comparison) = &self.comparison {
-            self.film.events[from..].iter().for_each(|stamped| comparison.tell(stamped));
+            self.film.each_from(from, |stamped| comparison.tell(stamped));
         }
     }
 
@@ -238,7 +239,7 @@ impl Review {
         if self.film.is_read() {
             return Ok(());
         }
-        let known = self.film.events.len();
+        let known = self.film.read_events();
         self.film.read_while(goes_on)?;
         self.tell(known);
         self.dirty = true;
@@ -258,8 +259,9 @@ impl Review {
         }
         if !self.film.is_cut() {
             self.grows = false;
+            return Ok(());
         }
-        Ok(())
+        Ok(self.film.replay.log().check_there()?)
     }
 }
 
@@ -268,6 +270,9 @@ impl ConsoleShell for Review {
     type Error = ReviewError;
 
     fn take(&mut self, event: LoopEvent) -> Result<Option<()>, ReviewError> {
+        if let Some(error) = self.film.take_trouble() {
+            return Err(error.into());
+        }
         match event {
             LoopEvent::Terminal(message) => return Ok(self.take_message(message)?.then_some(())),
             LoopEvent::FileTick if self.grows => self.look()?,

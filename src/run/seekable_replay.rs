@@ -1,6 +1,9 @@
 //! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events.
-//! Snapshots of the session, kept while reading, make every move cheap: at most `KEEP_EVERY` events are applied. The
-//! console can begin before the recording is read to its end.
+//!
+//! A log of hours has millions of gaze samples, so events are not kept in memory: they are read again from the file, a
+//! chunk of [`CHUNK`] events at a time, when the shown session comes there. What is kept are the places of the chunks, the
+//! events at which a replay stops, and snapshots of the session, so that every move applies few events. The console can
+//! begin before the recording is read to its end.
 
 use std::path::Path;
 
@@ -8,14 +11,17 @@ use super::replay::RecordingReplay;
 use super::standing::exclusion_status;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::base::time::SessionTime;
-use crate::edge::file_error::FileResult;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::log::LogPlace;
 use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use crate::history::landmark::ReplayLandmark;
 use crate::session::settings::WizardVisibility;
-use crate::session::{Event, Session, TimestampedEvent, TrialPhase, apply};
+use crate::session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
 
-/// Number of events between two snapshots of the session.
-const KEEP_EVERY: usize = 4096;
+/// Largest number of events in a chunk.
+const CHUNK: usize = 4096;
+/// Largest number of snapshots of the session; when there are more, every second one is dropped.
+const MOST_SNAPSHOTS: usize = 256;
 
 /// Event without effect that replaces hidden events in a replay for raters, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
@@ -41,11 +47,52 @@ fn is_step(event: &Event) -> bool {
     !event.is_sample() && *event != HIDDEN
 }
 
+/// Events of a recording that are read again together; all of them are in one file.
+#[derive(Debug)]
+struct Chunk {
+    /// Number of events before this chunk.
+    first: usize,
+    /// Number of the chunk's events.
+    number: usize,
+    place: LogPlace,
+    /// Time of the chunk's first event.
+    time: SessionTime,
+}
+
+/// An event at which the replay stops when it is moved step by step.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// Number of events before this one.
+    index: usize,
+    time: SessionTime,
+    landmark: Option<ReplayLandmark>,
+    starts_trial: bool,
+    is_shown_to_raters: bool,
+}
+
+/// The session after the first `position` events, without its timeline.
+#[derive(Debug)]
+struct Snapshot {
+    position: usize,
+    session: Session,
+    /// Number of entries of the timeline.
+    entries: usize,
+}
+
+/// Snapshots of a session, the first before the first event. A session's timeline only grows, so the timelines of all
+/// snapshots are beginnings of the longest one, which is kept once.
+#[derive(Debug)]
+struct Snapshots {
+    kept: Vec<Snapshot>,
+    /// Number of events after the last snapshot, from which on another one is kept.
+    spacing: usize,
+    timeline: Vec<TimelineEntry>,
+}
+
 /// A recording that can be shown at any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
     pub(super) replay: RecordingReplay,
-    pub(super) events: Vec<TimestampedEvent>,
     /// Session times of the human's errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
@@ -55,8 +102,18 @@ pub struct SeekableReplay {
     pub session: Session,
     /// Number of events that have been applied to the shown session.
     pub position: usize,
-    /// Snapshots of the session before the first event and after every `KEEP_EVERY` events.
-    kept: Vec<Session>,
+    /// The recording's events, as far as they were read.
+    chunks: Vec<Chunk>,
+    /// Time of the last event that was read.
+    read_to: SessionTime,
+    /// Events that are neither gaze or arm samples nor hidden from raters.
+    steps: Vec<Step>,
+    /// The chunk with this index that was read again last, with its events.
+    loaded: Option<(usize, Vec<TimestampedEvent>)>,
+    /// Why a chunk could not be read again.
+    trouble: Option<FileError>,
+    is_blinded: bool,
+    snapshots: Snapshots,
     /// Time of the log's last event and number of the log's events; `None` once all events are read.
     unread_end: Option<(SessionTime, usize)>,
 }
@@ -80,17 +137,22 @@ impl SeekableReplay {
         let replay = RecordingReplay::open(recording)?;
         let last = replay.log().last_event()?;
         let unread_end = Some(last.map_or((SessionTime::ZERO, 0), |last| (last.time, last.seq as usize + 1)));
-        let session = replay.session().clone();
-        let kept = vec![session.clone()];
+        let mut session = replay.session().clone();
+        let snapshots = Snapshots::new(&mut session);
         Ok(SeekableReplay {
             replay,
-            events: Vec::new(),
             errors: Vec::new(),
             judged: 0,
             beliefs: BeliefHistory::default(),
             session,
             position: 0,
-            kept,
+            chunks: Vec::new(),
+            read_to: SessionTime::ZERO,
+            steps: Vec::new(),
+            loaded: None,
+            trouble: None,
+            is_blinded: false,
+            snapshots,
             unread_end,
         })
     }
@@ -98,14 +160,12 @@ impl SeekableReplay {
     /// Hides the estimate and all signals for raters, who must not know whether the participant was assisted. This
     /// function must be called before the replay is moved.
     pub fn blinded(mut self) -> SeekableReplay {
-        // Later snapshots contain what is hidden, so only the first one is kept.
-        self.kept.truncate(1);
-        for session in self.kept.iter_mut().chain([&mut self.session]) {
-            session.spec.console.visibility = WizardVisibility::State;
-        }
-        for stamped in self.events.iter_mut().filter(|stamped| is_hidden(&stamped.event)) {
-            stamped.event = HIDDEN;
-        }
+        self.loaded = None;
+        self.is_blinded = true;
+        self.session.spec.console.visibility = WizardVisibility::State;
+        self.steps.retain(|step| step.is_shown_to_raters);
+        // The snapshots so far contain what is hidden.
+        self.snapshots = Snapshots::new(&mut self.session);
         self
     }
 
@@ -122,13 +182,13 @@ impl SeekableReplay {
     /// # Errors
     /// The errors of [`RecordingReplay::step`].
     pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
-        let before = self.events.len();
+        let before = self.read_events();
         while goes_on() && self.read_event()? {}
         let judged = &self.replay.follower.judged;
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
         self.errors.extend(new);
         self.judged = judged.len();
-        Ok(self.events.len() > before)
+        Ok(self.read_events() > before)
     }
 
     /// Reads up to the start of the trial, or to the end of a recording without a trial. Before the trial there are no
@@ -143,19 +203,31 @@ impl SeekableReplay {
 
     /// Reads the next event; returns whether there was one.
     fn read_event(&mut self) -> FileResult<bool> {
+        let place = self.replay.log().place();
         let Some(event) = self.replay.step()? else {
             self.unread_end = None;
             return Ok(false);
         };
         let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
-        let by_gaze = event.stamped.event.is_sample();
-        let moment = BeliefSnapshot::new(&session.kitchen, session.state, belief, event.stamped.time, by_gaze);
+        let (stamped, index) = (event.stamped, self.read_events());
+        let by_gaze = stamped.event.is_sample();
+        let moment = BeliefSnapshot::new(&session.kitchen, session.state, belief, stamped.time, by_gaze);
         self.beliefs.note(moment);
-        self.events.push(event.stamped);
-        if self.events.len() == self.kept.len() * KEEP_EVERY {
-            self.kept.push(self.replay.session().clone());
+        self.read_to = stamped.time;
+        self.steps.extend(Step::at(index, &stamped).filter(|step| !self.is_blinded || step.is_shown_to_raters));
+        match self.chunks.last_mut().filter(|last| last.number < CHUNK && last.place.is_in_file_of(&place)) {
+            Some(last) => last.number += 1,
+            None => self.chunks.push(Chunk { first: index, number: 1, place, time: stamped.time }),
+        }
+        if !self.is_blinded {
+            self.snapshots.note(index + 1, &mut self.replay.follower.session);
         }
         Ok(true)
+    }
+
+    /// Number of events that were read so far.
+    pub fn read_events(&self) -> usize {
+        self.chunks.last().map_or(0, |last| last.first + last.number)
     }
 
     /// Whether all events were read that the recording has for now.
@@ -178,7 +250,7 @@ impl SeekableReplay {
 
     /// Time of the recording's last event, and number of its events, including events that are not read yet.
     pub fn length(&self) -> (SessionTime, usize) {
-        self.unread_end.unwrap_or_else(|| (self.read_to(), self.events.len()))
+        self.unread_end.unwrap_or_else(|| (self.read_to, self.read_events()))
     }
 
     /// The time on the trial's clock at the end of the recording; what is not read yet counts as time of the trial.
@@ -190,68 +262,108 @@ impl SeekableReplay {
     }
 
     /// Position after the events at the time of the trial's start; 0 in a recording without a trial.
-    pub fn trial_start(&self) -> usize {
-        let start = self.events.iter().find(|stamped| stamped.event == Event::TrialStarted);
-        start.map_or(0, |start| self.until(start.time))
+    pub fn trial_start(&mut self) -> usize {
+        let start = self.steps.iter().find(|step| step.starts_trial).map(|step| step.time);
+        start.map_or(0, |start| self.until(start))
     }
 
     /// The time of the last event that was read.
     pub fn read_to(&self) -> SessionTime {
-        self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time)
+        self.read_to
     }
 
-    /// Applies the next event to the shown session, and returns the event.
+    /// Why the recording could not be read again; the replay then stands where it was.
+    pub fn take_trouble(&mut self) -> Option<FileError> {
+        self.trouble.take()
+    }
+
+    /// Applies the next event to the shown session, and returns the event; `None` at the end, or if the recording cannot be
+    /// read again.
     pub fn forward(&mut self) -> Option<&TimestampedEvent> {
-        let stamped = self.events.get(self.position)?;
-        apply(&mut self.session, stamped).expect("it was applied when it was read");
+        let within = self.load(self.position)?;
+        let (_, events) = self.loaded.as_ref()?;
+        apply(&mut self.session, &events[within]).expect("it was applied when it was read");
         self.position += 1;
-        if self.position == self.kept.len() * KEEP_EVERY {
-            self.kept.push(self.session.clone());
+        self.snapshots.note(self.position, &mut self.session);
+        Some(&events[within])
+    }
+
+    /// Calls `visit` with the events from this position on that were read so far.
+    pub fn each_from(&mut self, position: usize, mut visit: impl FnMut(&TimestampedEvent)) {
+        for index in position..self.read_events() {
+            let Some(within) = self.load(index) else { return };
+            self.loaded.iter().for_each(|(_, events)| visit(&events[within]));
         }
-        Some(stamped)
     }
 
     /// Moves the shown session to the position after the first `position` events, which must have been read.
     pub fn wind(&mut self, position: usize) {
-        let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
-        if position < self.position || index * KEEP_EVERY > self.position {
-            self.session = self.kept[index].clone();
-            self.position = index * KEEP_EVERY;
+        let kept = self.snapshots.last_until(position);
+        if position < self.position || kept.position > self.position {
+            self.session = self.snapshots.session(kept);
+            self.position = kept.position;
         }
         while self.position < position && self.forward().is_some() {}
     }
 
     /// Number of the recording's events up to and including those at a time.
-    pub fn until(&self, time: SessionTime) -> usize {
-        self.events.partition_point(|stamped| stamped.time <= time)
+    pub fn until(&mut self, time: SessionTime) -> usize {
+        let Some(index) = self.chunks.partition_point(|chunk| chunk.time <= time).checked_sub(1) else { return 0 };
+        let Chunk { first, number, .. } = self.chunks[index];
+        // All of the chunk, also what it has grown by.
+        if self.load(first + number - 1).is_none() {
+            return first;
+        }
+        let events = self.loaded.as_ref().map_or(&[][..], |(_, events)| events);
+        first + events.partition_point(|stamped| stamped.time <= time)
+    }
+
+    /// Reads the chunk with the event at this index again, unless it is loaded; returns the event's index in the chunk.
+    fn load(&mut self, index: usize) -> Option<usize> {
+        let of = self.chunks.partition_point(|chunk| chunk.first <= index).checked_sub(1)?;
+        let chunk = &self.chunks[of];
+        let within = index - chunk.first;
+        if within >= chunk.number {
+            return None;
+        }
+        // A chunk of a running session can have grown since it was loaded.
+        let is_loaded = self.loaded.as_ref().is_some_and(|(loaded, events)| *loaded == of && within < events.len());
+        if !is_loaded {
+            match chunk.place.read_again(chunk.number) {
+                Ok(mut events) => {
+                    let hidden = events.iter_mut().filter(|stamped| self.is_blinded && is_hidden(&stamped.event));
+                    hidden.for_each(|stamped| stamped.event = HIDDEN);
+                    self.loaded = Some((of, events));
+                }
+                Err(error) => {
+                    self.trouble = Some(error);
+                    return None;
+                }
+            }
+        }
+        Some(within)
     }
 
     /// Position after the next event that is neither a gaze or arm sample nor hidden from raters.
     pub fn next_step(&self) -> usize {
-        let rest = self.events[self.position..].iter();
-        self.position + rest.take_while(|stamped| !is_step(&stamped.event)).count() + 1
+        let next = self.steps.partition_point(|step| step.index < self.position);
+        self.steps.get(next).map_or(self.read_events(), |step| step.index) + 1
     }
 
     /// Position after the previous event that is neither a gaze or arm sample nor hidden from raters.
     pub fn last_step(&self) -> usize {
-        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| is_step(&stamped.event));
-        let last = steps(self.position).unwrap_or(0);
-        steps(last).map_or(0, |index| index + 1)
+        let last = self.steps.partition_point(|step| step.index < self.position);
+        last.checked_sub(2).map_or(0, |before| self.steps[before].index + 1)
     }
 
     /// Position after all events at the time of the next or previous landmark of this kind.
-    pub fn landmark(&self, what: ReplayLandmark, forward: bool) -> Option<usize> {
+    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<usize> {
         let now = self.time();
-        let is_it = |event: &Event| match what {
-            ReplayLandmark::Signal => matches!(event, Event::SignalShown { .. }),
-            ReplayLandmark::Marker => matches!(event, Event::Marker { .. }),
-            ReplayLandmark::Error | ReplayLandmark::FalseBelief => false,
-        };
         let times: Vec<SessionTime> = match what {
             ReplayLandmark::Error => self.errors.clone(),
             ReplayLandmark::FalseBelief => self.beliefs.newly_false().collect(),
             ReplayLandmark::Signal | ReplayLandmark::Marker => {
-                self.events.iter().filter(|stamped| is_it(&stamped.event)).map(|stamped| stamped.time).collect()
+                self.steps.iter().filter(|step| step.landmark == Some(what)).map(|step| step.time).collect()
             }
         };
         let found = match forward {
@@ -264,5 +376,64 @@ impl SeekableReplay {
     /// Session time of the last applied event.
     pub fn time(&self) -> SessionTime {
         self.session.time
+    }
+}
+
+impl Step {
+    /// The event with this index as a step; `None` for a sample.
+    fn at(index: usize, stamped: &TimestampedEvent) -> Option<Step> {
+        let landmark = match stamped.event {
+            Event::SignalShown { .. } => Some(ReplayLandmark::Signal),
+            Event::Marker { .. } => Some(ReplayLandmark::Marker),
+            _ => None,
+        };
+        is_step(&stamped.event).then(|| Step {
+            index,
+            time: stamped.time,
+            landmark,
+            starts_trial: stamped.event == Event::TrialStarted,
+            is_shown_to_raters: !is_hidden(&stamped.event),
+        })
+    }
+}
+
+impl Snapshots {
+    fn new(session: &mut Session) -> Snapshots {
+        let mut snapshots = Snapshots { kept: Vec::new(), spacing: CHUNK, timeline: Vec::new() };
+        snapshots.keep(0, session);
+        snapshots
+    }
+
+    /// Notes the session after the first `position` events, and keeps a snapshot if the last one is far enough back.
+    fn note(&mut self, position: usize, session: &mut Session) {
+        let known = self.timeline.len().min(session.timeline.len());
+        self.timeline.extend_from_slice(&session.timeline[known..]);
+        if self.kept.last().is_none_or(|last| position >= last.position + self.spacing) {
+            self.keep(position, session);
+        }
+        if self.kept.len() > MOST_SNAPSHOTS {
+            let mut number = 0;
+            self.kept.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+            self.spacing *= 2;
+        }
+    }
+
+    fn keep(&mut self, position: usize, session: &mut Session) {
+        let timeline = std::mem::take(&mut session.timeline);
+        self.kept.push(Snapshot { position, session: session.clone(), entries: timeline.len() });
+        session.timeline = timeline;
+    }
+
+    /// The last snapshot after at most `position` events.
+    fn last_until(&self, position: usize) -> &Snapshot {
+        &self.kept[self.kept.partition_point(|kept| kept.position <= position).max(1) - 1]
+    }
+
+    /// The session of a snapshot with its timeline.
+    fn session(&self, kept: &Snapshot) -> Session {
+        Session { timeline: self.timeline[..kept.entries].to_vec(), ..kept.session.clone() }
     }
 }

@@ -1,6 +1,8 @@
 //! The series of a participant's recordings: each recording has at most one trial, and the wizard makes one recording
 //! after another without leaving the console.
 
+use std::path::Path;
+
 use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
@@ -10,7 +12,9 @@ use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
 use crate::analysis::watcher::SenderComparisonSettings;
 use crate::console::question::StartQuestion;
+use crate::edge::file_error::FileError;
 use crate::edge::files::SessionSetup;
+use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError};
 use crate::edge::recordings;
 use crate::session::plan::{NextRecording, ParticipantProgress, Study};
 use crate::session::wall_display::AnswerDevice;
@@ -31,6 +35,7 @@ pub struct SeriesOutcome {
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
 pub fn operate(beginning: SessionStart, compare: Option<SenderComparisonSettings>) -> Result<SeriesOutcome, LiveError> {
+    let _lock = continued_lock(&beginning)?;
     in_runtime(async {
         // The session's start is checked before the terminal is taken over and a recording is created, so that a
         // session that cannot start leaves nothing behind.
@@ -55,6 +60,18 @@ pub fn operate(beginning: SessionStart, compare: Option<SenderComparisonSettings
 /// The errors of [`operate`]; or recordings cannot be read or do not fit the plan.
 pub fn operate_series(series: SeriesRequest) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
+}
+
+/// The right to record the participant of a plan's recording that is continued; `None` for a recording of no plan, and
+/// for a new session.
+fn continued_lock(beginning: &SessionStart) -> Result<Option<RecordingLock>, LiveError> {
+    let SessionStart::Continued(recording) = beginning else { return Ok(None) };
+    let log = LogReader::open(recording).map_err(Box::new)?;
+    let Some(step) = &log.header.session.step else { return Ok(None) };
+    let place = log.path_of_last_part().canonicalize();
+    let place = place.map_err(|reason| Box::new(FileError::unreadable(recording, reason, "a readable recording")))?;
+    let beside = place.parent().and_then(Path::parent).unwrap_or(Path::new("."));
+    Ok(Some(RecordingLock::take_for_participant(beside, &step.plan, &log.header.session.participant.code)?))
 }
 
 /// Runs a future in a tokio runtime, which termination signals and sockets need.
@@ -96,6 +113,9 @@ impl Planned {
     }
 
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
+        let code = self.study.plan.code(self.series.participant);
+        // Until the series is over, no other program can begin a recording of the participant.
+        let _lock = RecordingLock::take_for_participant(&self.series.out, &self.study.plan.name, &code)?;
         let mut done = Vec::new();
         let mut progress = self.progress()?;
         if progress.next == NextRecording::Finished {
@@ -128,6 +148,11 @@ impl Planned {
         let (slot, attempt, open) = match &progress.next {
             NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
             NextRecording::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
+            NextRecording::Running { recording, .. } => {
+                let folder = self.series.out.join(recording);
+                let pid = RecordingLock::holder(&folder).and_then(|holder| holder.pid);
+                return Err(RecordingWriteError::InUse { folder, pid }.into());
+            }
             NextRecording::Finished => return Ok(Choice::Leave(None)),
         };
         let (spec, trial) = self.study.settings(progress.wanted(slot, attempt));
@@ -221,6 +246,9 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
         }
         NextRecording::Choose { slot, recording, .. } => {
             format!("{code}: {done} of {all} done, {} is unfinished in {recording}", slot_name(progress, *slot))
+        }
+        NextRecording::Running { slot, recording } => {
+            format!("{code}: {done} of {all} done, {} is being recorded in {recording}", slot_name(progress, *slot))
         }
     }
 }

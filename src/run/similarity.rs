@@ -1,9 +1,9 @@
 //! Command `tomcom compare RECORDING...`: reads recordings for [`crate::analysis::comparison_summary`].
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::each_once;
 use super::standing::exclusion_status;
 use crate::analysis::compared_recording::{RecordingSenderComparison, SenderComparer};
 use crate::analysis::watcher::SenderComparisonSettings;
@@ -17,14 +17,13 @@ pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 /// Compares wizard and assistants in recordings, on all processors. `done` is called after each recording.
 ///
 /// # Errors
-/// A recording cannot be read or replayed, or is named twice.
+/// A recording cannot be read or replayed.
 pub fn watch(
-    recordings: &[PathBuf],
+    recordings: &GatheredRecordings,
     request: &SenderComparisonSettings,
     done: impl Fn() + Sync,
 ) -> FileResult<Vec<RecordingSenderComparison>> {
-    each_once(recordings)?;
-    parallel::each(recordings, |recording| follow(recording, request), done).into_iter().collect()
+    parallel::each(&recordings.paths, |recording| follow(recording, request), done).into_iter().collect()
 }
 
 /// Compares wizard and assistants in one recording, from beginning to end.

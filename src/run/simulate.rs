@@ -113,7 +113,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
     let (mut excluded, mut found, mut recordings, mut moved) = (0, 0, Vec::new(), Vec::new());
     each_trial(simulation, done, |trial| {
         moved.extend(trial.moved.map(|log| log.display().to_string()));
-        recordings.push(trial.folder.display().to_string());
+        recordings.push(trial.folder.clone().into());
         found += u64::from(trial.found);
         // An existing recording can have been excluded from the analysis.
         match ruling(&trial.folder).map_err(Box::new)?.is_some_and(|ruling| ruling.excluded) {
@@ -212,7 +212,7 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     // The recording's length is part of the path, since recordings of different length would have the same name.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out }, || ())?;
-    Ok(figures.recordings.iter().map(PathBuf::from).collect())
+    Ok(figures.recordings.into_iter().map(|folder| folder.0).collect())
 }
 
 /// Folder of a trial's recording; the folder's name does not depend on the number of trials.
@@ -291,8 +291,10 @@ pub fn describe(figures: &SimulationSummary) -> String {
         [one] if one.arm == StudyArm::None => String::new(),
         several => several.iter().map(describe_arm).collect(),
     };
-    let look =
-        figures.recordings.first().map_or(String::new(), |first| format!("{}\n", ways_to_look("a recording", first)));
+    let look = figures
+        .recordings
+        .first()
+        .map_or(String::new(), |first| format!("{}\n", ways_to_look("a recording", &first.to_string())));
     format!(
         "{moved}{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
          presses: {} of the human, {} of the robot\n\

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{ExclusionRecord, LogReader, ruling};
-use crate::session::{Event, Session};
+use crate::session::{Event, Session, apply};
 
 /// Reason for which the trial of a recording was aborted; `None` if the trial was not aborted.
 ///
@@ -29,6 +29,19 @@ pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
 /// The file beside the log is damaged.
 pub fn exclusion_status(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
     with_ruling(ExclusionStatus::at_console(session), log.folder())
+}
+
+/// Why analyses leave a recording out, in words; `None` for a recording that counts.
+///
+/// # Errors
+/// The recording cannot be read or replayed, or the file beside the log is damaged.
+pub fn left_out(recording: &Path) -> FileResult<Option<String>> {
+    let mut log = LogReader::open(recording)?;
+    let mut session = log.session();
+    while let Some(line) = log.next_line()? {
+        apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?;
+    }
+    Ok(exclusion_status(&session, &log)?.left_out(&session))
 }
 
 /// Whether the recording in this folder was aborted or excluded, given the status that the console recorded. A later

@@ -1,9 +1,9 @@
 //! Command `tomcom replay RECORDING... --offers`: replays recordings for [`crate::analysis::offer_steadiness`].
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::each_once;
 use crate::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
 use crate::edge::file_error::FileResult;
 use crate::edge::log::LogReader;
@@ -13,10 +13,9 @@ use crate::session::{Session, apply};
 ///
 /// # Errors
 /// A recording cannot be read or replayed.
-pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<OfferSteadinessSummary> {
-    each_once(recordings)?;
+pub fn measure(recordings: &GatheredRecordings, done: impl Fn() + Sync) -> FileResult<OfferSteadinessSummary> {
     let mut sums = OfferSteadinessSums::default();
-    for one in parallel::each(recordings, |recording| tally(recording), done) {
+    for one in parallel::each(&recordings.paths, |recording| tally(recording), done) {
         let (tally, session) = one?;
         sums.add(tally, &session);
     }

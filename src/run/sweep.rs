@@ -2,7 +2,7 @@
 //! simulated for every value of a setting and without signals, with the same participants, orders and random streams,
 //! so that differences are paired by trial.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_t
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
+use crate::base::path_text::PathText;
 use crate::base::words::decimal;
 use crate::communication::concept::ConceptName;
 use crate::communication::settings::{AssistantSpec, ShadowMode};
@@ -155,7 +156,7 @@ pub struct ParameterSweepSummary {
     /// Rows of the results table; the first row is without signals.
     pub rows: Vec<ParameterSweepRow>,
     /// Path of the results table's file.
-    pub table: PathBuf,
+    pub table: PathText,
     /// New paths of logs that ended before the end of their header; the trials of these logs were simulated again.
     pub moved: Vec<String>,
 }
@@ -201,7 +202,7 @@ pub fn sweep(
         moved.extend(figures.moved);
     }
     write_table(&table, axes, &rows).map_err(unwritable)?;
-    Ok(ParameterSweepSummary { rows, table, moved })
+    Ok(ParameterSweepSummary { rows, table: table.into(), moved })
 }
 
 /// File name of the results table. Each shard has its own table; the whole table is made from all recordings.

@@ -64,13 +64,16 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
         [(); 2].map(|()| TimedAdvisor::new(Advisor::new(session, CostToGo::new(session.kitchen.clone()))));
     let began = Instant::now();
     let (mut step_ns, mut step_ahead_ns, mut ahead_ns) = (Vec::new(), Vec::new(), 0);
-    let mut last: Option<AdviceRequest> = None;
+    let (mut last, mut presses): (Option<AdviceRequest>, usize) = (None, 0);
     while let Some(question) = replay.next_question()? {
         // The advisor works ahead for as long as it had in the session until this request.
         if let Some(last) = last {
             ahead_ns += ahead.work_ahead(&last, question.time);
         }
-        let inference = replay.follower.timing.as_ref().and_then(|timing| timing.action_ns.last().copied());
+        // Only a request after a press has an inference about that press before it.
+        let inferred = replay.follower.timing.as_ref().map_or(&[][..], |timing| &timing.action_ns);
+        let inference = inferred[presses.min(inferred.len())..].last().copied();
+        presses = inferred.len();
         let [took_ns, took_ahead_ns] = [&mut plain, &mut ahead].map(|advisor| advisor.answer(&question));
         step_ns.extend(inference.map(|inference| inference + took_ns));
         step_ahead_ns.extend(inference.map(|inference| inference + took_ahead_ns));

@@ -87,7 +87,8 @@ impl TrainingShell {
             at: now,
         };
         // The replay is paused at the start of the trial until the wizard begins.
-        shell.film.wind(shell.film.trial_start());
+        let start = shell.film.trial_start();
+        shell.film.wind(start);
         shell.now = shell.film.session.time;
         Ok(shell)
     }

@@ -3,13 +3,14 @@
 //! lead to the same state.
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 
 use super::engine::SessionEngine;
 use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::analysis::follower::SessionFollower;
+use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::edge::file_error::{FileError, FileResult};
@@ -45,7 +46,7 @@ pub struct VerificationDifference {
     /// Sequence number of the recorded event that differs.
     pub seq: u64,
     /// Path of the log that contains the event; with several parts, the log of the part.
-    pub log: PathBuf,
+    pub log: PathText,
     /// Number of the event's line in the log, from 1.
     pub line: usize,
     /// The recorded event, as a line of the log.
@@ -132,10 +133,9 @@ impl RepeatedSession {
         self.questions.extend(self.engine.take_questions());
         let again = self.produced.pop_front().map(|stamped| event_line(&stamped));
         let same = again.as_deref() == Some(line.text.as_str());
-        let log = log.to_path_buf();
         (!same).then(|| VerificationDifference {
             seq: recorded.seq,
-            log,
+            log: log.to_path_buf().into(),
             line: line.number,
             recorded: line.text.clone(),
             again,

@@ -1,13 +1,16 @@
 //! Asks the wizard a question before a recording begins.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use super::desk::{OperatorDesk, is_consent};
+use super::desk::{OperatorDesk, hear_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
+use crate::base::time::SessionTime;
 use crate::console::ConsoleMessage;
+use crate::console::pasting::refusal_of_paste;
 use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
+use crate::display::ConsentHold;
 use crate::session::wall_display::AnswerDevice;
 
 /// Period of redrawing a question on the screen.
@@ -31,7 +34,8 @@ pub(super) async fn ask_consent(
     question: &StartQuestion,
     on_display: bool,
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
-    let mut shell = OpenQuestion { question, on_display, theme: desk.theme, dirty: true };
+    let (theme, asked, button) = (desk.theme, Instant::now(), ConsentHold::default());
+    let mut shell = OpenQuestion { question, on_display, asked, button, theme, notice: None, dirty: true };
     let reply = event_loop::run(&mut shell, desk).await?;
     Ok(match reply {
         Some((StartQuestionReply::Answer(index), on)) => Some((index, on)),
@@ -44,7 +48,13 @@ struct OpenQuestion<'a> {
     question: &'a StartQuestion,
     /// Whether the participant's page can answer the question.
     on_display: bool,
+    /// When the question was asked: the time with which the hold of the page's button is measured begins here.
+    asked: Instant,
+    /// The consent button of the participant's page.
+    button: ConsentHold,
     theme: Theme,
+    /// Why the last input had no effect.
+    notice: Option<&'static str>,
     /// Whether the screen with the question has to be redrawn.
     dirty: bool,
 }
@@ -60,22 +70,38 @@ impl ConsoleShell for OpenQuestion<'_> {
     /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
     /// later as if they were new inputs.
     fn take(&mut self, event: LoopEvent) -> Result<Option<(StartQuestionReply, AnswerDevice)>, LiveError> {
+        let now = SessionTime(self.asked.elapsed().as_nanos() as u64);
         let message = match event {
-            LoopEvent::Page(input) if self.on_display && is_consent(&input) => {
-                return Ok(Some((StartQuestionReply::Answer(0), AnswerDevice::Display)));
+            LoopEvent::Page(input) if self.on_display => {
+                if !hear_consent(&input, &mut self.button, now) {
+                    self.notice = Some("the page sent a consent, but its button was not held long enough: not counted");
+                    self.dirty = true;
+                }
+                None
             }
-            LoopEvent::Terminal(message) => message,
-            _ => return Ok(None),
+            LoopEvent::Terminal(message) => Some(message),
+            _ => None,
         };
+        if self.button.is_given(now) {
+            return Ok(Some((StartQuestionReply::Answer(0), AnswerDevice::Display)));
+        }
+        let Some(message) = message else { return Ok(None) };
         self.dirty = true;
         Ok(match message {
-            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, AnswerDevice::Console)),
+            ConsoleMessage::Key(key) => {
+                self.notice = None;
+                self.question.reply(&key).map(|reply| (reply, AnswerDevice::Console))
+            }
+            ConsoleMessage::Paste(text) => {
+                self.notice = Some(refusal_of_paste(text.as_deref()));
+                None
+            }
             _ => None,
         })
     }
 
     fn view(&self) -> ShellView<'_> {
-        ShellView::Question(self.question, self.theme)
+        ShellView::Question(self.question, self.notice, self.theme)
     }
 
     fn drawn(&mut self) {

@@ -30,7 +30,7 @@ pub struct UnawarenessDetector {
     right: u32,
     /// Time of known gaze in the trial so far, in seconds.
     gazed_s: f64,
-    /// Time of the last usable gaze sample.
+    /// Time at which the last gaze sample was taken.
     sampled: SessionTime,
     /// The last change of each location's content, as far as awareness of that change is concerned.
     changes: [WatchedChange; MAX_LOCATIONS],
@@ -77,15 +77,20 @@ impl UnawarenessDetector {
         sample: &GazeSample,
         can_be_told: impl Fn(AspectId) -> bool,
     ) {
-        let (perception, now) = (&session.spec.human.perception, session.time);
-        let covered_s = now.secs_since(self.sampled).min(perception.max_sample_s);
-        self.sampled = now;
+        let (perception, taken) = (&session.spec.human.perception, sample.taken(session.time));
+        let covered_s = taken.secs_since(self.sampled).min(perception.max_sample_s);
+        self.sampled = taken;
+        let gazed_s = self.gazed_s + perception.known_share(sample.confidence) * covered_s;
         for (change, &at) in self.changes.iter_mut().zip(&session.changed_at) {
+            // A sample that was taken before the change is gaze before the change, also if it arrives later.
+            let gazed_before_s = if taken < at { gazed_s } else { self.gazed_s };
             if change.at != at {
-                *change = WatchedChange { at, gazed_s: self.gazed_s, is_asked: false };
+                *change = WatchedChange { at, gazed_s: gazed_before_s, is_asked: false };
+            } else if taken < at {
+                change.gazed_s = gazed_before_s;
             }
         }
-        self.gazed_s += perception.known_share(sample.confidence) * covered_s;
+        self.gazed_s = gazed_s;
         for index in 0..belief.aspects.len() {
             let aspect = AspectId(index as u8);
             let p_truth = belief.p_truth(&session.kitchen, session.state, aspect);

@@ -12,8 +12,11 @@ pub struct GazeStatus {
     pub arrived: Option<SessionTime>,
     /// The newest usable gaze sample that lies on the display, and its arrival time.
     pub last: Option<(SessionTime, GazeSample)>,
-    /// Time of the participant's last look at each location (gaze inside the location's area).
+    /// Time at which the last gaze sample inside each location's area was taken: the participant's last look there.
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
+    /// Locations in whose areas the latest gaze sample lies, as a bit set; empty if that sample is faulty or unusable, or
+    /// was taken while the kitchen was not on the display.
+    pub here: u32,
     /// Number of all gaze samples; samples with low confidence or outside the display are also counted in `unusable`.
     pub samples: u64,
     /// Number of gaze samples with too low a confidence or outside of the display.
@@ -22,8 +25,19 @@ pub struct GazeStatus {
     pub judge: GazeFaultDetector,
     /// Fault of the latest gaze sample.
     pub fault: Option<GazeFault>,
-    /// Sampling rate of the gaze in Hz, smoothed over about a second: see [`super::Session::gaze_hz`].
+    /// Sampling rate of the gaze in Hz, measured over about a second: see [`super::Session::gaze_hz`].
     pub(crate) rate_hz: f64,
-    /// Start of the present run of gaze samples without a gap; `None` after a pause.
-    pub(crate) steady_since: Option<SessionTime>,
+    /// The present measurement of the sampling rate.
+    pub(crate) measured: Option<RateMeasurement>,
+}
+
+/// A measurement of the sampling rate, from one gaze sample on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RateMeasurement {
+    /// Arrival of the first sample.
+    pub since: SessionTime,
+    /// Time at which the first sample was taken.
+    pub first_taken: SessionTime,
+    /// Number of samples since.
+    pub samples: u32,
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::code_correction::CodeCorrection;
 use super::settings::{ParticipantKind, SessionSpec};
 use crate::base::time::SessionTime;
 
@@ -45,6 +46,10 @@ pub struct LogHeader {
     /// The file with the wizard's key bindings, if the session had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keys: Option<RecordedFile>,
+    /// The correction of the participant's code that holds, from a file beside the log; `session` has the corrected
+    /// code.
+    #[serde(skip)]
+    pub correction: Option<CodeCorrection>,
 }
 
 /// The previous part of a recording, after which this recording continues the session.
@@ -78,6 +83,11 @@ impl LogHeader {
         self.session.participant.kind == ParticipantKind::Simulated && is_earlier
     }
 
+    /// The participant's code as the log has it, without corrections.
+    pub fn recorded_code(&self) -> &str {
+        self.correction.as_ref().map_or(&self.session.participant.code, |correction| &correction.before)
+    }
+
     /// Whether recommendations became offers to the wizard in the recording.
     pub fn has_offers(&self) -> bool {
         self.version >= OFFERS_SINCE
@@ -99,6 +109,7 @@ impl LogHeader {
             layout,
             recipes,
             keys: None,
+            correction: None,
         }
     }
 }

@@ -76,6 +76,12 @@ pub struct LslGazeSpec {
     /// Content type of the gaze stream, such as "Gaze"; `None`: a stream of any type is accepted.
     #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
+    /// Source of the gaze stream, as its sender names it; `None`: a stream of any source is accepted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source_id: Option<String>,
+    /// Name of the computer that offers the gaze stream; `None`: a stream of any computer is accepted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub host: Option<String>,
     /// Channel of the gaze's horizontal coordinate: its label, or its number from 1.
     pub x: String,
     /// Channel of the gaze's vertical coordinate: its label, or its number from 1.
@@ -138,19 +144,25 @@ impl LslGazeSpec {
         }
     }
 
-    /// How messages call the gaze stream: by its name, or by its type if the settings have no name.
+    /// How messages call the gaze stream: by its name, or by its type if the settings have no name; and by its source and
+    /// its computer if the settings have them.
     pub fn title(&self) -> String {
-        match (&self.name, &self.content) {
+        let title = match (&self.name, &self.content) {
             (Some(name), _) => format!("\"{name}\""),
             (None, Some(content)) => format!("of type \"{content}\""),
             (None, None) => "of any name".to_string(),
-        }
+        };
+        let source = self.source_id.as_ref().map(|source| format!(" of source_id \"{source}\""));
+        let host = self.host.as_ref().map(|host| format!(" on {host}"));
+        [Some(title), source, host].into_iter().flatten().collect()
     }
 
     fn check(&self) -> Result<(), SettingError> {
         let texts = [
             ("name", &self.name),
             ("type", &self.content),
+            ("source_id", &self.source_id),
+            ("host", &self.host),
             ("x", &Some(self.x.clone())),
             ("y", &Some(self.y.clone())),
             ("confidence", &self.confidence),
@@ -162,10 +174,11 @@ impl LslGazeSpec {
                 return Err(SettingError::new(format!("lsl.gaze.{key}"), found, remedy));
             }
         }
-        if self.name.is_none() && self.content.is_none() {
+        if self.name.is_none() && self.content.is_none() && self.source_id.is_none() {
             let remedy =
                 "name = \"…\" or type = \"Gaze\" under [lsl.gaze]: tomcom doctor lists the streams that there are";
-            return Err(SettingError::new("lsl.gaze", "neither name nor type of a stream".to_string(), remedy));
+            let found = "no name, type or source_id of a stream".to_string();
+            return Err(SettingError::new("lsl.gaze", found, remedy));
         }
         if self.x == self.y {
             let remedy = "one channel for each coordinate";

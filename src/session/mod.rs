@@ -6,7 +6,7 @@
 //! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`,
 //!   `probe_settings`, [`wall_display`], [`stream_settings`], [`tracker`] (with its events and state), and the
 //!   specifications in [`plan`]; [`settings`], all of them together. These are used by [`battery`], `session_file`,
-//!   `requirements`, [`participant_code`], [`header`], [`orders`], and the studies in [`plan`].
+//!   `requirements`, [`person_code`], [`header`], [`orders`], and the studies in [`plan`].
 //! - Events: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`,
 //!   `probe_event`, `preflight_check`, [`wizard_screen`]; [`event`], all of them together.
 //! - State: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state`
@@ -23,6 +23,7 @@ pub mod advice_moments;
 pub mod answer_value;
 pub mod apply;
 pub mod battery;
+pub mod code_correction;
 mod condition;
 mod console_settings;
 pub mod event;
@@ -36,8 +37,8 @@ mod interventions;
 mod lsl_settings;
 pub mod offers;
 pub mod orders;
-pub mod participant_code;
 mod participant_settings;
+pub mod person_code;
 mod phase;
 pub mod plan;
 mod preflight_check;

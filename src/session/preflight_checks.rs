@@ -2,7 +2,7 @@
 
 use super::condition::Condition;
 use super::fitted_parameters::ParameterSource;
-use super::gaze_samples::faults;
+use super::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
 pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
@@ -10,6 +10,7 @@ use super::session_state::Session;
 use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
+use crate::gaze::recorded_gaze::RecordedGazeSummary;
 
 /// Sampling rate of the gaze below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;
@@ -68,9 +69,23 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::ok("human model", found))
 }
 
+/// A sender of gaze that was rejected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RejectedGaze {
+    /// Who was rejected, and why, in words.
+    pub told: String,
+    /// What to do, so that the sender is not rejected.
+    pub remedy: String,
+}
+
 /// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a
-/// gaze accuracy check.
-pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
+/// gaze accuracy check, `rejected` the sender of gaze that was rejected since the last gaze sample arrived.
+pub fn participant(
+    session: &Session,
+    now: SessionTime,
+    check_gaze: &str,
+    rejected: Option<&RejectedGaze>,
+) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
         ParticipantKind::Simulated => "simulated",
@@ -83,30 +98,46 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),
-        GazeSource::File => {
-            let file = session.spec.tracker.file.clone().unwrap_or_default();
-            checks.push(PreflightCheck::ok("gaze", format!("gaze from {file}: it comes with the trial")));
-        }
-        GazeSource::Mouse => checks.extend(gaze(session, now)),
+        // The check of recorded gaze needs the file, which the session does not know.
+        GazeSource::File => {}
+        GazeSource::Mouse => checks.extend(gaze(session, now, rejected)),
         GazeSource::Json => {
-            checks.extend(gaze(session, now));
+            checks.extend(gaze(session, now, rejected));
             checks.extend(calibration(session, check_gaze));
         }
         GazeSource::Lsl => {
             checks.push(stream(session));
-            checks.extend(gaze(session, now));
+            checks.extend(gaze(session, now, rejected));
             checks.extend(calibration(session, check_gaze));
         }
         GazeSource::Pupil => {
             checks.push(tracker(session));
-            checks.extend(gaze(session, now));
+            checks.extend(gaze(session, now, rejected));
             checks.push(calibration(session, check_gaze).unwrap_or_else(|| unchecked(check_gaze)));
         }
     }
     checks
 }
 
-fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
+/// Checks the gaze that the session replays from this file: one check of the numbers, and one for each remark about the
+/// file. A file without any sample is refused when it is read.
+pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCheck> {
+    let look = "look at the line that is named; docs/tracker-recorded.md says what is read, and how";
+    let (verdict, remedy) = match found {
+        found if found.usable == 0 => (
+            PreflightVerdict::Failed,
+            "a file with gaze on the display; missing_confidence = \"good\" under [tracker], if the tracker knows no \
+             confidence",
+        ),
+        found if found.malformed * 20 > found.samples => (PreflightVerdict::Warning, look),
+        _ => (PreflightVerdict::Ok, ""),
+    };
+    let numbers = PreflightCheck::new("gaze", verdict, format!("{file}: {}", found.words()), remedy);
+    let odd = |remark: &String| PreflightCheck::new("gaze file", PreflightVerdict::Warning, remark, look);
+    [numbers].into_iter().chain(found.remarks.iter().map(odd)).collect()
+}
+
+fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start the program that sends gaze to port {}", session.spec.participant.gaze_port),
         GazeSource::Pupil => "let the participant look at the wall display; Pupil Capture needs a \
@@ -126,6 +157,9 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
             let remedy = "send a line for each sample: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" \
                           in seconds if there is a clock";
             return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
+        }
+        if let Some(RejectedGaze { told, remedy }) = rejected {
+            return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, told.clone(), remedy.clone())];
         }
         return vec![PreflightCheck::new("gaze", verdict, "no gaze sample arrives", mends)];
     };
@@ -147,26 +181,44 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
                 "gaze quality",
                 PreflightVerdict::Warning,
                 found,
-                "set up the eye tracker again, or calibrate it",
+                "set up the eye tracker again, or calibrate it; set missing_confidence = \"good\" under [tracker], if it \
+                 knows no confidence",
             )
         }
     };
     let mut checks = vec![rate, quality];
+    if let Some(fault) = session.tracker.stamp_fault {
+        let found = format!("{}: gaze counts as taken when it arrives", fault.words());
+        let remedy = match session.spec.participant.gaze {
+            GazeSource::Lsl => "let the sender stamp each sample with LSL's clock when it is taken",
+            _ => "send t in seconds of a clock, read when the sample is taken; or leave t out",
+        };
+        checks.push(PreflightCheck::new("gaze times", PreflightVerdict::Warning, found, remedy));
+    }
+    checks.extend(stream_faults(session));
+    checks
+}
+
+/// Checks how many samples of the gaze stream are faulty. Real gaze streams have some; they are ignored, and matter only
+/// if there are many.
+fn stream_faults(session: &Session) -> Option<PreflightCheck> {
     let faults = faults(session);
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
-    if wrong > 0 {
-        // Real gaze streams have some faulty samples; faulty samples are ignored, and matter only if there are many.
-        let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
-        let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
-        let found = format!("{samples} gaze samples; {}", kinds.join(", "));
+    let (_, worst) = faults.iter().max_by_key(|(count, _)| *count)?;
+    let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
+    let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
+    let found = format!("{samples} gaze samples; {}", kinds.join(", "));
+    let remedy = match *worst {
+        MALFORMED => "check what the tracker sends: values are missing, or are no numbers",
+        TOO_FREQUENT => "send at most 2000 gaze samples a second",
+        DUPLICATE => "send each sample once, with a t of its own: many have the time and place of an earlier one",
         // Delayed samples come from a slow computer or network, not from wrong values.
-        let remedy = match session.tracker.dropped.malformed * 2 > wrong {
-            true => "check what the tracker sends: values are missing, or are no numbers",
-            false => "end other programs on the tracker's computer, or use a better network",
-        };
-        checks.push(PreflightCheck::new("gaze stream", verdict, found, remedy));
-    }
-    checks
+        _ if session.tracker.stamp_fault.is_none() => {
+            "end other programs on the tracker's computer, or use a better network"
+        }
+        _ => "mend the times of the samples: see gaze times",
+    };
+    Some(PreflightCheck::new("gaze stream", verdict, found, remedy))
 }
 
 /// Checks the connection to the eye tracker, and whether it detects the display.
@@ -210,6 +262,11 @@ fn tracker(session: &Session) -> PreflightCheck {
 /// Checks the gaze stream from the Lab Streaming Layer.
 fn stream(session: &Session) -> PreflightCheck {
     let wanted = session.spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()).map_or(String::new(), LslGazeSpec::title);
+    if let streams @ [_, _, ..] = &session.tracker.several_streams[..] {
+        let found = format!("{} streams {wanted}: {}", streams.len(), streams.join("; "));
+        let remedy = "set source_id or host under [lsl.gaze] to those of the tracker, or end the others";
+        return PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy);
+    }
     let found = match &session.tracker.link {
         TrackerConnection::Connected { device } => return PreflightCheck::ok("eye tracker", device.clone()),
         TrackerConnection::Lost { reason, .. } => reason.clone(),

@@ -183,13 +183,6 @@ impl Session {
         paused.fold(end - at, |age, pause| age - pause)
     }
 
-    /// The location at which the participant looks, by the latest gaze sample before `now`.
-    pub fn looked_at(&self, now: SessionTime) -> Option<LocationId> {
-        let places = self.kitchen.locations.len();
-        let at = self.gaze.looked_at[..places].iter().position(|at| *at == Some(now));
-        at.map(|index| LocationId(index as u8))
-    }
-
     /// Sampling rate of the gaze in Hz; `None` if no sample came for a second.
     pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
         let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);
@@ -201,21 +194,38 @@ impl Session {
         of_trial(self.spec.seed, self.trial)
     }
 
-    /// Whether the wizard (a person or a script) saw the assistant's recommendations.
-    pub fn wizard_saw_advice(&self) -> bool {
+    /// Whether the settings let the wizard (a person or a script) see the assistant's recommendations.
+    fn wizard_is_to_see_advice(&self) -> bool {
         let spec = &self.spec;
         match spec.wizard.kind {
             WizardKind::Scripted => spec.script_reads_offers(),
             WizardKind::Person => {
-                let is_shown = self.unblinded || spec.console.visibility == WizardVisibility::Recommendation;
-                spec.trial.condition == Condition::Wizard && is_shown
+                spec.trial.condition == Condition::Wizard && spec.console.visibility == WizardVisibility::Recommendation
             }
         }
     }
 
+    /// Whether the wizard (a person or a script) saw the assistant's recommendations.
+    pub fn wizard_saw_advice(&self) -> bool {
+        let is_persons = self.spec.wizard.kind == WizardKind::Person;
+        let was_unblinded = self.unblinded && is_persons && self.spec.trial.condition == Condition::Wizard;
+        was_unblinded || self.wizard_is_to_see_advice()
+    }
+
     /// The study arm of the trial as it was actually carried out: whether the wizard really saw advice.
     pub fn study_arm(&self) -> StudyArm {
-        StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, self.wizard_saw_advice())
+        self.arm_of_settings(self.wizard_saw_advice())
+    }
+
+    /// The study arm under which the trial counts, whatever happened in it: the arm that the plan assigned or, without a
+    /// plan, the arm of the settings.
+    pub fn planned_arm(&self) -> StudyArm {
+        let assigned = self.spec.step.as_ref().and_then(|step| step.arm);
+        assigned.unwrap_or_else(|| self.arm_of_settings(self.wizard_is_to_see_advice()))
+    }
+
+    fn arm_of_settings(&self, saw_advice: bool) -> StudyArm {
+        StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, saw_advice)
     }
 
     /// Number of presses of both agents during the trial.

@@ -7,6 +7,7 @@ pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVis
 use super::fitted_parameters::ParameterSource;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
+use super::person_code;
 use super::plan::{PlanPosition, PlanSpec};
 pub use super::probe_settings::ProbeSpec;
 use super::ranges;
@@ -101,15 +102,28 @@ impl SessionSpec {
     /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         ranges::check_session(self)?;
+        let code = &self.participant.code;
+        if let Some(fault) = person_code::fault(code) {
+            return Err(SettingError::new(
+                "participant.code",
+                format!("code = \"{code}\": {fault}"),
+                person_code::REMEDY,
+            ));
+        }
         self.check_rules()
     }
 
-    /// Checks the settings in the header of a recording, whose numbers may have the wider ranges of earlier versions.
+    /// Checks the settings in the header of a recording, whose numbers may have the wider ranges of earlier versions, and
+    /// whose participant may have a code that new sessions must not have.
     ///
     /// # Errors
     /// An error names the first invalid setting.
     pub fn check_recorded(&self) -> Result<(), SettingError> {
         ranges::check_recorded(self)?;
+        let code = &self.participant.code;
+        if !is_code(code) {
+            return Err(SettingError::new("participant.code", format!("code = \"{code}\""), person_code::REMEDY));
+        }
         self.check_rules()
     }
 
@@ -120,12 +134,6 @@ impl SessionSpec {
             if self.wizard.kind == WizardKind::Person {
                 plan.check_visibility(self.console.visibility)?;
             }
-        }
-        let code = &self.participant.code;
-        if !is_code(code) {
-            let found = format!("code = \"{code}\"");
-            let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"P07\"; never a name";
-            return Err(SettingError::new("participant.code", found, remedy));
         }
         if self.participant.gaze == GazeSource::Simulated && self.participant.kind != ParticipantKind::Simulated {
             let found = "gaze = \"simulated\" of a participant who is not simulated".to_string();

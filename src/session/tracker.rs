@@ -7,7 +7,10 @@ use super::setting_checks::SettingError;
 use crate::base::number_range::is_zero;
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DroppedInputCounts;
+use crate::gaze::stamp_check::StampFault;
 use crate::gaze::surface::SurfaceHomography;
+use crate::gaze::tags::{DisplayTags, TagError};
+use crate::kitchen::Kitchen;
 
 /// Settings of the eye tracker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,11 +35,40 @@ pub struct TrackerSpec {
     /// the trial starts before the first sample.
     #[serde(skip_serializing_if = "is_zero")]
     pub file_start_s: f64,
+    /// How gaze samples without a confidence are taken: in lines of JSON, in gaze files, and where Pupil Capture sends NaN.
+    #[serde(skip_serializing_if = "MissingConfidence::is_default")]
+    pub missing_confidence: MissingConfidence,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
     /// Drop-outs (times without gaze) of the simulated eye tracker; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<GazeGapSpec>,
+}
+
+/// How a gaze sample is taken whose source does not say how confident it is. Some trackers know no confidence at all;
+/// others leave it out where they have lost the eyes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MissingConfidence {
+    /// The sample is recorded with the confidence 1, and read.
+    Good,
+    /// The sample is recorded with the confidence 0, and not read.
+    #[default]
+    Bad,
+}
+
+impl MissingConfidence {
+    fn is_default(&self) -> bool {
+        *self == MissingConfidence::default()
+    }
+
+    /// The confidence with which such samples are recorded.
+    pub fn confidence(self) -> f64 {
+        match self {
+            MissingConfidence::Good => 1.0,
+            MissingConfidence::Bad => 0.0,
+        }
+    }
 }
 
 /// Drop-outs of the simulated eye tracker: periods without any gaze sample.
@@ -62,6 +94,7 @@ impl Default for TrackerSpec {
             record: true,
             file: None,
             file_start_s: 0.0,
+            missing_confidence: MissingConfidence::default(),
             distance_m: 2.0,
             gaps: None,
         }
@@ -69,6 +102,21 @@ impl Default for TrackerSpec {
 }
 
 impl TrackerSpec {
+    /// Map from the tracked surface to the display: from these settings' corners, or else from the hull of the tags.
+    ///
+    /// # Errors
+    /// The tags do not fit on the display, or the corners are no surface.
+    pub fn surface_map(&self, kitchen: &Kitchen) -> Result<SurfaceHomography, TagError> {
+        let corners = match self.corners {
+            Some(corners) => corners,
+            None => DisplayTags::place(kitchen)?.hull(),
+        };
+        SurfaceHomography::new(corners).ok_or_else(|| TagError {
+            found: format!("corners = {corners:?}"),
+            remedy: "a convex quadrangle".to_string(),
+        })
+    }
+
     pub(super) fn is_default(&self) -> bool {
         *self == TrackerSpec::default()
     }
@@ -128,6 +176,11 @@ pub enum TrackerEvent {
         /// Names of the surfaces that the tracker detects.
         names: Vec<String>,
     },
+    /// Several streams could be the eye tracker's, and the settings do not choose among them.
+    SeveralStreams {
+        /// Descriptions of the streams; empty: there are no longer several.
+        streams: Vec<String>,
+    },
     /// The eye tracker's program reports on its own recording of the trial.
     Recording {
         /// The state of the eye tracker's own recording.
@@ -148,7 +201,7 @@ pub enum TrackerEvent {
         /// The tracker's confidence in the fixation, 0 to 1.
         confidence: f64,
         /// Beginning of the fixation on the tracker's clock, in nanoseconds.
-        device_ns: u64,
+        device_ns: i64,
         /// Session time at which the fixation began.
         began_ns: SessionTime,
     },
@@ -159,6 +212,13 @@ pub enum TrackerEvent {
         /// Arrival, in session time, of the first gaze sample whose time was uncertain until the step was detected.
         uncertain_since_ns: SessionTime,
     },
+    /// The time stamps of gaze samples cannot be used, and samples count as taken when they arrive; or they can be used
+    /// again.
+    Stamps {
+        /// What is wrong with the time stamps; nothing: they are those of a clock.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        fault: Option<StampFault>,
+    },
     /// Onset or offset of a blink that the eye tracker detected.
     Blink {
         /// Whether the eyes closed (onset of the blink); false: the eyes opened (offset).
@@ -166,7 +226,7 @@ pub enum TrackerEvent {
         /// The tracker's confidence in the blink, 0 to 1.
         confidence: f64,
         /// Time of the blink's onset or offset on the tracker's clock, in nanoseconds.
-        device_ns: u64,
+        device_ns: i64,
         /// Session time of the blink's onset or offset.
         taken_ns: SessionTime,
     },
@@ -178,6 +238,8 @@ pub enum TrackerEvent {
 pub enum TrackerRecording {
     /// The tracker's recording began at our request.
     Begun,
+    /// The tracker's recording that began at our request before this program ended goes on.
+    GoesOn,
     /// The tracker's recording did not begin: its program is recording already, or cannot record.
     NotBegun,
     /// The tracker's recording ended before the trial ended.
@@ -215,6 +277,12 @@ pub struct TrackerStatus {
     pub sees_display: Option<bool>,
     /// Names of the surfaces that the tracker detects instead of the wall display.
     pub other_surfaces: Vec<String>,
+    /// Descriptions of the streams among which the settings do not choose the tracker's.
+    pub several_streams: Vec<String>,
+    /// What is wrong with the time stamps of gaze samples, because of which they are not used.
+    pub stamp_fault: Option<StampFault>,
+    /// Last report on the recording that the tracker's program makes of the trial.
+    pub recording: Option<TrackerRecording>,
     /// Number of lost connections to the tracker's program.
     pub losses: u64,
     /// Numbers of the tracker's inputs that could not be recorded, by kind.
@@ -228,6 +296,11 @@ pub struct TrackerStatus {
 }
 
 impl TrackerStatus {
+    /// Whether the tracker's program records the trial at our request.
+    pub fn is_recording(&self) -> bool {
+        matches!(self.recording, Some(TrackerRecording::Begun | TrackerRecording::GoesOn))
+    }
+
     /// Applies an event of the eye tracker that the session accepts.
     pub(super) fn apply(&mut self, now: SessionTime, event: &TrackerEvent) {
         match event {
@@ -244,7 +317,10 @@ impl TrackerStatus {
             }
             TrackerEvent::DisplayLost => self.sees_display = Some(false),
             TrackerEvent::OtherSurfaces { names } => self.other_surfaces.clone_from(names),
-            TrackerEvent::Recording { .. } => {}
+            TrackerEvent::SeveralStreams { streams } => self.several_streams.clone_from(streams),
+            TrackerEvent::Recording { state: TrackerRecording::NotAnnotated } => {}
+            TrackerEvent::Recording { state } => self.recording = Some(*state),
+            TrackerEvent::Stamps { fault } => self.stamp_fault = *fault,
             TrackerEvent::Dropped(counts) => self.dropped = *counts,
             TrackerEvent::ClockSet { .. } => self.clock_steps += 1,
             TrackerEvent::Fixation { .. } => self.fixations += 1,
@@ -265,6 +341,7 @@ pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
         }
         TrackerEvent::Blink { confidence, .. } => vec![*confidence],
         TrackerEvent::ClockSet { by_s, .. } => vec![*by_s],
+        TrackerEvent::Stamps { fault: Some(StampFault::Rate(rate)) } => vec![*rate],
         _ => Vec::new(),
     };
     match numbers.iter().all(|number| number.is_finite()) {

@@ -8,7 +8,7 @@ use crate::base::time::SessionTime;
 pub(super) fn pause(session: &mut Session, now: SessionTime) {
     stop(session, now);
     session.phase = TrialPhase::Paused;
-    session.gaze.steady_since = None;
+    session.gaze.measured = None;
 }
 
 /// Stops the trial's clock, if it is running.
@@ -27,7 +27,7 @@ pub(super) fn stop(session: &mut Session, now: SessionTime) {
 pub(super) fn resume(session: &mut Session, now: SessionTime) -> SessionTime {
     let by = now - session.paused_at;
     session.pauses.push((session.paused_at, now));
-    session.gaze.steady_since = None;
+    session.gaze.measured = None;
     session.paused_total = session.paused_total + by;
     session.phase = TrialPhase::Running;
     if let Some((_, _, until)) = &mut session.robot.intention {

@@ -75,7 +75,7 @@ pub struct ScoreSummary {
 
 /// Condition of the trial after which an answer was given; `None` for answers before the trials.
 fn asked_after(trial: &TrialStatistics, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
-    (!answered.before).then_some(trial.study_arm)
+    (!answered.before).then_some(trial.planned_arm)
 }
 
 /// Scores of all questionnaires by condition, in the order in which questionnaires and conditions occur.

@@ -10,7 +10,7 @@
 use serde::Serialize;
 
 use super::arm_design::{ArmComparisonDesign, StudyArmTrial, pairs};
-use super::effect::LEVEL;
+use super::effect::{LEVEL, LeftOutParticipant};
 use super::group_orders::{GroupOrder, group_orders};
 use super::linear_mixed_model::{LinearMixedModel, MixedModelContrast};
 use super::negative_binomial_model::WaldContrast;
@@ -27,6 +27,8 @@ pub struct StudyArmComparison {
     pub participants: usize,
     /// Number of trials in the comparison of arms.
     pub trials: usize,
+    /// Participants with recordings whom the comparison leaves out.
+    pub left_out: Vec<LeftOutParticipant>,
     /// Numbers of trials, events and presses of each arm, in the order of tables.
     pub arms: Vec<StudyArmCounts>,
     /// Standard deviations of log rates: between participants, and residual (within participants).
@@ -138,23 +140,42 @@ fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
     }
 }
 
-/// The trials that have a period and a known primary outcome. If a participant repeated a period, its last trial
-/// counts.
-fn counted(trials: &[&TrialStatistics], outcome: PrimaryOutcome) -> Vec<StudyArmTrial> {
-    let mut rows: Vec<(&TrialStatistics, StudyArmTrial)> = Vec::new();
-    for trial in trials.iter().copied().filter(|trial| trial.human_presses > 0) {
-        let (Some(period), Some(events)) = (trial.period, events(outcome, trial)) else { continue };
-        let mut participant = 0;
-        if let Some((last, row)) = rows.last() {
-            participant = row.participant + usize::from(last.participant != trial.participant);
-            if participant == row.participant && row.period == period {
-                rows.pop();
+/// Why the comparison cannot use a trial, in words; otherwise the trial's period and number of events.
+fn usable(trial: &TrialStatistics, outcome: PrimaryOutcome) -> Result<(u32, u64), String> {
+    if let Some(reason) = &trial.left_out {
+        return Err(format!("does not count ({reason})"));
+    }
+    if trial.human_presses == 0 {
+        return Err("no press of the participant".to_string());
+    }
+    let period = trial.period.ok_or_else(|| "no number in the participant's series".to_string())?;
+    let events = events(outcome, trial).ok_or_else(|| format!("{} not known", outcome.title()))?;
+    Ok((period, events))
+}
+
+/// The trials that the comparison uses, and the participants without such a trial. If a participant repeated a period,
+/// its last trial counts.
+fn counted(trials: &[TrialStatistics], outcome: PrimaryOutcome) -> (Vec<StudyArmTrial>, Vec<LeftOutParticipant>) {
+    let (mut rows, mut left_out): (Vec<StudyArmTrial>, _) = (Vec::new(), Vec::new());
+    for own in trials.chunk_by(|a, b| a.participant == b.participant) {
+        let participant = rows.last().map_or(0, |last| last.participant + 1);
+        let (mut own_rows, mut reasons): (Vec<StudyArmTrial>, Vec<String>) = (Vec::new(), Vec::new());
+        for trial in own {
+            match usable(trial, outcome) {
+                Ok((period, events)) => {
+                    own_rows.pop_if(|row| row.period == period);
+                    let (arm, presses) = (trial.planned_arm, trial.human_presses);
+                    own_rows.push(StudyArmTrial { participant, period, arm, events, presses });
+                }
+                Err(reason) => reasons.push(format!("{}: {reason}", trial.recording)),
             }
         }
-        let (arm, presses) = (trial.study_arm, trial.human_presses);
-        rows.push((trial, StudyArmTrial { participant, period, arm, events, presses }));
+        if own_rows.is_empty() {
+            left_out.push(LeftOutParticipant { participant: own[0].participant.clone(), reason: reasons.join("; ") });
+        }
+        rows.extend(own_rows);
     }
-    rows.into_iter().map(|(_, row)| row).collect()
+    (rows, left_out)
 }
 
 /// Contrasts of the primary model, with Holm's correction.
@@ -206,15 +227,18 @@ pub fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
     model.map_or_else(Vec::new, |model| contrasts(&design, &model))
 }
 
-/// Compares the arms of these trials, which must be ordered by participant and period; `None` unless participants have
-/// trials in different arms, or where the model cannot be estimated. The plan sets outcome and margin.
-pub fn compare_arms(trials: &[&TrialStatistics]) -> Option<StudyArmComparison> {
-    let aims = trials.iter().find_map(|trial| trial.aims).unwrap_or_default();
-    let compared = compare_counts(counted(trials, aims.outcome), aims)?;
-    Some(StudyArmComparison { groups: group_orders(trials), ..compared })
+/// Compares the arms of the trials that the analysis includes; `trials` must be ordered by participant and period.
+/// `None` unless participants have trials in different arms, or where the model cannot be estimated. The plan sets outcome
+/// and margin.
+pub fn compare_arms(trials: &[TrialStatistics]) -> Option<StudyArmComparison> {
+    let aims = trials.iter().filter(|trial| trial.counts()).find_map(|trial| trial.aims).unwrap_or_default();
+    let (rows, left_out) = counted(trials, aims.outcome);
+    let compared = compare_counts(rows, aims)?;
+    Some(StudyArmComparison { groups: group_orders(trials), left_out, ..compared })
 }
 
-/// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups.
+/// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups, and
+/// leaves nobody out.
 pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
     let design = ArmComparisonDesign::new(trials);
     if !design.is_within() {
@@ -250,6 +274,7 @@ pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<Stu
         outcome: aims.outcome,
         participants: design.trials().last().map_or(0, |trial| trial.participant + 1),
         trials: design.trials().len(),
+        left_out: Vec::new(),
         arms: design.arms().iter().copied().map(outcome_of).collect(),
         standard_deviations: [model.between.sqrt(), model.within.sqrt()],
         non_inferiority: non_inferiority.collect(),

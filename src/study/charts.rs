@@ -2,8 +2,9 @@
 
 use maud::Markup;
 
+use super::arm_analysis::StudyConditionSummary;
 use super::effect::{TrialPair, pairs};
-use super::figures::{StudyConditionSummary, StudySummary};
+use super::figures::StudySummary;
 use super::roc::{ConceptRocCurve, RocPoint};
 use super::svg::{PlotAxis, SvgChart, minus};
 use super::tables::trials::HEADLINE;
@@ -16,7 +17,7 @@ use crate::session::study_arm::StudyArm;
 /// Chart of errors by condition and participant (after the paper's figure, top left); lines join the two trials of a
 /// participant, means are black.
 pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
-    let pairs = pairs(trials, HEADLINE);
+    let pairs = pairs(trials, HEADLINE).pairs;
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
     if pairs.is_empty() {
         return None;
@@ -46,7 +47,7 @@ pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
 /// Chart of improvements from the first to the second trial by starting group (after the paper's figure, top right);
 /// the difference of the groups' means is twice the effect of assistance.
 pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
-    let pairs = pairs(trials, HEADLINE);
+    let pairs = pairs(trials, HEADLINE).pairs;
     if pairs.is_empty() {
         return None;
     }

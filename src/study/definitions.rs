@@ -7,7 +7,7 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Regret, error",
         "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of both \
-         agents until all orders are served. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
+         agents until all orders are served, proven to be the least; presses for which the proof exceeded its budget are counted. Error: r(a) exceeds the least regret among the human's presses by 1 or more, \
          unless the cost of an active order fell and the excess is at most 2. In about 2 % of presses no press of the human \
          helps (least regret 1); the excess is counted from there. An ineffective press is judged like any other.",
     ),
@@ -87,10 +87,19 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          for the recipe by what was believed wrong at the press; where both were, or nobody knows, it counts for neither alone.",
     ),
     (
+        "Condition of a trial",
+        "A trial counts in the condition to which the plan assigned it, as randomised; without a plan, in that of its settings. A trial \
+         that was carried out otherwise (the wizard was shown what the assistants would send, another concept) is a deviation: it is \
+         listed, and the analysis by conditions as carried out stands beside. Similarity of wizard and assistant goes by what the \
+         wizard saw, and concepts are compared on trials in which nobody could send signals.",
+    ),
+    (
         "Assistance effect",
         "Two periods, two starting groups: mixed ANOVA with period within and starting group between; the assistance effect is \
-         the interaction, F = t\u{b2} of the group difference of the period differences, also for unequal groups. The paper's \
-         coding, condition within, is also given. Pearson r of group (1: assisted in the second trial) and improvement; r > 0: \
+         the interaction, F = t\u{b2} of the group difference of the period differences, also for unequal groups. Sums of squares \
+         are of type III (unweighted means of the groups), so that the effect of the period does not contain the assistance where \
+         groups differ in size. The paper's coding, condition within, is also given; with type III it tests the same. Every test \
+         states its number of participants and names those with recordings whom it leaves out. Pearson r of group (1: assisted in the second trial) and improvement; r > 0: \
          assistance helps. Exact permutation test of the improvements; Hodges-Lehmann estimate of half their shift, with the \
          interval of the Mann-Whitney test; Hedges' g of the shift. Errors are compared as rates per human press, since trials \
          differ in length.",

@@ -11,14 +11,13 @@
 //! participants have a subset of the same events.
 
 use rand::RngExt;
-use rand::seq::SliceRandom;
 use serde::Serialize;
 
 use super::arm_comparison::primary_contrasts;
 use super::arm_design::{StudyArmTrial, pairs};
 use super::simulation_pool::SimulationPool;
 use super::statistics::mixed_anova;
-use crate::base::rng::{Stream, stream};
+use crate::base::rng::{Stream, shuffle, stream};
 use crate::session::plan::orders;
 use crate::session::study_arm::StudyArm;
 
@@ -160,7 +159,7 @@ impl<'a> StudySampler<'a> {
         let name = format!("study of {size} from pool {}", self.number);
         let mut random = stream(self.pool.header.seed, &name, number);
         let mut places: Vec<usize> = (0..self.orders.len()).collect();
-        places.shuffle(&mut random);
+        shuffle(&mut places, &mut random);
         let all: Vec<usize> = self.by_order.iter().flatten().copied().collect();
         let mut study = Vec::with_capacity(size * self.orders[0].len());
         for participant in 0..size {

@@ -39,6 +39,38 @@ impl TrialPair {
     }
 }
 
+/// A participant with recordings who is left out of a test, with the reason.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LeftOutParticipant {
+    /// The participant's code.
+    pub participant: String,
+    /// Why the test cannot use the participant, in words.
+    pub reason: String,
+}
+
+/// The participants who are left out in words, with participants of the same reason together: "P03, P07 (no trial 2)";
+/// `None` if nobody is left out.
+pub fn left_out_in_words(left_out: &[LeftOutParticipant]) -> Option<String> {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for LeftOutParticipant { participant, reason } in left_out {
+        match reasons.iter_mut().find(|(other, _)| other == reason) {
+            Some((_, codes)) => codes.push(participant),
+            None => reasons.push((reason, vec![participant])),
+        }
+    }
+    let words: Vec<String> = reasons.iter().map(|(reason, codes)| format!("{} ({reason})", codes.join(", "))).collect();
+    (!words.is_empty()).then(|| words.join("; "))
+}
+
+/// The participants of a study with a measure of both their trials, and those without.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PairedTrials {
+    /// The pairs of trials, in the order of participant codes.
+    pub pairs: Vec<TrialPair>,
+    /// The participants without a pair, in the order of their codes.
+    pub left_out: Vec<LeftOutParticipant>,
+}
+
 /// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. The measure is a
 /// column of the table of trials, two columns of the table of participants, and a line of the report's tests.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +112,8 @@ pub struct AssistanceEffect {
     pub measure: StudyMeasure,
     /// Number of participants whose second trial was assisted, and number of participants whose first trial was.
     pub groups: [usize; 2],
+    /// Participants with recordings whom the tests leave out; empty where nothing is tested, since there are no pairs.
+    pub left_out: Vec<LeftOutParticipant>,
     /// Mean improvement of each starting group from the first to the second trial.
     pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance with period within and starting group between; assistance is the interaction.
@@ -109,38 +143,56 @@ impl AssistanceEffect {
     }
 }
 
-/// Pairs of one assisted and one unassisted trial that the analysis includes and that have this measure, in the order
-/// of participant codes. If a participant repeated a period, its last trial counts. Empty where the trials have more
-/// than two arms, which are compared together instead ([`super::arm_comparison`]).
-pub fn pairs(trials: &[TrialStatistics], measure: StudyMeasure) -> Vec<TrialPair> {
-    let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.study_arm).collect();
+/// Pairs of one assisted and one unassisted trial that the analysis includes and that have this measure. If a participant
+/// repeated a period, its last trial counts. Empty where the trials were planned in more than two arms, which are compared
+/// together instead ([`super::arm_comparison`]).
+pub fn pairs(trials: &[TrialStatistics], measure: StudyMeasure) -> PairedTrials {
+    let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.planned_arm).collect();
     arms.sort_unstable();
     arms.dedup();
+    let mut paired = PairedTrials::default();
     if arms.len() > 2 {
-        return Vec::new();
+        return paired;
     }
     let mut codes: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     codes.sort_unstable();
     codes.dedup();
-    codes.into_iter().filter_map(|code| pair(code, trials, measure)).collect()
+    for code in codes {
+        match pair(code, trials, measure) {
+            Ok(pair) => paired.pairs.push(pair),
+            Err(reason) => paired.left_out.push(LeftOutParticipant { participant: code.to_string(), reason }),
+        }
+    }
+    paired
 }
 
-fn pair(code: &str, trials: &[TrialStatistics], measure: StudyMeasure) -> Option<TrialPair> {
+/// The pair of trials of the participant with this code, or why there is none.
+fn pair(code: &str, trials: &[TrialStatistics], measure: StudyMeasure) -> Result<TrialPair, String> {
+    let own: Vec<&TrialStatistics> = trials.iter().filter(|trial| trial.participant == code).collect();
     let of_period = |period: u32| {
-        let is_it =
-            |trial: &&TrialStatistics| trial.participant == code && trial.period == Some(period) && trial.counts();
-        trials.iter().rfind(is_it)
+        let all = || own.iter().filter(move |trial| trial.period == Some(period));
+        let counted = all().rfind(|trial| trial.counts());
+        let why = || match all().next_back().and_then(|trial| trial.left_out.as_ref()) {
+            Some(reason) => format!("trial {period} does not count ({reason})"),
+            None => format!("no trial {period}"),
+        };
+        counted.copied().ok_or_else(why)
     };
     let (first, second) = (of_period(1)?, of_period(2)?);
     if first.is_assisted() == second.is_assisted() {
-        return None;
+        let both = if first.is_assisted() { "assisted" } else { "unassisted" };
+        return Err(format!("both trials {both}"));
     }
-    let values = [(measure.value)(first)?, (measure.value)(second)?];
-    Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
+    let value = |period: u32, trial: &TrialStatistics| {
+        (measure.value)(trial).ok_or_else(|| format!("trial {period} has no {}", measure.title))
+    };
+    let values = [value(1, first)?, value(2, second)?];
+    Ok(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
 /// Computes the effect of assistance on a measure; `seed` seeds the random permutations.
-pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> AssistanceEffect {
+pub fn effect(measure: StudyMeasure, paired: PairedTrials, seed: u64) -> AssistanceEffect {
+    let PairedTrials { pairs, left_out } = paired;
     let group = |pair: &TrialPair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {
         pairs.iter().filter(|pair| pair.assisted_second == assisted_second).map(TrialPair::improvement).collect()
@@ -158,6 +210,7 @@ pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> Assistan
     AssistanceEffect {
         measure,
         groups: [with.len(), without.len()],
+        left_out: if pairs.is_empty() { Vec::new() } else { left_out },
         improvements: [mean(&with), mean(&without)],
         by_period: mixed_anova(&pairs.iter().map(|pair| (group(pair), pair.values)).collect::<Vec<_>>()),
         by_condition: mixed_anova(&pairs.iter().map(|pair| (group(pair), pair.by_condition())).collect::<Vec<_>>()),

@@ -5,32 +5,34 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
-use super::arm_comparison::{StudyArmComparison, compare_arms};
+use super::arm_analysis::{ArmAnalysis, ArmDeviation, StudyConditionSummary};
+use super::arm_comparison::StudyArmComparison;
 use super::arm_group::{RobotArmTotals, by_arm};
 use super::detail_totals::{DetailTotals, WizardAssistantSimilarity};
-use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
+use super::effect::AssistanceEffect;
 use super::facts::RecordingFacts;
 use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::live_arms::{SignalSenderResults, live_arms};
 use super::missing_trials::MissingTrials;
+use super::planned_trial::RecordingCopy;
 use super::preregistration::PreregistrationCheck;
 use super::roc::{ConceptRocCurve, compare};
 use super::statistics::{Correlation, FTest};
-use super::tables::probe_table::PROBES_WRONG;
-use super::tables::trials::measures;
 use super::tables::tutorial_answers::TutorialQuestionRow;
-use super::trial_statistics::{TrialStatistics, mean};
+use super::trial_statistics::TrialStatistics;
 use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
+use crate::base::words::count;
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::{AgreementTable, RaterAgreement, RaterCodes};
+use crate::measures::cause_codes::{AgreementTable, RaterAgreement};
 use crate::measures::matching::{MatchCounts, Similarity};
+use crate::measures::rater_choice::RaterPair;
 use crate::measures::wizard_performance::WizardMeasures;
+use crate::session::code_correction::CodeCorrection;
 use crate::session::event::TrialEndReason;
 use crate::session::settings::ParticipantKind;
-use crate::session::study_arm::StudyArm;
 
 /// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;
@@ -60,6 +62,12 @@ pub struct StudySummary {
     /// none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_trials: Vec<MissingTrials>,
+    /// Recordings whose participant's code was corrected afterwards; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub corrections: Vec<CorrectedRecording>,
+    /// Recordings that are copies of others, and are not counted; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub copies: Vec<RecordingCopy>,
     /// Summary of the trials in each condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
@@ -73,6 +81,13 @@ pub struct StudySummary {
     /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
     /// arms.
     pub arms: Option<StudyArmComparison>,
+    /// Trials that were carried out in another arm than the planned one, under which they count; absent if there are
+    /// none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub deviations: Vec<ArmDeviation>,
+    /// The same analysis with each trial in the arm in which it was carried out; absent without deviations.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub as_carried_out: Option<ArmAnalysis>,
     /// The receiver operating characteristic (ROC) of each communication concept.
     pub roc: Vec<ConceptRocCurve>,
     /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
@@ -116,6 +131,13 @@ pub struct StudySummary {
     pub probes: Option<ProbeSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<RaterAgreement>,
+    /// Number of trials by the pair of raters ("R1+R2") whose codes or consensus determine the causes of errors; absent
+    /// without raters.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub rater_pairs: BTreeMap<String, u64>,
+    /// Trials in which both raters gave the same codes to all errors; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub identical_codes: Vec<IdenticalCodes>,
     /// Agreement of the two raters about the false beliefs from which episodes follow.
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
@@ -128,26 +150,43 @@ pub struct StudySummary {
     pub practice: u64,
 }
 
-/// Summary of the trials of a study in one condition.
+/// A recording whose participant's code was corrected after it was made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StudyConditionSummary {
-    /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
-    pub condition: StudyArm,
-    /// Number of trials in the condition.
-    pub trials: u64,
-    /// Sums and means over the trials of the condition.
+pub struct CorrectedRecording {
+    /// The recording's name in tables.
+    pub recording: String,
+    /// The correction of the participant's code.
     #[serde(flatten)]
-    pub totals: TrialTotals,
-    /// Mean number of the human's errors per trial.
-    pub mean_errors: Option<f64>,
-    /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
-    pub mean_order_s: Option<f64>,
-    /// Mean over trials of the summed regret of both agents per served order.
-    pub mean_additional_presses_per_order: Option<f64>,
-    /// Mean over trials of the median time between presses of the human, in seconds.
-    pub mean_press_s: Option<f64>,
-    /// Number of error sequences by their length: sequences with 1, 2, 3, … errors.
-    pub sequence_lengths: Vec<u64>,
+    pub correction: CodeCorrection,
+}
+
+impl CorrectedRecording {
+    /// The corrected recording in words.
+    pub fn in_words(&self) -> String {
+        format!("code of the participant corrected: {}: {}", self.recording, self.correction.in_words())
+    }
+}
+
+/// A trial in which two raters gave the same codes to all errors: perhaps one file with codes is a copy of the other.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct IdenticalCodes {
+    /// The recording's name in tables.
+    pub recording: String,
+    /// The two raters: "R1+R2".
+    pub raters: String,
+    /// Number of errors that both coded alike.
+    pub errors: u64,
+}
+
+impl IdenticalCodes {
+    /// The warning of identical codes in words.
+    pub fn in_words(&self) -> String {
+        let raters = self.raters.replace('+', " and ");
+        format!(
+            "{raters} gave the same codes to all {} errors of {}: make sure that one is no copy of the other",
+            self.errors, self.recording
+        )
+    }
 }
 
 /// A consensus of two raters that no longer holds, since one of them changed a code.
@@ -180,8 +219,9 @@ impl StudySummary {
     ) -> StudySummary {
         let counting: Vec<&TrialStatistics> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
-        let effects: Vec<AssistanceEffect> =
-            compared(trials).map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
+        let ArmAnalysis { conditions, effects, arms } = ArmAnalysis::from_trials(trials, SEED);
+        let deviations: Vec<ArmDeviation> =
+            counting.iter().filter_map(|trial| ArmDeviation::from_trial(trial)).collect();
         let comparison = compare(&details.concepts, SEED);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
@@ -201,12 +241,16 @@ impl StudySummary {
             robot: by_arm(&counting),
             preregistration: None,
             missing_trials: Vec::new(),
-            conditions: conditions(&counting),
+            copies: Vec::new(),
+            corrections: Vec::new(),
+            conditions,
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
             permutation_p: effects[0].permutation_p,
             effects,
-            arms: compare_arms(&counting),
+            arms,
+            as_carried_out: (!deviations.is_empty()).then(|| ArmAnalysis::as_carried_out(trials, SEED)),
+            deviations,
             live: live_arms(&counting, &comparison.concepts),
             roc: comparison.concepts,
             roc_beliefs_from: details.concepts_beliefs_from,
@@ -229,6 +273,8 @@ impl StudySummary {
             probes: ProbeSummary::from_trials(details.probes.iter().map(|(code, probes)| (code.as_str(), probes))),
             raters: agreement(&counting),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
+            rater_pairs: rater_pairs(&counting),
+            identical_codes: counting.iter().filter_map(|trial| identical_codes(trial)).collect(),
             consensus: consensus(&counting),
             stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),
             left_out: left_out.collect(),
@@ -246,6 +292,16 @@ impl StudySummary {
         StudySummary { missing_trials, ..self }
     }
 
+    /// The summary with the recordings whose participant's code was corrected.
+    pub fn with_corrections(self, corrections: Vec<CorrectedRecording>) -> StudySummary {
+        StudySummary { corrections, ..self }
+    }
+
+    /// The summary with the recordings that were left out, since they are copies of others.
+    pub fn with_copies(self, copies: Vec<RecordingCopy>) -> StudySummary {
+        StudySummary { copies, ..self }
+    }
+
     /// Adds the answers to the questions of tutorials, which must be ordered by participant.
     pub fn with_tutorials(self, answers: &[TutorialQuestionRow]) -> StudySummary {
         StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
@@ -257,12 +313,6 @@ fn ended(trials: &[&TrialStatistics]) -> BTreeMap<TrialEndReason, u64> {
     let mut ended = BTreeMap::new();
     trials.iter().filter_map(|trial| trial.ended).for_each(|reason| *ended.entry(reason).or_default() += 1);
     ended
-}
-
-/// The measures that are compared in these trials; those of freeze probes only if there are probes.
-fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
-    let has_probes = trials.iter().any(|trial| trial.probes.is_some());
-    measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
 }
 
 /// The least reliable source of participants' beliefs among these trials.
@@ -280,27 +330,6 @@ fn title(facts: &RecordingFacts, trials: &[TrialStatistics], simulated: bool) ->
     }
 }
 
-fn conditions(trials: &[&TrialStatistics]) -> Vec<StudyConditionSummary> {
-    let of = |condition: StudyArm| {
-        let trials: Vec<&TrialStatistics> =
-            trials.iter().copied().filter(|trial| trial.study_arm == condition).collect();
-        let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
-        let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
-        lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
-        (!trials.is_empty()).then(|| StudyConditionSummary {
-            condition,
-            trials: trials.len() as u64,
-            totals: TrialTotals::from_trials(&trials),
-            mean_errors: mean(trials.iter().map(|trial| trial.errors as f64)),
-            mean_order_s: mean(trials.iter().filter_map(|trial| trial.order_s)),
-            mean_additional_presses_per_order: mean(trials.iter().filter_map(|one| one.additional_presses_per_order)),
-            mean_press_s: mean(trials.iter().filter_map(|trial| trial.press_s)),
-            sequence_lengths,
-        })
-    };
-    StudyArm::ALL.into_iter().filter_map(of).collect()
-}
-
 /// Number of trials that use the consensus of two raters, by pair of raters.
 fn consensus(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
     let mut settled = BTreeMap::new();
@@ -310,15 +339,38 @@ fn consensus(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
     settled
 }
 
+/// Pairs of raters in words: "R1 and R2", with their numbers of trials if there are several pairs.
+pub fn pairs_in_words(pairs: &BTreeMap<String, u64>) -> String {
+    let word = |(pair, trials): (&String, &u64)| match pairs.len() {
+        1 => pair.replace('+', " and "),
+        _ => format!("{} in {}", pair.replace('+', " and "), count(*trials, "trial", "trials")),
+    };
+    pairs.iter().map(word).collect::<Vec<String>>().join("; ")
+}
+
 fn stale(trial: &TrialStatistics) -> Option<StaleConsensus> {
     let reason = trial.stale_consensus.clone()?;
     Some(StaleConsensus { recording: trial.recording.clone(), reason })
 }
 
+/// Number of trials by the pair of raters whose codes or consensus determine the causes of errors.
+fn rater_pairs(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
+    let mut pairs = BTreeMap::new();
+    for pair in trials.iter().filter_map(|trial| trial.raters.as_ref()) {
+        *pairs.entry(pair.name()).or_default() += 1;
+    }
+    pairs
+}
+
+fn identical_codes(trial: &TrialStatistics) -> Option<IdenticalCodes> {
+    let pair = trial.raters.as_ref().filter(|pair| pair.is_identical(trial.errors as usize))?;
+    Some(IdenticalCodes { recording: trial.recording.clone(), raters: pair.name(), errors: trial.errors })
+}
+
 /// Agreement of the raters' codes over all trials.
 fn agreement(trials: &[&TrialStatistics]) -> Option<RaterAgreement> {
     let mut table = AgreementTable::default();
-    let coded: Vec<&[RaterCodes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
-    coded.iter().for_each(|[one, other]| table.add(one, other));
+    let coded: Vec<&RaterPair> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
+    coded.iter().for_each(|pair| table.add(&pair.codes[0], &pair.codes[1]));
     (!coded.is_empty()).then(|| table.agreement())
 }

@@ -23,11 +23,13 @@ const EXCLUSIONS: [&str; 5] = [
 ];
 
 /// Statistical methods that compare the conditions, in the words of the frozen plan.
-const METHODS: [&str; 5] = [
+const METHODS: [&str; 6] = [
+    "Each trial counts in the condition to which the plan assigned it. Trials that were carried out in another condition are listed, and the \
+     same analysis by the conditions as carried out is given beside.",
     "Primary: linear mixed model of log((events + 0.5) / presses of the human); participant random, condition and number of the trial fixed; \
      REML, Satterthwaite's degrees of freedom; Holm's correction over all contrasts.",
     "Beside it: mixed negative binomial model of the events with log presses of the human as offset; Laplace's approximation, Wald's tests.",
-    "Two conditions of which one is unassisted: mixed ANOVA of errors per press of the human, interaction of period and starting group; \
+    "Two conditions of which one is unassisted: mixed ANOVA of errors per press of the human, interaction of period and starting group, sums of squares of type III; \
      Pearson's r, permutation test, Hodges-Lehmann estimate (the paper's analysis).",
     "From three conditions on: the primary model with the condition of the trial before, as a sensitivity analysis (carry-over).",
     "Non-inferiority of an assistant to the wizard: the upper end of the one-sided interval of 97.5 % of the ratio of rates is below the margin.",
@@ -139,7 +141,7 @@ impl FrozenPlan {
         if own.program != program {
             found.push(format!("the analysis is made by tomcom {program}, and was frozen for tomcom {}", own.program));
         }
-        let lists = [("methods", &own.methods, &METHODS), ("exclusions", &own.exclusions, &EXCLUSIONS)];
+        let lists = [("methods", &own.methods, &METHODS[..]), ("exclusions", &own.exclusions, &EXCLUSIONS[..])];
         for (what, frozen, now) in lists {
             if !frozen.iter().map(String::as_str).eq(now.iter().copied()) {
                 found.push(format!("the {what} of the analysis are worded otherwise than in the frozen plan"));

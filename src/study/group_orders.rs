@@ -12,20 +12,19 @@ use crate::session::study_arm::StudyArm;
 pub struct GroupOrder {
     /// Name of the starting group, with a letter for each trial: "BAC".
     pub group: String,
-    /// Condition of each trial of the group: from the plan if there is one, otherwise as carried out; `None` for a
-    /// missing trial.
+    /// Planned condition of each trial of the group; `None` for a missing trial.
     pub order: Vec<Option<StudyArm>>,
     /// Number of participants in the starting group.
     pub participants: usize,
 }
 
-/// The starting groups of these trials, sorted by name.
-pub fn group_orders(trials: &[&TrialStatistics]) -> Vec<GroupOrder> {
+/// The starting groups of the trials that the analysis includes, sorted by name.
+pub fn group_orders(trials: &[TrialStatistics]) -> Vec<GroupOrder> {
     let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
-    for trial in trials {
+    for trial in trials.iter().filter(|trial| trial.counts()) {
         let (Some(group), Some(period)) = (&trial.group, trial.period) else { continue };
         let (order, participants) = groups.entry(group).or_default();
-        order.insert(period, trial.planned_arm.unwrap_or(trial.study_arm));
+        order.insert(period, trial.planned_arm);
         participants.insert(&trial.participant);
     }
     let one = |(group, (order, participants)): (&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>))| GroupOrder {

@@ -15,8 +15,8 @@ const NAMED: usize = 8;
 pub struct MissingTrials {
     /// Name of the study plan.
     pub plan: String,
-    /// Number of the participant in the plan, from 1.
-    pub participant: u32,
+    /// Number of the participant in the plan, from 1; null if only recordings whose code was corrected are there.
+    pub participant: Option<u32>,
     /// Code of the participant; `None` if there is no recording of the participant.
     pub code: Option<String>,
     /// Numbers of the participant's trials without a recording, from 1.
@@ -28,8 +28,9 @@ pub struct MissingTrials {
 struct PlanRecordings<'a> {
     /// Largest number of counted trials per participant.
     periods: u32,
-    /// By the index of a participant: code, and the numbers of the trials with a recording.
-    participants: BTreeMap<u32, (&'a str, BTreeSet<u32>)>,
+    /// By the code of a participant: index in the plan, as far as it is known, and the numbers of the trials with a
+    /// recording.
+    participants: BTreeMap<&'a str, (Option<u32>, BTreeSet<u32>)>,
 }
 
 /// The trials without a recording, by plan and participant. Recordings know their place in the plan, but not the
@@ -40,8 +41,8 @@ pub fn missing_trials(recordings: &[RecordedPlan]) -> Vec<MissingTrials> {
         let (Some((plan, _)), Some(place)) = (&recording.plan, recording.place) else { continue };
         let found = plans.entry(plan).or_default();
         found.periods = found.periods.max(place.periods);
-        let (_, trials) =
-            found.participants.entry(place.participant).or_insert((&recording.participant, BTreeSet::new()));
+        let (index, trials) = found.participants.entry(&recording.participant).or_default();
+        *index = index.or(place.participant);
         trials.extend(place.period);
     }
     plans.into_iter().flat_map(|(plan, found)| found.missing(plan)).collect()
@@ -49,18 +50,23 @@ pub fn missing_trials(recordings: &[RecordedPlan]) -> Vec<MissingTrials> {
 
 impl PlanRecordings<'_> {
     fn missing(&self, plan: &str) -> Vec<MissingTrials> {
-        let last = self.participants.keys().last().copied().unwrap_or(0);
-        let of_participant = |index: u32| {
-            let found = self.participants.get(&index);
-            let is_missing = |trial: &u32| found.is_none_or(|(_, trials)| !trials.contains(trial));
-            MissingTrials {
-                plan: plan.to_string(),
-                participant: index + 1,
-                code: found.map(|(code, _)| (*code).to_string()),
-                trials: (1..=self.periods).filter(is_missing).collect(),
-            }
+        let none = BTreeSet::new();
+        let missing = |index: Option<u32>, code: Option<&str>, there: &BTreeSet<u32>| MissingTrials {
+            plan: plan.to_string(),
+            participant: index.map(|index| index + 1),
+            code: code.map(str::to_string),
+            trials: (1..=self.periods).filter(|trial| !there.contains(trial)).collect(),
         };
-        (0..=last).map(of_participant).filter(|missing| !missing.trials.is_empty()).collect()
+        let known: BTreeMap<u32, (&str, &BTreeSet<u32>)> =
+            self.participants.iter().filter_map(|(code, (index, trials))| Some(((*index)?, (*code, trials)))).collect();
+        let after_last = known.keys().last().map_or(0, |last| last + 1);
+        let in_order = (0..after_last).map(|index| match known.get(&index) {
+            Some((code, trials)) => missing(Some(index), Some(code), trials),
+            None => missing(Some(index), None, &none),
+        });
+        let others = self.participants.iter().filter(|(_, (index, _))| index.is_none());
+        let others = others.map(|(code, (_, trials))| missing(None, Some(code), trials));
+        in_order.chain(others).filter(|missing| !missing.trials.is_empty()).collect()
     }
 }
 
@@ -80,7 +86,8 @@ pub fn in_words(missing: &[MissingTrials]) -> Option<String> {
 impl MissingTrials {
     /// The participant with the trials: "P03 trial 2".
     fn describe(&self) -> String {
-        let who = self.code.clone().unwrap_or_else(|| format!("participant {}", self.participant));
+        let number = || self.participant.map_or(String::new(), |number| format!("participant {number}"));
+        let who = self.code.clone().unwrap_or_else(number);
         let trials: Vec<String> = self.trials.iter().map(u32::to_string).collect();
         match &trials[..] {
             [one] => format!("{who} trial {one}"),

@@ -9,6 +9,7 @@
 //! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`detail_totals`] sums up
 //!   the [`trial_details`], [`concept_totals`] those of concepts; [`figures`] summarizes all of them with [`effect`],
 //!   [`roc`] and [`statistics`].
+//! - [`arm_analysis`] compares the conditions by the arms as planned, and again as carried out where trials deviate.
 //! - [`arm_comparison`] compares any number of arms, by a [linear mixed model](linear_mixed_model) and a
 //!   [negative binomial one](negative_binomial_model), after an [`arm_design`].
 //! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts in how many of these studies tests find
@@ -25,6 +26,7 @@
 
 pub mod acceptance;
 pub mod acting_arm;
+pub mod arm_analysis;
 pub mod arm_chart;
 pub mod arm_comparison;
 pub mod arm_design;
@@ -50,6 +52,7 @@ pub mod live_arms;
 pub mod missing_trials;
 pub mod negative_binomial_model;
 pub mod pairwise_differences;
+pub mod planned_trial;
 pub mod power;
 pub mod power_answer;
 pub mod power_chart;

@@ -80,7 +80,8 @@ impl NegativeBinomialModel {
         let logs = DVector::from_iterator(trials.len(), logs);
         let start = (x.transpose() * &x).cholesky()?.solve(&(x.transpose() * logs));
         let mut at: Vec<f64> = start.iter().copied().chain([-1.0, 2.0]).collect();
-        let likelihood = |at: &[f64]| log_likelihood(trials, effects, at);
+        let groups = by_participant(trials);
+        let likelihood = |at: &[f64]| log_likelihood(&groups, effects, at);
         let free = climb(&likelihood, &mut at)?;
         let (_, hessian) = derivatives(&likelihood, &at, &free);
         // Variables that lie at a bound are treated as known.
@@ -106,24 +107,28 @@ impl NegativeBinomialModel {
     }
 }
 
-/// The log likelihood of fixed effects, log standard deviation and log size; the participants' random effects are
-/// integrated out by Laplace's method.
-fn log_likelihood(trials: &[CountObservation], effects: usize, at: &[f64]) -> f64 {
-    let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
+/// The trials of each participant, in the order of participants; trials of one participant keep their order.
+fn by_participant(trials: &[CountObservation]) -> Vec<Vec<&CountObservation>> {
     let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);
-    let linear: Vec<f64> = trials
-        .iter()
-        .map(|one| one.exposure.ln() + one.effects.iter().zip(beta).map(|(effect, beta)| effect * beta).sum::<f64>())
-        .collect();
-    let of_participant = |participant: usize| {
-        let own = || trials.iter().zip(&linear).filter(|(one, _)| one.participant == participant);
-        if own().next().is_none() {
-            return 0.0;
-        }
+    let mut groups = vec![Vec::new(); participants];
+    trials.iter().for_each(|one| groups[one.participant].push(one));
+    groups.retain(|own| !own.is_empty());
+    groups
+}
+
+/// The log likelihood of fixed effects, log standard deviation and log size, for the trials of each participant; the
+/// participants' random effects are integrated out by Laplace's method.
+fn log_likelihood(groups: &[Vec<&CountObservation>], effects: usize, at: &[f64]) -> f64 {
+    let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
+    let linear = |one: &CountObservation| {
+        one.exposure.ln() + one.effects.iter().zip(beta).map(|(effect, beta)| effect * beta).sum::<f64>()
+    };
+    let of_participant = |own: &Vec<&CountObservation>| {
+        let own: Vec<(f64, f64)> = own.iter().map(|one| (one.count as f64, linear(one))).collect();
         // h(u) = sum log f(y | linear + sd u) - u^2 / 2 is concave; u is standard normal.
         let slopes = |u: f64| {
-            own().fold((-u, -1.0), |(first, second), (one, linear)| {
-                let (mu, y) = ((linear + sd * u).exp(), one.count as f64);
+            own.iter().fold((-u, -1.0), |(first, second), &(y, linear)| {
+                let mu = (linear + sd * u).exp();
                 let share = mu / (size + mu);
                 (first + sd * (y - (y + size) * share), second - sd * sd * (y + size) * share * (1.0 - share))
             })
@@ -138,10 +143,10 @@ fn log_likelihood(trials: &[CountObservation], effects: usize, at: &[f64]) -> f6
             }
         }
         let (_, second) = slopes(u);
-        let value: f64 = own().map(|(one, linear)| log_pmf(one.count as f64, linear + sd * u, size)).sum();
+        let value: f64 = own.iter().map(|&(y, linear)| log_pmf(y, linear + sd * u, size)).sum();
         value - u * u / 2.0 - (-second).ln() / 2.0
     };
-    (0..participants).map(of_participant).sum()
+    groups.iter().map(of_participant).sum()
 }
 
 /// Logarithm of the negative binomial probability of the count `y` with mean exp(`log_mu`).

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::frozen_plan::FrozenPlan;
 use crate::base::words::count;
+use crate::session::LogHeader;
 
 /// The study plan to which a recording belongs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,12 +19,27 @@ pub struct RecordedPlan {
     pub place: Option<PlaceInPlan>,
 }
 
+impl RecordedPlan {
+    /// The study plan to which the recording with this header belongs.
+    pub fn from_header(header: &LogHeader) -> RecordedPlan {
+        let spec = &header.session;
+        let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
+        let place = spec.step.as_ref().map(|step| PlaceInPlan {
+            participant: header.correction.is_none().then_some(step.participant),
+            period: step.period,
+            periods: step.periods,
+        });
+        RecordedPlan { participant: spec.participant.code.clone(), plan, place }
+    }
+}
+
 /// Place of a recording in its study plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceInPlan {
-    /// Index of the participant in the plan, from 0.
-    pub participant: u32,
+    /// Index of the participant in the plan, from 0; `None` if the participant's code was corrected, since the log has
+    /// the index of another one.
+    pub participant: Option<u32>,
     /// Number of the trial, from 1; `None` for practice.
     pub period: Option<u32>,
     /// Number of counted trials per participant; 0 for a recording of the tutorial alone.

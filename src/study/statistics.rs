@@ -3,12 +3,11 @@
 //! Probability distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy,
 //! pingouin and scikit-learn.
 
-use rand::seq::SliceRandom;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 use super::pairwise_differences::PairwiseDifferences;
-use crate::base::rng::stream;
+use crate::base::rng::{shuffle, stream};
 
 /// Result of an F test in an analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -19,19 +18,21 @@ pub struct FTest {
     pub df: [f64; 2],
     /// p value: probability, without an effect, of an F statistic at least this large.
     pub p: f64,
+    /// Number of participants on whom the test rests.
+    pub n: usize,
     /// Partial eta squared: the effect's sum of squares divided by the sum of effect and residual sums of squares.
     pub partial_eta_sq: f64,
 }
 
 impl FTest {
-    /// F test from sums of squares; `None` without degrees of freedom or without variance.
-    fn from_sums_of_squares(effect: f64, df_effect: f64, residual: f64, df_residual: f64) -> Option<FTest> {
+    /// F test from sums of squares of `n` participants; `None` without degrees of freedom or without variance.
+    fn from_sums_of_squares(effect: f64, df_effect: f64, residual: f64, df_residual: f64, n: usize) -> Option<FTest> {
         if df_effect <= 0.0 || df_residual <= 0.0 || residual <= 0.0 {
             return None;
         }
         let f = (effect / df_effect) / (residual / df_residual);
         let p = FisherSnedecor::new(df_effect, df_residual).ok()?.sf(f);
-        Some(FTest { f, df: [df_effect, df_residual], p, partial_eta_sq: effect / (effect + residual) })
+        Some(FTest { f, df: [df_effect, df_residual], p, n, partial_eta_sq: effect / (effect + residual) })
     }
 }
 
@@ -46,31 +47,36 @@ pub struct MixedAnova {
     pub interaction: Option<FTest>,
 }
 
-/// Mixed analysis of variance; each row holds a person's group and the person's two measurements. The within factor's
-/// sums of squares are those over all persons, as in pingouin's `mixed_anova`.
+/// Mixed analysis of variance; each row holds a person's group and the person's two measurements. Sums of squares are of
+/// type III: the factor within is tested at the unweighted mean of the groups, so that groups of unequal size do not mix the
+/// factor between into it.
 pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
     let sizes: Vec<f64> = (0..groups).map(|group| in_group(group).count() as f64).collect();
-    let used = sizes.iter().filter(|size| **size > 0.0).count() as f64;
-    let n = rows.len() as f64;
+    let used: Vec<usize> = (0..groups).filter(|&group| sizes[group] > 0.0).collect();
+    let (number, n) = (used.len() as f64, rows.len() as f64);
     let difference = |values: [f64; 2]| values[1] - values[0];
     let sum = |values: [f64; 2]| values[1] + values[0];
     let decompose = |of: fn([f64; 2]) -> f64| {
         let all = mean(rows.iter().map(|(_, values)| of(*values)));
         let means: Vec<f64> = (0..groups).map(|group| mean(in_group(group).map(of))).collect();
-        let between: f64 =
-            sizes.iter().zip(&means).filter(|(size, _)| **size > 0.0).map(|(s, m)| s * (m - all).powi(2)).sum();
+        let between: f64 = used.iter().map(|&group| sizes[group] * (means[group] - all).powi(2)).sum();
         let residual: f64 = rows.iter().map(|(group, values)| (of(*values) - means[*group]).powi(2)).sum();
-        (all, between / 2.0, residual / 2.0)
+        let unweighted = mean(used.iter().map(|&group| means[group]));
+        (unweighted, between / 2.0, residual / 2.0)
     };
     let (mean_difference, interaction, residual_within) = decompose(difference);
     let (_, between, residual_between) = decompose(sum);
-    let within = n * mean_difference * mean_difference / 2.0;
+    // The unweighted mean of the groups' means has the variance of the mean of this many persons.
+    let persons = number * number / used.iter().map(|&group| 1.0 / sizes[group]).sum::<f64>();
+    let within = persons * mean_difference * mean_difference / 2.0;
+    let test =
+        |effect: f64, df: f64, residual: f64| FTest::from_sums_of_squares(effect, df, residual, n - number, rows.len());
     MixedAnova {
-        within: FTest::from_sums_of_squares(within, 1.0, residual_within, n - used),
-        between: FTest::from_sums_of_squares(between, used - 1.0, residual_between, n - used),
-        interaction: FTest::from_sums_of_squares(interaction, used - 1.0, residual_within, n - used),
+        within: test(within, 1.0, residual_within),
+        between: test(between, number - 1.0, residual_between),
+        interaction: test(interaction, number - 1.0, residual_within),
     }
 }
 
@@ -139,7 +145,7 @@ pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     let mut random = stream(seed, "permutation", 0);
     let mut extreme = 1u32;
     for _ in 0..SAMPLED_PERMUTATIONS {
-        all.shuffle(&mut random);
+        shuffle(&mut all, &mut random);
         extreme += u32::from(is_extreme(all[..m].iter().sum()));
     }
     Some(f64::from(extreme) / f64::from(SAMPLED_PERMUTATIONS + 1))

@@ -21,16 +21,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::facts::RecordingFacts;
+use super::planned_trial::{PlannedTrialKey, RecordingCopy};
 use super::preregistration::RecordedPlan;
 use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_details::TrialDetails;
 use super::trial_statistics::TrialStatistics;
+use crate::session::code_correction::CodeCorrection;
 use crate::session::header::RecordedFile;
 use crate::session::plan::PlanPosition;
 
 /// Version of the file format of a study's parts.
-pub const PART_FORMAT: u32 = 3;
+pub const PART_FORMAT: u32 = 4;
 
 /// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +50,8 @@ pub struct PartHeader {
     pub recordings: u64,
     /// Names of the recordings that were left out, since they belong to other parts.
     pub left_out: BTreeSet<String>,
+    /// Recordings that were left out, since they are copies of others.
+    pub copies: BTreeSet<RecordingCopy>,
     /// With which options the recordings were analysed.
     pub analysis: PartAnalysisOptions,
     /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.
@@ -75,14 +79,37 @@ pub struct PartAnalysisOptions {
 pub struct AnalysedRecording {
     /// The recording's name in tables.
     pub recording: String,
+    /// SHA-256 digest of the recording's log, by which copies are known.
+    pub digest: String,
     /// The study plan to which the recording belongs.
     pub plan: RecordedPlan,
+    /// The correction of the participant's code that holds.
+    pub correction: Option<CodeCorrection>,
     /// The consent with which the recording begins; `None` if it begins without.
     pub consent: Option<RecordedConsent>,
     /// The answers to the questions of the recording's tutorial.
     pub tutorial: Vec<TutorialQuestionRow>,
     /// The recording's trial, with its details and with what the report tells about the recording; `None` for practice.
     pub trial: Option<(TrialStatistics, TrialDetails, RecordingFacts)>,
+}
+
+impl AnalysedRecording {
+    /// Whether this is the analysis of a copy: all results are those of the other recording, but for the names.
+    pub fn is_copy_of(&self, other: &AnalysedRecording) -> bool {
+        let mut same = self.clone();
+        same.recording = other.recording.clone();
+        same.tutorial.iter_mut().for_each(|row| row.recording = other.recording.clone());
+        if let Some((trial, ..)) = &mut same.trial {
+            trial.recording = other.recording.clone();
+        }
+        same == *other
+    }
+
+    /// The trial of a plan that the recording counts for; `None` if there is none, or the recording does not count.
+    pub fn counted_trial(&self) -> Option<PlannedTrialKey> {
+        let (trial, ..) = self.trial.as_ref().filter(|(trial, ..)| trial.counts())?;
+        PlannedTrialKey::new(&self.plan, trial.started.is_none().then_some(trial.seed))
+    }
 }
 
 /// Why parts of a study cannot be joined.

@@ -9,8 +9,8 @@ use super::robot_tally::RobotEventSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_record::ProbedTrialStatistics;
 use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::RaterCodes;
 use crate::measures::cause_kinds::BeliefErrorCounts;
+use crate::measures::rater_choice::RaterPair;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::TrialEndReason;
@@ -42,8 +42,8 @@ pub struct TrialStatistics {
     pub condition: Condition,
     /// Study arm of the trial as it was carried out.
     pub study_arm: StudyArm,
-    /// Study arm that the plan gave to the trial, if it belongs to a plan with arms.
-    pub planned_arm: Option<StudyArm>,
+    /// Study arm under which the trial counts: assigned by the plan or, without a plan, by the settings.
+    pub planned_arm: StudyArm,
     /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
     /// Information that the wizard was allowed to see on the console.
@@ -66,6 +66,8 @@ pub struct TrialStatistics {
     pub errors: u64,
     /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
+    /// Number of human presses whose judgement rests on a cost to go that is not proven.
+    pub unproven: u64,
     /// Statistics of errors from false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<FalseBeliefErrors>,
     /// Number of orders served in the trial.
@@ -97,8 +99,8 @@ pub struct TrialStatistics {
     pub wizard: Option<WizardMeasures>,
     /// Whether the wizard saw the assistant's recommendations, by the settings or from some time of the trial on.
     pub wizard_saw_advice: bool,
-    /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
-    pub raters: Option<[RaterCodes; 2]>,
+    /// The two raters with their codes, if these codes or the raters' consensus determine the causes of errors.
+    pub raters: Option<RaterPair>,
     /// Agreement of the two raters about false beliefs.
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// The two raters whose consensus determines the causes of errors.
@@ -200,16 +202,9 @@ impl TrialStatistics {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
 
-    /// Why the trial does not fit the study arm that the plan gave to it, in words; `None` if the trial fits.
-    pub fn misfit(&self) -> Option<String> {
-        let planned = self.planned_arm.filter(|planned| *planned != self.study_arm)?;
-        let (planned, done) = (planned.title(), self.study_arm.title());
-        Some(format!("planned: {planned}; done: {done}, in which the wizard saw {}", self.wizard_sees.title()))
-    }
-
-    /// Whether signals could be sent in the trial.
+    /// Whether the trial was planned with signals.
     pub fn is_assisted(&self) -> bool {
-        self.condition != Condition::None
+        self.planned_arm != StudyArm::None
     }
 }
 

@@ -21,6 +21,8 @@ pub struct TrialTotals {
     pub errors: u64,
     /// Number of the human's presses that the robot may have overtaken (races), which do not count as errors.
     pub races: u64,
+    /// Number of the human's presses whose judgement rests on a cost to go that is not proven to be the least.
+    pub unproven: u64,
     /// Errors of the human per press of both agents.
     pub error_rate: Option<f64>,
     /// Errors per press of the human.
@@ -69,6 +71,7 @@ impl TrialTotals {
             robot_actions: sum(|trial| trial.robot_presses),
             errors,
             races: sum(|trial| trial.races),
+            unproven: sum(|trial| trial.unproven),
             error_rate: rate(actions),
             error_rate_human: rate(human_actions),
             signals: sum(|trial| trial.signals),

@@ -81,9 +81,10 @@ impl ScriptedWizard {
         self.presses.clear();
     }
 
-    /// Reacts to the participant's gaze on a location, or on none.
-    pub fn on_gaze(&mut self, now: SessionTime, location: Option<LocationId>, state: State) {
-        self.seen.gaze(now, location, state, self.spec.look_s);
+    /// Reacts to the participant's gaze on a location, or on none, at the time `taken`. `state` is the state of the kitchen,
+    /// if the location has not changed since.
+    pub fn on_gaze(&mut self, taken: SessionTime, location: Option<LocationId>, state: Option<State>) {
+        self.seen.gaze(taken, location, state, self.spec.look_s);
     }
 
     /// Reacts to a press of the participant; `is_error` says whether the press had more regret than the best press.

@@ -21,14 +21,15 @@ impl ParticipantSeenKitchen {
         ParticipantSeenKitchen { state, resting: None }
     }
 
-    /// Updates the gaze location; a location counts as read once the gaze has rested on it for `look_s` seconds.
-    pub fn gaze(&mut self, now: SessionTime, location: Option<LocationId>, truth: State, look_s: f64) {
+    /// Updates the gaze location at the time `taken`; a location counts as read once the gaze has rested on it for `look_s`
+    /// seconds. `truth` is the true state, if the location has not changed since.
+    pub fn gaze(&mut self, taken: SessionTime, location: Option<LocationId>, truth: Option<State>, look_s: f64) {
         self.resting = location.map(|at| match self.resting {
             Some((before, since)) if before == at => (at, since),
-            _ => (at, now),
+            _ => (at, taken),
         });
-        if let Some((at, since)) = self.resting
-            && now.secs_since(since) >= look_s
+        if let (Some((at, since)), Some(truth)) = (self.resting, truth)
+            && taken.secs_since(since) >= look_s
         {
             self.told(at, truth);
         }
@@ -123,4 +124,23 @@ fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen
 fn helps(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes, button: ButtonId) -> bool {
     let next = kitchen.press(state, recipes, Agent::Human, button);
     next.is_some_and(|next| cost.all_orders(next, recipes) < cost.all_orders(state, recipes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kitchen::ContentId;
+
+    #[test]
+    fn a_look_at_what_has_changed_since_tells_nothing_of_the_present_content() {
+        let (location, mut truth) = (LocationId(3), State::default());
+        let mut seen = ParticipantSeenKitchen::new(truth);
+        truth.set_content(location, ContentId(1));
+        let at = SessionTime::from_secs_f64;
+        seen.gaze(at(9.5), Some(location), None, 0.1);
+        seen.gaze(at(9.7), Some(location), None, 0.1);
+        assert!(!seen.knows(location, truth), "taken before the change");
+        seen.gaze(at(10.01), Some(location), Some(truth), 0.1);
+        assert!(seen.knows(location, truth), "the gaze still rests there");
+    }
 }

@@ -11,8 +11,9 @@ use crate::sources::{Source, sources, words};
 use crate::{EDGE, floor_of};
 
 /// Names that stand for the outside, for time or chance that no seed decides, or for an order that is not fixed. The maps of
-/// rustc-hash have no random seed: their order is the same in every run.
-const BANNED_BELOW_EDGE: [&str; 21] = [
+/// rustc-hash have no random seed: their order is the same in every run. How `rand` shuffles and samples may change with its
+/// version; `base::rng::shuffle` is ours.
+const BANNED_BELOW_EDGE: [&str; 22] = [
     "std::fs",
     "std::net",
     "std::env",
@@ -33,6 +34,7 @@ const BANNED_BELOW_EDGE: [&str; 21] = [
     "rand::rng",
     "rand::random",
     "thread_rng",
+    "rand::seq",
     "static mut",
 ];
 
@@ -65,7 +67,7 @@ const ONLY_IN: [(&str, &[&str]); 18] = [
     ("flate2", &["src/edge/bids_tree.rs"]),
     ("mcap", &["src/edge/mcap_file.rs"]),
     ("libloading", &["src/edge/lsl/library.rs"]),
-    ("sha2", &["src/edge/frozen_file.rs", "src/edge/list_cache.rs"]),
+    ("sha2", &["src/edge/frozen_file.rs", "src/edge/list_cache.rs", "src/edge/log/same_log.rs"]),
 ];
 
 /// Collects the paths, macros and kinds of code that a file names.
@@ -170,5 +172,51 @@ fn the_wall_clock_is_named_in_one_file() {
         let is_clock = source.path == Path::new("src/edge/clock.rs");
         let found = Mentions::in_source(&source).find("SystemTime").map(str::to_string);
         assert!(is_clock || found.is_none(), "{}: {found:?}", source.path.display());
+    }
+}
+
+/// Fields that name a path, of types that are written as JSON or TOML.
+#[derive(Default)]
+struct WrittenPaths {
+    found: Vec<String>,
+    /// The field that is being visited.
+    field: Option<String>,
+}
+
+/// Whether a list such as `#[derive(...)]` or `#[serde(...)]` has this word.
+fn has(attributes: &[syn::Attribute], list: &str, word: &str) -> bool {
+    attributes.iter().filter(|attribute| attribute.path().is_ident(list)).any(|attribute| {
+        let list = attribute.meta.require_list().map(|list| list.tokens.to_string()).unwrap_or_default();
+        words(&list).iter().any(|found| found == word)
+    })
+}
+
+impl<'ast> Visit<'ast> for WrittenPaths {
+    fn visit_item_struct(&mut self, item: &'ast syn::ItemStruct) {
+        if !has(&item.attrs, "derive", "Serialize") {
+            return;
+        }
+        for field in item.fields.iter().filter(|field| !has(&field.attrs, "serde", "skip")) {
+            let name = field.ident.as_ref().map_or(String::new(), ToString::to_string);
+            self.field = Some(format!("{}.{name}", item.ident));
+            self.visit_type(&field.ty);
+            self.field = None;
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let is_path = path.segments.last().is_some_and(|last| last.ident == "PathBuf" || last.ident == "Path");
+        self.found.extend(self.field.clone().filter(|_| is_path));
+        syn::visit::visit_path(self, path);
+    }
+}
+
+/// serde refuses to write a path that is not UTF-8, and the macro `json!` panics: written paths are `PathText`.
+#[test]
+fn no_type_that_is_written_has_a_path_that_may_be_no_text() {
+    for source in sources().iter().filter(|source| !source.path.ends_with("base/path_text.rs")) {
+        let mut paths = WrittenPaths::default();
+        paths.visit_file(&source.parsed);
+        assert!(paths.found.is_empty(), "{}: {:?}: use PathText", source.path.display(), paths.found);
     }
 }

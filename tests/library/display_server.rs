@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tomcom::display::page_language::DisplayWords;
@@ -10,7 +10,7 @@ use tomcom::edge::display::DisplayServer;
 use tomcom::session::wall_display::DisplaySpec;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_secs(300);
 pub const LOCAL: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 const ALL: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
 
@@ -85,6 +85,10 @@ impl RawPage {
 
     /// The next message of this kind; none, if the connection ends before.
     fn hear(&mut self, kind: &str) -> Option<Value> {
+        self.hear_one_of(&[kind])
+    }
+
+    fn hear_one_of(&mut self, kinds: &[&str]) -> Option<Value> {
         loop {
             let mut head = [0; 2];
             self.0.read_exact(&mut head).ok()?;
@@ -103,7 +107,7 @@ impl RawPage {
                 continue;
             }
             let message: Value = serde_json::from_slice(&payload).expect("JSON");
-            if message["kind"] == kind {
+            if kinds.iter().any(|kind| message["kind"] == *kind) {
                 return Some(message);
             }
         }
@@ -216,28 +220,26 @@ fn an_address_tries_one_code_at_a_time_however_many_connections_it_has() {
     let mut known = page(address);
     known.hello("participant", Some(&code));
     assert_eq!(known.hear("role").map(|role| role["acts"] == true), Some(true));
-    let mut guessers: Vec<RawPage> = (0..50).map(|_| page(address)).collect();
-    for (number, guesser) in guessers.iter_mut().enumerate() {
+    let began = Instant::now();
+    let say_hello = |number: usize| {
+        let mut guesser = page(address);
         guesser.hello(&format!("guesser {number}"), Some("WRONG2"));
-    }
+        guesser
+    };
+    let mut guessers: Vec<RawPage> = (0..50).map(say_hello).collect();
     let answers: Vec<Value> = guessers.iter_mut().filter_map(|guesser| guesser.hear("pairing")).collect();
+    // How often its lock was over, at most: the first four last a second each, and the later ones longer.
+    let most = 1 + began.elapsed().as_secs() as usize;
     let looked_at = answers.iter().filter(|answer| answer["why"] == "wrong").count();
     assert!(answers.iter().all(|answer| answer["why"] == "wrong" || answer["why"] == "locked"), "{answers:?}");
-    // The machine may be slow enough for the first waits of a second to pass.
-    assert!((1..=4).contains(&looked_at) && answers.len() == 50, "{looked_at} of {} codes looked at", answers.len());
+    assert!((1..=most).contains(&looked_at) && answers.len() == 50, "{looked_at} of {} codes looked at", answers.len());
     assert!(answers.iter().all(|answer| answer["wait_s"].as_u64().is_some_and(|seconds| seconds > 0)), "{answers:?}");
-    // Until it has to wait for longer than the rest of this test takes.
-    let mut guesser = page(address);
-    for _ in 0..20 {
-        guesser.hello("guesser", Some("WRONG2"));
-        let wait_s = guesser.hear("pairing").and_then(|answer| answer["wait_s"].as_u64()).unwrap_or_default();
-        if wait_s >= 8 {
-            break;
-        }
-        std::thread::sleep(Duration::from_secs(wait_s));
-    }
+    let (mut guesser, asked) = (page(address), Instant::now());
+    guesser.hello("guesser", Some("WRONG2"));
+    let wait_s = guesser.hear("pairing").and_then(|answer| answer["wait_s"].as_u64()).expect("a time to wait");
     guesser.hello("guesser", Some(&code));
-    assert_eq!(guesser.hear("pairing").map(|answer| answer["why"] == "locked"), Some(true), "not even the right one");
+    let answer = guesser.hear_one_of(&["pairing", "role"]).expect("an answer");
+    assert!(answer["why"] == "locked" || asked.elapsed() >= Duration::from_secs(wait_s - 1), "not even the right one");
     // A page that was let in before comes back, and so does one at another address.
     let mut again = page(address);
     again.hello("participant", Some(&code));
@@ -246,6 +248,26 @@ fn an_address_tries_one_code_at_a_time_however_many_connections_it_has() {
     let mut other = RawPage::open(other, address);
     other.hello("other", Some(&code.to_lowercase()));
     assert!(other.hear("role").is_some(), "a page at another address");
+}
+
+#[test]
+fn a_new_page_is_let_in_while_wrong_codes_come_from_many_addresses() {
+    let (display, address) = serve(ALL);
+    let code = display.code().expect("what the network reaches asks for a code").to_string();
+    for round in 0..3_u8 {
+        // More addresses than wrong codes of a second that slow down nobody.
+        let wrong = |host: u8| {
+            let from = Ipv4Addr::new(127, 0, 10 + round, host);
+            let mut guesser = RawPage::open(socket_from(from, address), address);
+            guesser.hello("guesser", Some("WRONG2"));
+            guesser
+        };
+        let guessers: Vec<RawPage> = (1..=30).map(wrong).collect();
+        let mut new = RawPage::open(socket_from(Ipv4Addr::new(127, 0, 2, round + 1), address), address);
+        new.hello(&format!("new {round}"), Some(&code));
+        assert!(new.hear("role").is_some(), "round {round}");
+        drop(guessers);
+    }
 }
 
 /// Connects from this address of this machine.

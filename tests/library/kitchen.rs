@@ -1,11 +1,17 @@
 //! The kitchen: what is computed from the files, the rules of the task, and the files that cannot be.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use miette::Diagnostic;
 use rand::RngExt;
 use tomcom::base::rng::stream;
+use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::{compile_kitchen, read_kitchen};
-use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{
+    Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State,
+};
 
 fn load(layout: &str) -> Kitchen {
     match read_kitchen(Path::new(layout)) {
@@ -272,6 +278,68 @@ fn a_kitchen_that_is_too_large_is_refused() {
     let refused = compile_kitchen((path, layout), (Path::new("recipes/sushi.toml"), recipes));
     let message = refused.expect_err("37^8 is too many").to_string();
     assert!(message.contains("3512479453921 ways to fill the locations"), "{message}");
+}
+
+/// The tiny kitchen with a third topping, so that a place that accepts everything has 8 contents, and with so many places
+/// like that beside the hands and the board.
+fn of_eight_contents(places: usize, plate: &str) -> Result<Kitchen, String> {
+    let read = |path: &str| std::fs::read_to_string(path).expect("a file of the project");
+    let third = "looks_like = [\"ham\"]\n\n[[ingredient]]\nname = \"cheese\"\nlooks_like = [\"ham\"]";
+    let recipes = read("tests/kitchens/tiny-recipes.toml")
+        .replace("looks_like = [\"salami\"]", "looks_like = [\"salami\", \"cheese\"]")
+        .replace("looks_like = [\"ham\"]", third)
+        .replace("\"ham\", \"salami\"]", "\"ham\", \"salami\", \"cheese\"]");
+    let recipes = recipes + "\n[[dish]]\nname = \"cheese bread\"\nitems = [\"bread\", \"cheese\"]\n";
+    let accepts = format!("accepts = [\"{plate}\"]");
+    let mut layout = read("tests/kitchens/tiny.toml").replace("accepts = [\"dishes\"]", &accepts);
+    layout += "\n[[storage]]\nagent = \"human\"\ningredient = \"cheese\"\n\
+               display = { x = 0.90, y = 0.75, w = 0.08, h = 0.10 }\nbutton = { at_m = [0.64, -0.04], key = \"w\" }\n";
+    layout = layout.replace("width_m = 1.5", "width_m = 6.0").replace("height_m = 0.84375", "height_m = 3.375");
+    for (index, key) in (0..places).zip("dfghjkvbnm".chars()) {
+        let column = index as f64;
+        layout += &format!(
+            "\n[[place]]\nname = \"shelf_{index}\"\naccepts = [\"anything\"]\n\
+             display = {{ x = {:.2}, y = 0.62, w = 0.05, h = 0.05 }}\n\
+             button = {{ at_m = [{:.2}, 0.0], key = \"{key}\" }}\n",
+            0.1 + 0.08 * column,
+            0.3 + 0.05 * column,
+        );
+    }
+    let path = Path::new("tests/kitchens/tiny.toml");
+    let recipes = (Path::new("tests/kitchens/tiny-recipes.toml"), recipes);
+    let told = |error: FileError| format!("{error}: {}", error.help().map(|help| help.to_string()).unwrap_or_default());
+    compile_kitchen((path, layout), recipes).map(|files| files.kitchen).map_err(told)
+}
+
+/// Keys of the cost to go have 38 bits for the state: 13 places of 8 contents have 2^39 states. With a plate of 4 contents
+/// there are 2^38, the most that is admitted, and every state has its own cost.
+#[test]
+fn the_largest_kitchen_has_a_key_for_every_state() {
+    let refused = of_eight_contents(9, "anything").expect_err("too many");
+    assert!(refused.contains("549755813888 ways to fill the locations"), "{refused}");
+    assert!(refused.contains("at most 274877906944"), "{refused}");
+    let kitchen = Arc::new(of_eight_contents(9, "dishes").expect("at the limit"));
+    let recipes = kitchen.true_recipes();
+    let physical: Vec<LocationId> =
+        (kitchen.orders.len()..kitchen.locations.len()).map(|index| LocationId(index as u8)).collect();
+    let mut shared = CostToGo::new(kitchen.clone());
+    for number in 0..30 {
+        let mut random = stream(10, "states at the limit", number);
+        let mut state = kitchen.empty_state();
+        state.set_order(kitchen.orders[0], OrderContent::Dish(DishId(0)));
+        for &location in &physical {
+            let content = ContentId(random.random_range(0..kitchen.contents.len()) as u8);
+            if kitchen.accepts(location, content) {
+                state.set_content(location, content);
+            }
+        }
+        // States that differ in the highest digits only have equal keys if bits are cut.
+        for content in 0..kitchen.contents.len() {
+            state.set_content(*physical.last().expect("places"), ContentId(content as u8));
+            let alone = CostToGo::new(kitchen.clone()).all_orders(state, &recipes);
+            assert_eq!(shared.all_orders(state, &recipes), alone, "state {number}, content {content}");
+        }
+    }
 }
 
 /// The sushi kitchen with other words.

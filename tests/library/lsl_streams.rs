@@ -294,6 +294,8 @@ fn gaze_of_every_unit_and_origin_is_a_fraction_of_the_display() {
     let stream = |unit, origin, size| LslGazeSpec {
         name: Some("tracker".to_string()),
         content: None,
+        source_id: None,
+        host: None,
         x: "x".to_string(),
         y: "y".to_string(),
         confidence: None,

@@ -6,6 +6,7 @@ mod cohort;
 mod connection_table;
 mod considered_orders;
 mod console;
+mod corrections;
 mod cost_to_go;
 mod display;
 mod display_clock;
@@ -15,6 +16,7 @@ mod display_server;
 mod display_words;
 mod escapes;
 mod examples;
+mod gathering;
 mod gaze;
 mod gaze_senders;
 mod inference;
@@ -36,6 +38,8 @@ mod robot_on_display;
 mod scenarios;
 mod session;
 mod study;
+#[cfg(unix)]
+mod terminal_input;
 mod viewers;
 
 /// Holds a text against `tests/snapshots/THEME__NAME.snap`.

@@ -217,7 +217,7 @@ def main(tomcom, folder):
     planned = sorted(path for path in recordings.iterdir() if path.is_dir() and lines(path)[0]["session"].get("step"))
     alone = sorted(set(path for path in recordings.iterdir() if path.is_dir()) - set(planned))
     assert len(planned) == 4 and len(alone) == 3
-    for recording, code in zip(alone, ("Q-07", "Q07", "q07")):
+    for recording, code in zip(alone, ("Q-07", "Q07", "Q_07")):
         rename(recording, code)
     answers = {"age": 31, "hand": "left", "tired": 5, "job": TYPED}
     add_person(planned[0], answers)
@@ -242,8 +242,8 @@ def main(tomcom, folder):
     people = table(tree / "participants.tsv")
     labels = dict(zip(people["code"], people["participant_id"]))
     assert len(people) == 2 + 3 and len({label.lower() for label in labels.values()}) == 5, labels
-    assert labels["Q07"] == "sub-Q07" and sorted(labels[code] for code in ("Q-07", "q07")) == ["sub-Q07x3", "sub-q07x2"], labels
-    assert {code for code, _ in told["changed_codes"]} == {"Q-07", "q07"}
+    assert labels["Q07"] == "sub-Q07" and sorted(labels[code] for code in ("Q-07", "Q_07")) == ["sub-Q07x2", "sub-Q07x3"], labels
+    assert {code for code, _ in told["changed_codes"]} == {"Q-07", "Q_07"}
     [filled] = table(tree / "phenotype/demographics.tsv").to_dict("records")
     assert {key: filled[key] for key in ("age", "hand", "tired")} == {"age": 31, "hand": "left", "tired": 5}
     assert "job" not in filled and filled["participant_id"] in people["participant_id"].tolist()

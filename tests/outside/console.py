@@ -87,7 +87,10 @@ class Console:
             time.sleep(0.02)
 
     def key(self, key):
-        os.write(self.master, key.encode())
+        self.write(key.encode())
+
+    def write(self, sent):
+        os.write(self.master, sent)
 
     def start(self):
         """Starts the trial, as soon as nothing that is looked at before it speaks against it."""

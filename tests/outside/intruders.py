@@ -5,7 +5,6 @@
 
 import json
 import os
-import re
 import socket
 import subprocess
 import sys
@@ -155,7 +154,8 @@ def cannot_inject_gaze(tomcom, folder):
         page = chromium.new_context().new_page()
         page.goto(f"http://localhost:{FOREIGN}/")
         page.evaluate(INJECT, [GAZE, lines])
-        console.wait_for(r"[4-9] senders rejected")
+        # However often it tries, the browser is one sender.
+        console.wait_for("1 sender rejected")
         # The tracker goes on, also with datagrams.
         send(tracker, 30)
         datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -165,14 +165,13 @@ def cannot_inject_gaze(tomcom, folder):
             datagrams.sendto(json.dumps(SAMPLE).encode(), ("127.0.0.1", GAZE))
             time.sleep(0.01)
             other.sendto(json.dumps(FOREIGN_SAMPLE).encode(), ("127.0.0.1", GAZE))
-        console.wait_for(r"\d\d senders rejected")
-        rejected = int(re.search(r"(\d+) senders rejected", console.text())[1])
+        console.wait_for("2 senders rejected")
         console.quit()
     text, events = recorded(folder)
     gaze = [event for event in events if event["kind"] == "gaze"]
     assert len(gaze) == 90 and all(event["x"] == SAMPLE["x"] for event in gaze), len(gaze)
     assert str(FOREIGN_SAMPLE["x"]) not in text and '"dropped"' not in text, "something of a website is in the log"
-    print(f"gaze of a website (POST, beacon, GET, WebSocket, form) and of another address: {rejected} rejected, nothing in the log", flush=True)
+    print(f"gaze of a website (POST, beacon, GET, WebSocket, form) and of another address: both rejected, nothing in the log", flush=True)
 
 
 def send(tracker, samples):

@@ -33,15 +33,16 @@ OFF_S = 0.001
 TRACKER = """
 import json, math, sys, time
 import pylsl
-name, hz, journal = sys.argv[1], float(sys.argv[2]), open(sys.argv[3], "a", buffering=1)
-info = pylsl.StreamInfo(name, "Gaze", 4, hz, "float32", f"tracker-{name}")
+name, hz, journal, source, rate = sys.argv[1], float(sys.argv[2]), open(sys.argv[3], "a", buffering=1), sys.argv[4], float(sys.argv[5])
+info = pylsl.StreamInfo(name, "Gaze", 4, hz, "float32", source)
 channels = info.desc().append_child("channels")
 for label in ("pupil", "left_x", "left_y", "quality"):
     channels.append_child("channel").append_child_value("label", label)
-outlet, begun, sent = pylsl.StreamOutlet(info), time.monotonic(), 0
+outlet, begun, sent, first = pylsl.StreamOutlet(info), time.monotonic(), 0, pylsl.local_clock()
 while True:
     while sent <= (time.monotonic() - begun) * hz:
-        stamp = pylsl.local_clock()
+        # A sender that counts its samples stamps them by the rate that it assumes.
+        stamp = pylsl.local_clock() if rate == 1 else first + rate * sent / hz
         x, y = 960 + 800 * math.cos(sent / 97), 540 + 400 * math.sin(sent / 61)
         # Eyes that are closed: no gaze.
         seen = float("nan") if sent % 1000 >= 970 else x
@@ -61,7 +62,7 @@ recording.stop()
 """
 
 
-def session(folder, condition="assistant", gaze=True, library=LIBRARY, channel="left_x"):
+def session(folder, condition="assistant", gaze=True, library=LIBRARY, channel="left_x", more=""):
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "session.toml"
     layout = Path("layouts/sushi.toml").resolve()
@@ -74,15 +75,16 @@ def session(folder, condition="assistant", gaze=True, library=LIBRARY, channel="
     if gaze:
         text += (
             f'[lsl.gaze]\nname = "tracker"\nx = "{channel}"\ny = "left_y"\nconfidence = "quality"\nunit = "pixels"\n'
-            f'size = [{SIZE[0]}, {SIZE[1]}]\norigin = "bottom_left"\n'
+            f'size = [{SIZE[0]}, {SIZE[1]}]\norigin = "bottom_left"\n{more}'
         )
     path.write_text(text)
     return path
 
 
-def tracker(folder, hz=200, name="tracker"):
+def tracker(folder, hz=200, name="tracker", source="tracker-1", rate=1):
     journal = folder / f"{name}.jsonl"
-    sender = subprocess.Popen([sys.executable, "-c", TRACKER, name, str(hz), journal], stderr=subprocess.DEVNULL)
+    command = [sys.executable, "-c", TRACKER, name, str(hz), journal, source, str(rate)]
+    sender = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     atexit.register(sender.kill)
     return sender, journal
 
@@ -341,6 +343,69 @@ def check_tracker_comes_and_goes(tomcom, folder):
     print("a tracker that comes, goes and comes back is told each time; a channel that is missing is told with those that there are", flush=True)
 
 
+def check_two_of_one_name(tomcom, folder):
+    """Two streams of one name: neither is taken until the session file chooses, and both are named."""
+    folder.mkdir(parents=True)
+    senders = [tracker(folder, source=source)[0] for source in ("tracker-1", "tracker-2")]
+    time.sleep(1)
+    console, recording = begin(tomcom, folder)
+    with console:
+        console.wait_for("NO TRACKER")
+        console.key(".")
+        console.wait_for("2 streams .tracker.")
+        console.key("\x1b")
+        done = subprocess.run([tomcom, "doctor", folder / "session.toml"], capture_output=True, text=True)
+        told = " ".join(done.stdout.split())
+        assert done.returncode == 1 and "2 LSL streams" in told and 'source_id "tracker-1"' in told and 'source_id "tracker-2"' in told, told
+        console.quit()
+    events = events_of(recording)
+    (several,) = [event["streams"] for event in events if event["kind"] == "tracker" and event["what"] == "several_streams"]
+    assert len(several) == 2 and not any(event["kind"] == "gaze" for event in events), several
+    host = re.search(r" on (\S+), source_id", several[0])[1]
+    for number, more in enumerate(['source_id = "tracker-2"\n', f'source_id = "tracker-1"\nhost = "{host}"\n']):
+        console, recording = begin(tomcom, folder / f"chosen-{number}", more=more)
+        with console:
+            console.wait_for(r"gaze \d+ Hz")
+            time.sleep(1)
+            console.quit()
+        events = events_of(recording)
+        late = [event for event in events if event["kind"] == "gaze" and event["t_ns"] - event["taken_ns"] > 0.5e9]
+        assert not late and not any(event.get("what") == "several_streams" for event in events), len(late)
+    # The second one comes when the first one is read: that is told, and the first one is read on.
+    senders.pop().kill()
+    time.sleep(5)
+    console, recording = begin(tomcom, folder / "later")
+    with console:
+        console.wait_for(r"gaze \d+ Hz")
+        senders.append(tracker(folder, source="tracker-3")[0])
+        console.wait_for("2 gaze streams fit the settings")
+        console.wait_for(r"gaze \d+ Hz")
+        console.quit()
+    for sender in senders:
+        sender.kill()
+    verify(tomcom, recording)
+    print("two streams of one name: refused and named by doctor and checks, chosen by source_id and host, and told when the second one comes later", flush=True)
+
+
+def check_stamps(tomcom, folder):
+    """A sender that stamps its samples by a rate that it does not keep: told, and stamped by arrival."""
+    folder.mkdir(parents=True)
+    sender, _ = tracker(folder, rate=0.97)
+    console, recording = begin(tomcom, folder)
+    with console:
+        console.wait_for("t runs at 97 % of real time")
+        time.sleep(10)
+        console.quit()
+    sender.kill()
+    events = events_of(recording)
+    gaze = [event for event in events if event["kind"] == "gaze"]
+    told = [event for event in events if event["kind"] == "tracker" and event["what"] == "stamps"]
+    late = [event for event in gaze if event["t_ns"] - event["taken_ns"] > 0.5e9]
+    assert len(told) == 1 and told[0]["t_ns"] - gaze[0]["t_ns"] < 5e9 and len(gaze) > 1000 and not late, (told, len(late))
+    verify(tomcom, recording)
+    print(f"stamps of a sender that is slower by 3 %: told after {(told[0]['t_ns'] - gaze[0]['t_ns']) / 1e9:.1f} s, none of {len(gaze)} samples late", flush=True)
+
+
 def check_stopped_reader(tomcom, folder):
     """A reader that is stopped delays no key: signals are in the log as soon as without it."""
     console, recording = begin(tomcom, folder, condition="wizard", gaze=False)
@@ -384,5 +449,7 @@ if __name__ == "__main__":
     program, scratch = str(Path(arguments.tomcom).resolve()), arguments.folder.resolve() / str(os.getpid())
     check_no_library(program, scratch / "none")
     check_tracker_comes_and_goes(program, scratch / "comes")
+    check_two_of_one_name(program, scratch / "two")
+    check_stamps(program, scratch / "stamps")
     check_stopped_reader(program, scratch / "stopped")
     check_both_ways(program, scratch / "both", arguments.seconds, arguments.hz)

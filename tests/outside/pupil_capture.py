@@ -153,6 +153,66 @@ def check_lab(tomcom, folder, pupil):
     print("a recording that the lab began: annotated with two trials, and never ended", flush=True)
 
 
+def check_kill(tomcom, folder, pupil):
+    """The program is killed in a trial that Capture records: the continued trial goes on in that recording, and ends it."""
+    capture = Modules(pupil, folder / "capture", PORT + 7)
+    with Console(tomcom, [session(folder, PORT + 7), "--out", folder / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        start_trial(console)
+        time.sleep(1.5)
+        console.process.kill()
+        console.process.wait()
+    (recording,) = (folder / "recordings").iterdir()
+    with Console(tomcom, ["--continue", recording]) as console:
+        console.wait_for("recording of this trial goes on", 20)
+        time.sleep(0.5)
+        console.end()
+        console.quit()
+    time.sleep(1)
+    subjects, labels = capture.subjects(), list(capture.labels().values())
+    assert subjects.count("recording.started") == subjects.count("recording.stopped") == 1, subjects
+    # A trial that is continued is paused at first.
+    assert labels == [["trial started", "trial paused", "trial ended"]], labels
+    # Killed again, and Capture's recording is ended by hand meanwhile: the continued trial has a new one.
+    with Console(tomcom, [session(folder / "again", PORT + 7), "--out", folder / "again" / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        start_trial(console)
+        time.sleep(1.5)
+        console.process.kill()
+        console.process.wait()
+    remote = zmq.Context.instance().socket(zmq.REQ)
+    remote.connect(f"tcp://127.0.0.1:{PORT + 7}")
+    remote.send_string("r")
+    remote.recv_string()
+    (recording,) = (folder / "again" / "recordings").iterdir()
+    with Console(tomcom, ["--continue", recording]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        time.sleep(1.5)
+        console.end()
+        console.quit()
+    time.sleep(1)
+    subjects, labels = capture.subjects(), list(capture.labels().values())
+    capture.kill()
+    assert subjects.count("recording.started") == subjects.count("recording.stopped") == 3, subjects
+    assert ["trial paused", "trial ended"] in labels, labels
+    print("killed in a trial and continued: Capture's recording goes on and is ended with the trial; one that was ended meanwhile is followed by a new one", flush=True)
+
+
+def check_leave(tomcom, folder, pupil):
+    """Whoever leaves in the trial ends it, also in Capture's recording."""
+    capture = Modules(pupil, folder / "capture", PORT + 8)
+    with Console(tomcom, [session(folder, PORT + 8), "--out", folder / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        start_trial(console)
+        time.sleep(1.5)
+        console.quit()
+    time.sleep(1)
+    subjects, (labels,) = capture.subjects(), capture.labels().values()
+    capture.kill()
+    assert labels == ["trial started", "session left", "trial ended"] and subjects.count("recording.stopped") == 1, (labels, subjects)
+    print(f"left by ^c in the trial: Capture's recording has {', '.join(labels)}, and is ended", flush=True)
+
+
 def check_clock(tomcom, folder, pupil):
     """Capture's clock is set ahead and back by 0.2 s."""
     capture = Modules(pupil, folder / "capture", PORT + 3)
@@ -287,9 +347,9 @@ if __name__ == "__main__":
     parser.add_argument("folder", type=Path)
     parser.add_argument("pupil")
     parser.add_argument("--trials", type=int, default=20)
-    parser.add_argument("--only", choices=["trials", "restart", "lab", "clock", "time-sync", "eyes", "surface"])
+    parser.add_argument("--only", choices=["trials", "restart", "lab", "kill", "leave", "clock", "time-sync", "eyes", "surface"])
     options = parser.parse_args()
-    checks = {"restart": check_restart, "lab": check_lab, "clock": check_clock, "time-sync": check_time_sync, "eyes": check_eyes, "surface": check_surface}
+    checks = {"restart": check_restart, "lab": check_lab, "kill": check_kill, "leave": check_leave, "clock": check_clock, "time-sync": check_time_sync, "eyes": check_eyes, "surface": check_surface}
     if options.only in (None, "trials"):
         check_trials(options.tomcom, options.folder / "trials", options.pupil, options.trials)
     for name, check in checks.items():

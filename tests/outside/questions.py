@@ -12,6 +12,17 @@ from page import Page
 
 CONSENT = "I have read the information sheet. " * 40
 SIZES = [(1280, 720), (1920, 1080), (1080, 1920)]
+# Consent by a page that keeps to nothing: it takes the place of the real one, and says at once that the button was held.
+FORGED = """(hold) => new Promise((done) => {
+  const socket = new WebSocket(`ws://${location.host}/talk`), say = (message) => socket.send(JSON.stringify(message));
+  socket.onopen = () => say({ kind: "hello", page: sessionStorage.getItem("page"), width: 800, height: 600, code: null });
+  socket.onmessage = ({ data }) => {
+    if (JSON.parse(data).kind !== "role") return;
+    if (hold) say({ kind: "hold", held: true });
+    say({ kind: "consent" });
+    setTimeout(() => { socket.close(); done(); }, 4000);
+  };
+})"""
 
 
 def session_file(folder, port, language="en"):
@@ -94,6 +105,12 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page.page.evaluate("navigator.getGamepads = () => []")
         time.sleep(2)
         item("consent")
+        # A page that does not wait for the hold is not believed, however long ago it says so.
+        for hold in [False, True]:
+            page.ask(f"({FORGED})({json.dumps(hold)})")
+            console.wait_for("its button was not held long enough")
+        page.page.reload()
+        item("consent")
         assert not (folder / "recordings").exists() or not list((folder / "recordings").iterdir()), "recorded without consent"
         keyboard.down("Enter")
         item("age")
@@ -104,13 +121,34 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
             click(f'[data-typed="{key}"]')
         click('[data-does="next"]')
         item("age")
+        page.wait_for("document.querySelector('.hint').classList.contains('wrong')")
         click('[data-typed="⌫"]')
+        click('[data-typed="⌫"]')
+        # Signs that make it another number, or none, are seen and refused: "7,5" is not 75.
+        for typed, told in [("7,5", "whole"), ("7.5", "whole"), ("7 5", "whole"), ("+75", "whole"), ("7e1", "whole"), ("-75", "99"), ("750", "99")]:
+            keyboard.type(typed)
+            keyboard.press("Enter")
+            found = page.ask("[document.querySelector('.number output').textContent, document.querySelector('.hint.wrong')?.textContent ?? '']")
+            assert found[0] == typed and (told if language == "en" else "99") in found[1], (typed, found)
+            item("age")
+            if typed == "7,5":
+                pictures("number-refused")
+            for _ in typed:
+                keyboard.press("Backspace")
+        keyboard.type("1")
         click('[data-typed="9"]')
         pictures("number")
         click('[data-does="next"]')
         item("gender")
         keyboard.press("Shift+Tab")
         page.page.focus("textarea")
+        # A text that is too long is not cut, but refused.
+        page.page.fill("textarea", "x" * 600)
+        keyboard.press("Enter")
+        assert "600" in page.ask("document.querySelector('.hint').textContent")
+        item("gender")
+        pictures("text-refused")
+        page.page.fill("textarea", "")
         keyboard.type("0 is a digit, a space")
         pictures("text")
         keyboard.press("Enter")

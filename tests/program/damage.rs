@@ -3,7 +3,7 @@
 //! they were skipped.
 
 use std::fs::{self, File};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -14,6 +14,8 @@ use tomcom::edge::log::{LOG_NAME, RecordingLock};
 
 use crate::tmux::{PATIENCE, TOMCOM, Terminal, tomcom};
 
+/// Length of a log that has a middle, in bytes: its end is compared more often than the rest.
+const LENGTH: usize = 150_000;
 /// The name of a log that was moved aside.
 const ASIDE: &str = "events.jsonl.damaged";
 
@@ -56,7 +58,9 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     terminal.operate("default.toml", &format!("2> {}", errors.display()));
     terminal.start();
     terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
-    let (recording, before) = (terminal.recording(), terminal.log());
+    let recording = terminal.recording();
+    terminal.wait("a log of some length", || terminal.log().len() > LENGTH);
+    let before = terminal.log();
     let began = Instant::now();
     bad(&recording.join(LOG_NAME));
     terminal.see("RECORDING LOST");
@@ -99,6 +103,7 @@ fn a_log_that_another_program_overwrites_is_told_at_once_and_saved() {
         log.seek(at).and_then(|_| log.write_all(b"x")).expect("written");
     };
     check_damage("overwritten-header", |log| write(log, SeekFrom::Start(30)), "overwritten by another program");
+    check_damage("overwritten-middle", |log| write(log, SeekFrom::Start(50_000)), "overwritten by another program");
     check_damage("overwritten-end", |log| write(log, SeekFrom::End(-300)), "overwritten by another program");
     check_damage("appended", |log| write(log, SeekFrom::End(40_000)), "by another program");
 }
@@ -281,6 +286,77 @@ fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
 
 #[test]
 #[serial]
+fn what_is_no_regular_file_of_usual_size_is_refused_by_every_reader_of_settings() {
+    let home = folder("no-file");
+    let pipe = home.join("pipe.toml").display().to_string();
+    if !Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
+        eprintln!("skipped: pipes need mkfifo");
+        return;
+    }
+    let large = home.join("large.toml").display().to_string();
+    File::create(&large).and_then(|file| file.set_len((16 << 20) + 1)).expect("a sparse file");
+    let root = env!("CARGO_MANIFEST_DIR");
+    let whole = format!("layout = \"{root}/layouts/sushi.toml\"\n");
+    let study = "[plan]\nname = \"study\"\nparticipants = 2\nconditions = [\"none\"]\n";
+    let recording = home.join("recording").display().to_string();
+    let simulated = tomcom(&["simulate", &short_session(&home)[0], "--out", &recording]);
+    assert!(simulated.status.success(), "{simulated:?}");
+    let recording = format!("{recording}/seed3-S001");
+    let layout = fs::read_to_string(format!("{root}/layouts/sushi.toml")).expect("a layout");
+    for (place, says) in [
+        (pipe.as_str(), "it is no regular file"),
+        ("/dev/zero", "it is no regular file"),
+        (large.as_str(), "it has more than 16 MB"),
+    ] {
+        let file = |name: &str, text: String| {
+            let path = home.join(name);
+            fs::write(&path, text).expect("written");
+            path.display().to_string()
+        };
+        let session = |name: &str, text: String| file(&format!("session-{name}.toml"), text);
+        let with_recipes = layout.replacen("recipes = \"../recipes/sushi.toml\"", &format!("recipes = \"{place}\""), 1);
+        assert_ne!(with_recipes, layout);
+        let planned = format!("{whole}{study}");
+        let cases: Vec<Vec<String>> = [
+            vec!["keys", place],
+            vec!["kitchen", place],
+            vec!["kitchen", &file("layout.toml", with_recipes)],
+            vec!["keys", &session("layout", format!("layout = \"{place}\"\n"))],
+            vec!["keys", &session("keys", format!("{whole}[console]\nkeys = \"{place}\"\n"))],
+            vec!["keys", &session("language", format!("{whole}[display]\nlanguage = \"{place}\"\n"))],
+            vec!["keys", &session("model", format!("human_model = \"{place}\"\n{whole}"))],
+            vec![
+                "plan",
+                &session("asks", format!("{planned}[[plan.questionnaire]]\nfile = \"{place}\"\nafter = [1]\n")),
+            ],
+            vec!["plan", &session("tutorial", format!("{planned}tutorial = \"{place}\"\n"))],
+            vec!["robustness", place],
+            vec!["robustness", &file("battery.toml", format!("session = \"{place}\"\n[[cohort]]\nname = \"a\"\n"))],
+            vec!["codes", &recording, "--import", place],
+            vec!["study", &recording, "--frozen", place],
+        ]
+        .into_iter()
+        .map(|case| case.into_iter().map(str::to_string).collect())
+        .collect();
+        for arguments in cases {
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let output = end(&arguments.join(" "), start(&arguments));
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.code() == Some(2) && told.contains(says), "{arguments:?}: {told}");
+        }
+    }
+    for arguments in [
+        &["arms", "sessions/study.toml", "--from", "/dev/zero"][..],
+        &["study", "--from", &pipe, "--out", &home.join("study").display().to_string()],
+    ] {
+        let output = end(&arguments.join(" "), start(arguments));
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && told.contains("it is no regular file"), "{arguments:?}: {told}");
+    }
+}
+
+#[test]
+#[serial]
 fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
     let home = folder("stream");
     let [session, out] = short_session(&home);
@@ -347,4 +423,28 @@ fn an_error_about_codes_names_the_row_that_is_wrong() {
         assert!(told.contains(says), "{says:?} is not in\n{told}");
     }
     assert!(!Path::new(&recording).join("codes-R1.csv").exists(), "nothing is taken of a table that is wrong");
+}
+
+#[test]
+#[serial]
+fn who_follows_a_log_that_vanishes_is_told_and_does_not_wait_for_ever() {
+    let out = folder("vanished");
+    let recording = out.join("running");
+    fs::create_dir_all(&recording).expect("a folder");
+    let text = fs::read_to_string("tests/golden/format-1-hand.jsonl").expect("a golden log");
+    let lines: Vec<&str> = text.lines().collect();
+    fs::write(recording.join(LOG_NAME), lines[..lines.len() - 1].join("\n") + "\n").expect("written");
+    let mut child = start(&["replay", &recording.display().to_string(), "--follow"]);
+    // The first lines are printed when the log is open.
+    let mut printed = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut line = String::new();
+    printed.read_line(&mut line).expect("a heading");
+    printed.read_line(&mut line).expect("an event");
+    fs::rename(&recording, out.join("moved")).expect("moved");
+    let rest = std::thread::spawn(move || std::io::read_to_string(printed));
+    let output = end("replay --follow", child);
+    rest.join().expect("read").expect("text");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("it was removed or moved while it was followed"), "{told}");
 }

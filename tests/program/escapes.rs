@@ -43,6 +43,26 @@ fn recording(home: &Path) -> PathBuf {
 
 #[test]
 #[serial]
+fn wrong_arguments_are_told_with_control_characters_written_out() {
+    let option = format!("--{HOSTILE}");
+    let arguments: [&[&str]; 8] = [
+        &[HOSTILE],
+        &[&option],
+        &["simulate", "sessions/default.toml", HOSTILE],
+        &["simulate", "sessions/default.toml", "--trials", HOSTILE],
+        &["operate", "--gaze", HOSTILE],
+        &["operate", "--listen", HOSTILE],
+        &["replay", &option],
+        &["completions", HOSTILE],
+    ];
+    for arguments in arguments {
+        let told = check(arguments);
+        assert!(told.contains(WRITTEN_OUT), "{arguments:?}: {told}");
+    }
+}
+
+#[test]
+#[serial]
 fn recordings_are_told_with_control_characters_written_out() {
     let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("escapes");
     let recording = recording(&home);

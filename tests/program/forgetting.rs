@@ -153,10 +153,12 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     assert!(told.contains("recording.rrd"), "{told}");
     // What a kill before the log leaves behind, of a later part.
     lab.put("seed1-P01-1-part2/session.toml", lab.text("seed1-P01-1/session.toml"));
-    lab.put("seed1-P01-1/codes-R1.csv", "press,cause,aspect\n");
+    lab.put("seed1-P01-1/codes-R1.csv", "rater,press,cause,aspect\n");
+    lab.put("seed1-P01-1/codes-R1 (1).csv", "rater,press,cause,aspect\n");
+    lab.put("seed1-P01-1/correction.toml", "");
     // What a kill while codes or tables were written leaves behind.
-    lab.put("seed1-P01-1/codes-R1.csv.tomcom-77.new", "press,cause,aspect\n");
-    lab.put("study/trials.csv.tomcom-77.new", lab.text("study/trials.csv"));
+    lab.put("seed1-P01-1/codes-R1.csv.tomcom-a1B2c3.new", "press,cause,aspect\n");
+    lab.put("study/trials.csv.tomcom-a1B2c3.new", lab.text("study/trials.csv"));
     lab.put("codes.csv", "recording,rater,press,cause,aspect\nseed1-P01-1,R1,4,slip,\nseed1-P02-1,P01,4,slip,\n");
     // A session file of somebody is no recording, whoever it is for.
     lab.put("pilot/session.toml", "layout = \"x\"\n[participant]\ncode = \"P01\"\n");

@@ -11,6 +11,8 @@ mod forgetting_damage;
 mod forgetting_others;
 mod forgotten_answers;
 mod overwriting;
+#[cfg(unix)]
+mod path_bytes;
 mod plan;
 mod power;
 mod stuck_terminal;

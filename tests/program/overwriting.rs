@@ -165,12 +165,53 @@ fn the_next_part_of_a_recording_overwrites_nothing() {
     assert_eq!(next.folder(), lab.at("seed1-P01-1-part6"));
 }
 
+/// Whatever name a recording's files have while they are written: a link of that name is not followed.
+#[cfg(unix)]
+#[test]
+#[serial]
+fn no_file_of_a_recording_goes_where_a_link_leads() {
+    use std::os::unix::fs::symlink;
+    let lab = RecordingsFolder::of_two_people("no-link-followed");
+    let (header, recording) = (header(), lab.at("seed1-P01-1"));
+    lab.put("victim", "of somebody else");
+    let plant = |folder: &str, name: &str| {
+        fs::create_dir_all(lab.at(folder)).expect("a folder");
+        symlink(lab.at("victim"), lab.at(folder).join(name)).expect("a link");
+    };
+    let names = ["events.jsonl.new", "session.toml", "session.toml.new", "recording.rrd", "lock"];
+    for (nth, name) in names.into_iter().enumerate() {
+        plant(&format!("seed1-P01-1-part{}", nth + 2), name);
+    }
+    fs::create_dir_all(lab.at("empty")).expect("a folder");
+    symlink(lab.at("empty"), lab.at(&format!("seed1-P01-1-part{}", names.len() + 2))).expect("a link");
+    let part = LogWriter::create_part(&recording, &header).expect("a part").folder().to_path_buf();
+    assert_eq!(part, lab.at(&format!("seed1-P01-1-part{}", names.len() + 3)));
+    assert_eq!(fs::read_dir(lab.at("empty")).expect("a folder").count(), 0);
+
+    let out = lab.at("trials");
+    let simulate = ["simulate", "sessions/burger.toml", "--seed", "1", "--arm", "timed", "--trials", "1", "--out"];
+    let simulate = [&simulate[..], &[out.to_str().expect("UTF-8"), "--rerun"]].concat();
+    for name in ["events.jsonl.new", "session.toml.new", "recording.rrd.new", "recording.rrd.toml", "recording.rrd"] {
+        plant("trials/seed1-S001", name);
+    }
+    let (code, told) = lab.run(&simulate);
+    assert_eq!(code, Some(0), "{told}");
+    let made = out.join("seed1-S001");
+    for name in ["events.jsonl", "session.toml", "recording.rrd", "recording.rrd.toml"] {
+        assert!(made.join(name).symlink_metadata().is_ok_and(|data| data.is_file()), "{name} is a file");
+    }
+    plant("trials/seed1-S001", "recording.mcap.new");
+    let (code, told) = lab.run(&["export", made.to_str().expect("UTF-8"), "--mcap"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(lab.text("victim"), "of somebody else");
+}
+
 /// Where a recording is saved whose folder is gone, and where nothing can be.
 fn rescued(lab: &RecordingsFolder, root: &str) -> PathBuf {
     let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header()).expect("a recording");
     fs::remove_dir_all(lab.at(root)).expect("removed");
     fs::write(lab.at(root), "").expect("written");
-    let told = log.check().expect_err("it is gone").to_string();
+    let told = log.check(false).expect_err("it is gone").to_string();
     told.split_once("is in ").expect("where it was saved").1.into()
 }
 
@@ -178,17 +219,9 @@ fn rescued(lab: &RecordingsFolder, root: &str) -> PathBuf {
 #[test]
 #[serial]
 fn a_recording_is_saved_among_the_temporary_files_into_a_folder_of_its_own_that_others_cannot_read() {
-    use std::os::unix::fs::{PermissionsExt, symlink};
-    let lab = RecordingsFolder::of_two_people("planted");
-    let victim = lab.at("victim");
-    fs::create_dir_all(&victim).expect("a folder");
-    let planted = std::env::temp_dir().join(format!("tomcom-rescued-{}", std::process::id()));
-    // An earlier test of this process may have saved something.
-    let _ = fs::remove_dir_all(&planted);
-    symlink(&victim, &planted).expect("a link");
+    use std::os::unix::fs::PermissionsExt;
+    let lab = RecordingsFolder::of_two_people("saved");
     let saved = rescued(&lab, "gone");
-    fs::remove_file(&planted).expect("removed");
-    assert_eq!(fs::read_dir(&victim).expect("a folder").count(), 0, "nothing goes where a link of others leads");
     let folder = saved.parent().expect("a folder");
     assert_eq!(fs::metadata(folder).expect("a folder").permissions().mode() & 0o777, 0o700);
     assert!(saved.join("events.jsonl").is_file());

@@ -160,6 +160,15 @@ fn operate(terminal: &Terminal, session: &Path, out: &Path) {
     terminal.run(&format!("{TOMCOM} operate {} --code A1 --out {}", session.display(), out.display()));
 }
 
+/// A second console for a participant ends with these words, here without a terminal.
+fn check_second_console(session: &Path, out: &Path, code: &str, says: &str) {
+    let [session, out] = [session, out].map(|path| path.display().to_string());
+    let output = tomcom(&["operate", &session, "--code", code, "--out", &out]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains(says), "{says} is not in\n{told}");
+}
+
 /// The series goes on with the trial that a kill has cut, and comes to its end.
 fn check_goes_on_after_a_kill(other: &Terminal, session: &Path, out: &Path) {
     operate(other, session, out);
@@ -205,8 +214,14 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     assert!(!out.exists(), "nothing is recorded without consent");
     operate(&terminal, &session, &out);
     terminal.see("and agrees to");
+    // From here on, no other console records this participant; the other one is free.
+    check_second_console(&session, &out, "A1", "records A1 of the plan tiny");
+    check_second_console(&session, &out, "B2", "the console cannot be opened");
     terminal.key("1");
     terminal.see("Instruction of the participant");
+    let plan = first(&session, &out);
+    assert_eq!(plan["next"]["is"], "running", "{plan}");
+    check_second_console(&session, &out, "A1", "records A1 of the plan tiny");
     on_until(&terminal, "READY");
     trial(&terminal, "The practice criterion is not met");
     terminal.key("2");

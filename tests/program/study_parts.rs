@@ -136,7 +136,13 @@ fn parts_that_do_not_make_one_study_are_refused() {
     let other = changed(&two, &folder.join("plan.jsonl"), |text| text.replacen("[\"paper\",", "[\"another\",", 1));
     join(&[&one, &other], "beside a part of the plan \"paper\"");
     let other = changed(&one, &folder.join("same.jsonl"), |text| text.replacen("\"shard\":1,", "\"shard\":2,", 1));
-    join(&[&one, &other], "which is in another part, too");
+    // The same recordings again are copies; those of the other part are missing all the same.
+    join(&[&one, &other], "left out the recording seed9813-P01-2, which no other part has");
+    // The same trials in other recordings are no copies.
+    let again = changed(&one, &folder.join("again.jsonl"), |text| {
+        text.replacen("\"shard\":1,", "\"shard\":2,", 1).replace("\"digest\":\"", "\"digest\":\"of another log ")
+    });
+    join(&[&one, &again], "a second recording of trial 1 of seed9813-P01 in the plan \"paper\"");
     let line_ends = |text: &str| text.match_indices('\n').map(|(at, _)| at + 1).collect::<Vec<usize>>();
     let cut = |text: &str| text[..line_ends(text)[3]].to_string();
     let other = changed(&two, &folder.join("cut.jsonl"), cut);

@@ -7,7 +7,8 @@ use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 pub const SIZE: (u16, u16) = (120, 40);
-pub const PATIENCE: Duration = Duration::from_secs(30);
+/// Nothing that is waited for takes longer, however busy the machine is; that it does not come is the failure.
+pub const PATIENCE: Duration = Duration::from_secs(300);
 pub const TOMCOM: &str = env!("CARGO_BIN_EXE_tomcom");
 
 /// A terminal with a shell in it, in a folder of its own.
@@ -91,8 +92,8 @@ impl Terminal {
     }
 
     pub fn recording(&self) -> PathBuf {
-        let folder = fs::read_dir(self.folder.join("recordings")).expect("recordings").next();
-        folder.expect("a recording").expect("readable").path()
+        let entries = fs::read_dir(self.folder.join("recordings")).expect("recordings");
+        entries.map(|entry| entry.expect("readable").path()).find(|path| path.is_dir()).expect("a recording")
     }
 
     pub fn log(&self) -> String {

@@ -17,7 +17,7 @@ import sys
 import termios
 import time
 
-PATIENCE_S = 30
+PATIENCE_S = 300
 # Between two keys, so that the second is not taken for a held one.
 BETWEEN_KEYS_S = 1.2
 ESCAPES = re.compile(rb"\x1b(\[[0-9;:<>=?]*[ -/]*[@-~]|\][^\x1b\x07]*(\x1b\\|\x07))")

@@ -1,6 +1,9 @@
 //! Tables of beliefs for the BIDS export: beliefs that simulated participants had, and the assistant's estimates.
 
+use super::sample_rows::{LongTable, LongTableRow};
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts};
+use crate::mind::AspectBelief;
+use crate::mind::recorded_estimate::AspectEstimate;
 use crate::session::TimestampedEvent;
 use crate::session::event::Event;
 
@@ -23,55 +26,42 @@ const COLUMNS: [BidsColumn; 7] = [
     ),
 ];
 
-/// Rows of the table of beliefs of one recording in the BIDS export.
-#[derive(Debug, Default)]
-pub(super) struct BeliefRows {
-    rows: String,
-    pub count: u64,
+/// Rows of the table of beliefs for an event of beliefs; none for other events.
+pub(super) fn rows(stamped: &TimestampedEvent) -> Vec<LongTableRow> {
+    let row = |source: &str, rest: [String; 5]| LongTableRow {
+        table: LongTable::Beliefs,
+        time: stamped.time,
+        line: tsv::line([stamped.seq.to_string(), source.to_string()].into_iter().chain(rest)),
+    };
+    match &stamped.event {
+        Event::ParticipantBelieves(belief) => {
+            let of_aspect = |about: &AspectBelief| {
+                let (p, none) = (about.p_truth.to_string(), tsv::NOTHING.to_string());
+                row("participant", [none.clone(), about.aspect.clone(), about.believes.clone(), p, none])
+            };
+            belief.aspects.iter().map(of_aspect).collect()
+        }
+        Event::BeliefEstimated(estimate) => {
+            let of_aspect = |about: &AspectEstimate| {
+                let (p, precision) = (about.p_truth.to_string(), about.precision.to_string());
+                let press = estimate.press.to_string();
+                row("estimate", [press, about.aspect.clone(), about.believes.clone(), p, precision])
+            };
+            estimate.aspects.iter().map(of_aspect).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
-impl BeliefRows {
-    pub(super) fn note(&mut self, stamped: &TimestampedEvent) {
-        match &stamped.event {
-            Event::ParticipantBelieves(belief) => {
-                for about in &belief.aspects {
-                    let (p, none) = (about.p_truth.to_string(), tsv::NOTHING.to_string());
-                    self.add(
-                        stamped.seq,
-                        "participant",
-                        [none.clone(), about.aspect.clone(), about.believes.clone(), p, none],
-                    );
-                }
-            }
-            Event::BeliefEstimated(estimate) => {
-                for about in &estimate.aspects {
-                    let (p, precision) = (about.p_truth.to_string(), about.precision.to_string());
-                    let press = estimate.press.to_string();
-                    self.add(
-                        stamped.seq,
-                        "estimate",
-                        [press, about.aspect.clone(), about.believes.clone(), p, precision],
-                    );
-                }
-            }
-            _ => {}
-        }
-    }
+/// First line of the table of beliefs.
+pub(super) fn heading() -> String {
+    tsv::line(tsv::names(&COLUMNS))
+}
 
-    fn add(&mut self, seq: u64, source: &str, rest: [String; 5]) {
-        self.rows += &tsv::line([seq.to_string(), source.to_string()].into_iter().chain(rest));
-        self.count += 1;
-    }
-
-    /// The table of beliefs with its JSON sidecar file; no files if the recording has no beliefs.
-    pub(super) fn into_files(self, task: &TaskFacts) -> Vec<BidsFile> {
-        if self.count == 0 {
-            return Vec::new();
-        }
-        let mut about = tsv::described(&COLUMNS);
-        task.tell(&mut about);
-        about.insert("Description".to_string(), "Beliefs about the kitchen, an aspect a row".into());
-        let text = tsv::line(tsv::names(&COLUMNS)) + &self.rows;
-        vec![BidsFile::new("beh.tsv", text), BidsFile::json("beh.json", &about.into())]
-    }
+/// The sidecar file of the table of beliefs.
+pub(super) fn sidecar(task: &TaskFacts) -> BidsFile {
+    let mut about = tsv::described(&COLUMNS);
+    task.tell(&mut about);
+    about.insert("Description".to_string(), "Beliefs about the kitchen, an aspect a row".into());
+    BidsFile::json("beh.json", &about.into())
 }

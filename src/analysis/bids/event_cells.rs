@@ -6,6 +6,7 @@ use super::tsv::{or_nothing, seconds};
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::communication::offer::OfferedCommunication;
+use crate::gaze::stamp_check::StampFault;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::Event;
@@ -257,6 +258,10 @@ impl EventCells {
                 self.words = words.clone()
             }
             TrackerEvent::OtherSurfaces { names } => self.words = names.join(", "),
+            TrackerEvent::SeveralStreams { streams } => self.words = streams.join(", "),
+            TrackerEvent::Stamps { fault } => {
+                self.reason = fault.map_or(String::new(), StampFault::words);
+            }
             TrackerEvent::Recording { state } => self.reason = name(state),
             TrackerEvent::Dropped(counts) => self.value = Some(counts.sum() as f64),
             TrackerEvent::Fixation { duration_ms, began_ns, .. } => {

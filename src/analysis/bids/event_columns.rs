@@ -71,5 +71,7 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
 ];
 
 /// Column with text that somebody typed, for exports that include such text.
-pub(super) const WORDS: BidsColumn =
-    BidsColumn::new("words", "Words that somebody typed, or that a device calls itself by");
+pub(super) const WORDS: BidsColumn = BidsColumn::new(
+    "words",
+    "Words that somebody typed, or that a device calls itself by; a ' stands before words that begin with = + - or @, so that no spreadsheet computes them",
+);

@@ -24,5 +24,6 @@ pub use self::event_levels::LEVELS;
 pub use self::labels::{BidsLabelMap, letters_and_digits, session_label};
 pub use self::phenotype::QuestionnairePhenotypes;
 pub use self::recording_tables::{BidsRowCounts, PressOutcome, RecordingTables};
+pub use self::sample_rows::{LongTable, LongTableFacts, LongTableRow};
 pub use self::session_rows::{BidsSessionRow, sessions_files};
 pub use self::tsv::BidsFile;

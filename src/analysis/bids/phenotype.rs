@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::labels::free;
 use super::tsv::{self, BidsFile};
+use crate::base::spreadsheet::GUARDED;
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem};
@@ -117,7 +118,8 @@ fn described(item: &QuestionnaireItem, form: &AnswerFormat) -> Value {
         AnswerFormat::Slider { low, high, .. } => {
             about["Description"] = json!(format!("{} (0: {low}; 100: {high})", item.text));
         }
-        AnswerFormat::Number { .. } | AnswerFormat::Text { .. } => {}
+        AnswerFormat::Text { .. } => about["Description"] = json!(format!("{} ({GUARDED})", item.text)),
+        AnswerFormat::Number { .. } => {}
     }
     if let Some(construct) = &item.about {
         about["Construct"] = json!(construct);

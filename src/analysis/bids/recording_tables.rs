@@ -1,9 +1,9 @@
 //! The BIDS tables of one recording: events, gaze samples, arm samples and beliefs.
 
-use super::belief_rows::BeliefRows;
+use super::belief_rows;
 use super::event_cells::EventCells;
 use super::event_columns::{EVENTS, WORDS};
-use super::sample_rows::{SampleRows, ViewingFacts};
+use super::sample_rows::{LongTable, LongTableFacts, LongTableRow, SampleRows, ViewingFacts};
 use super::spans::OpenSpans;
 use super::tsv::{self, BidsFile, TaskFacts, or_nothing, seconds, yes};
 use crate::base::time::SessionTime;
@@ -61,7 +61,8 @@ pub struct RecordingTables {
     rows: Vec<EventRow>,
     spans: OpenSpans,
     samples: SampleRows,
-    beliefs: BeliefRows,
+    /// Rows of long tables that were not taken yet.
+    long: Vec<LongTableRow>,
     viewing: ViewingFacts,
     words_left_out: u64,
     ended: Option<TrialEndReason>,
@@ -77,7 +78,7 @@ impl RecordingTables {
             rows: Vec::new(),
             spans: OpenSpans::default(),
             samples: SampleRows::default(),
-            beliefs: BeliefRows::default(),
+            long: Vec::new(),
             viewing: ViewingFacts { is_pointer, resolution: None, gaze_checks: 0 },
             words_left_out: 0,
             ended: None,
@@ -93,8 +94,8 @@ impl RecordingTables {
     pub fn note(&mut self, stamped: &TimestampedEvent, session: &Session, outcome: Option<PressOutcome>) {
         let mut is_of_eyes = false;
         match &stamped.event {
-            Event::Gaze(sample) => return self.samples.note_gaze(stamped, sample),
-            Event::RobotMoves(sample) => return self.samples.note_arm(stamped, sample),
+            Event::Gaze(sample) => return self.long.push(SampleRows::gaze(stamped, sample)),
+            Event::RobotMoves(sample) => return self.long.push(SampleRows::arm(stamped, sample)),
             Event::Tracker(event) => is_of_eyes = self.samples.note_found(stamped, event),
             Event::TrialEnded { reason } => self.ended = Some(*reason),
             Event::TrialAborted { .. } => self.ended = Some(TrialEndReason::Aborted),
@@ -104,7 +105,7 @@ impl RecordingTables {
             }
             _ => {}
         }
-        self.beliefs.note(stamped);
+        self.long.extend(belief_rows::rows(stamped));
         let (duration, over) = self.spans.note(self.rows.len(), stamped.time, &stamped.event);
         for (row, lasted) in over {
             self.rows[row].duration = Some(lasted);
@@ -136,18 +137,34 @@ impl RecordingTables {
         tsv::line(all)
     }
 
-    /// The files of the recording's tables, after the last event, with the numbers of their rows.
-    pub fn into_files(self, session: &Session) -> (Vec<BidsFile>, BidsRowCounts) {
+    /// The rows of long tables of the events since the last call. The caller writes them at once, since a recording of
+    /// hours has millions of them.
+    pub fn take_rows(&mut self) -> std::vec::Drain<'_, LongTableRow> {
+        self.long.drain(..)
+    }
+
+    /// End of a long table's file name, and its first line, which is empty for tables that BIDS wants without one.
+    pub fn long_table(&self, table: LongTable) -> (String, String) {
+        let stem = self.viewing.stem(table);
+        match table {
+            LongTable::Gaze | LongTable::Arm => (format!("{stem}.tsv.gz"), String::new()),
+            LongTable::Beliefs => (format!("{stem}.tsv"), belief_rows::heading()),
+        }
+    }
+
+    /// The files of the recording's tables but the long ones, after the last event, with the numbers of rows of all of
+    /// them. `long`: what was counted of the rows of the long tables, in the order of [`LongTable::ALL`].
+    pub fn into_files(self, session: &Session, long: &[LongTableFacts; 3]) -> (Vec<BidsFile>, BidsRowCounts) {
         let task = TaskFacts { name: session.kitchen.name.clone(), title: session.kitchen.title.clone() };
-        let has_gaze = self.samples.has_gaze();
-        let [gaze, found, arm] = self.samples.counts();
+        let [gaze, arm, beliefs] = long.map(|facts| facts.rows);
+        let has_gaze = gaze > 0;
         let rows: Vec<&EventRow> = self.rows.iter().filter(|row| !(has_gaze && row.is_of_eyes)).collect();
         let counts = BidsRowCounts {
             events: rows.len() as u64,
             gaze,
-            eye_events: if has_gaze { found } else { 0 },
+            eye_events: if has_gaze { self.samples.found() } else { 0 },
             arm,
-            beliefs: self.beliefs.count,
+            beliefs,
             words_left_out: self.words_left_out,
         };
         let columns: Vec<_> = EVENTS.into_iter().chain(self.with_words.then_some(WORDS)).collect();
@@ -163,8 +180,8 @@ impl RecordingTables {
         task.tell(&mut about);
         about.insert("StimulusPresentation".to_string(), self.viewing.presentation(session));
         let mut files = vec![BidsFile::new("events.tsv", text), BidsFile::json("events.json", &about.into())];
-        files.extend(self.beliefs.into_files(&task));
-        files.extend(self.samples.into_files(session, &self.viewing, &task));
+        files.extend((beliefs > 0).then(|| belief_rows::sidecar(&task)));
+        files.extend(self.samples.into_files(session, &self.viewing, &task, long));
         (files, counts)
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::event_cells;
-use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, or_nothing, seconds};
+use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, device_seconds, or_nothing, seconds};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::robot::moment::ArmSample;
@@ -79,30 +79,84 @@ const ARM: [BidsColumn; 14] = [
     BidsColumn::new("seq", "Number of the sample in the log"),
 ];
 
+/// A table whose rows are so many that they are written as they come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LongTable {
+    /// Gaze samples, in the order in which they were taken.
+    Gaze,
+    /// Samples of the robot's arm.
+    Arm,
+    /// Beliefs, an aspect a row.
+    Beliefs,
+}
+
+impl LongTable {
+    /// All long tables.
+    pub const ALL: [LongTable; 3] = [LongTable::Gaze, LongTable::Arm, LongTable::Beliefs];
+}
+
+/// A row of a long table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LongTableRow {
+    /// The table to which the row belongs.
+    pub table: LongTable,
+    /// Time by which the rows of the table are ordered; rows of equal times keep their order.
+    pub time: SessionTime,
+    /// Text of the row, including the line end.
+    pub line: String,
+}
+
+/// What the sidecar file of a long table says of its rows, counted row by row in the order of the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LongTableFacts {
+    /// Number of rows.
+    pub rows: u64,
+    first: Option<SessionTime>,
+    last: Option<SessionTime>,
+    /// Number, and sum in seconds, of the intervals that are no gaps.
+    intervals: (f64, f64),
+}
+
+impl LongTableFacts {
+    /// Counts the next row of the table.
+    pub fn add(&mut self, time: SessionTime) {
+        self.rows += 1;
+        self.first = self.first.or(Some(time));
+        let interval = self.last.replace(time).map(|last| time.secs_since(last));
+        if let Some(interval) = interval.filter(|interval| *interval < GAP_S) {
+            self.intervals = (self.intervals.0 + 1.0, self.intervals.1 + interval);
+        }
+    }
+
+    /// Sampling rate in Hz over intervals without gaps; 0 if there is no such interval.
+    fn rate_hz(&self) -> f64 {
+        let (count, sum) = self.intervals;
+        if sum > 0.0 { (1000.0 * count / sum).round() / 1000.0 } else { 0.0 }
+    }
+}
+
 /// Rows of the BIDS tables of gaze samples, of fixations and blinks, and of arm samples.
 #[derive(Debug, Default)]
 pub(super) struct SampleRows {
-    gaze: Vec<(SessionTime, String)>,
     eye_events: Vec<(SessionTime, String)>,
-    arm: Vec<(SessionTime, String)>,
 }
 
 impl SampleRows {
-    pub(super) fn note_gaze(&mut self, stamped: &TimestampedEvent, sample: &GazeSample) {
+    pub(super) fn gaze(stamped: &TimestampedEvent, sample: &GazeSample) -> LongTableRow {
         let taken = sample.taken_ns.unwrap_or(stamped.time);
-        let device = or_nothing(sample.device_ns.map(|ns| seconds(SessionTime(ns))));
+        let device = or_nothing(sample.device_ns.map(device_seconds));
         let (x, y, confidence) = (sample.x.to_string(), sample.y.to_string(), sample.confidence.to_string());
         let cells = [seconds(taken), x, y, confidence, seconds(stamped.time), device, stamped.seq.to_string()];
-        self.gaze.push((taken, tsv::line(cells)));
+        LongTableRow { table: LongTable::Gaze, time: taken, line: tsv::line(cells) }
     }
 
-    pub(super) fn note_arm(&mut self, stamped: &TimestampedEvent, sample: &ArmSample) {
+    pub(super) fn arm(stamped: &TimestampedEvent, sample: &ArmSample) -> LongTableRow {
         let joints = sample.joints.iter().map(f64::to_string);
         let hand = sample.hand_m.iter().map(f64::to_string);
         let cells = [seconds(stamped.time), event_cells::name(&sample.phase)].into_iter().chain(joints);
         let cells = cells.chain([sample.force_n.to_string()]).chain(hand);
         let cells = cells.chain([sample.hand_away_m.to_string(), stamped.seq.to_string()]);
-        self.arm.push((stamped.time, tsv::line(cells)));
+        LongTableRow { table: LongTable::Arm, time: stamped.time, line: tsv::line(cells) }
     }
 
     /// Adds a fixation or a blink that the eye tracker found; returns `false` for every other event of the tracker.
@@ -127,43 +181,47 @@ impl SampleRows {
         true
     }
 
-    pub(super) fn has_gaze(&self) -> bool {
-        !self.gaze.is_empty()
+    /// Number of fixations and blinks.
+    pub(super) fn found(&self) -> u64 {
+        self.eye_events.len() as u64
     }
 
-    /// Numbers of rows of gaze samples, of fixations and blinks, and of arm samples.
-    pub(super) fn counts(&self) -> [u64; 3] {
-        [&self.gaze, &self.eye_events, &self.arm].map(|rows| rows.len() as u64)
-    }
-
-    /// The tables with their sidecar files. In a recording without gaze, fixations and blinks are in the table of
-    /// events.
-    pub(super) fn into_files(mut self, session: &Session, about: &ViewingFacts, task: &TaskFacts) -> Vec<BidsFile> {
-        self.gaze.sort_by_key(|(time, _)| *time);
+    /// The sidecar files of the long tables of samples that have rows, and the table of fixations and blinks. In a
+    /// recording without gaze, fixations and blinks are in the table of events.
+    pub(super) fn into_files(
+        mut self,
+        session: &Session,
+        about: &ViewingFacts,
+        task: &TaskFacts,
+        long: &[LongTableFacts; 3],
+    ) -> Vec<BidsFile> {
+        let [gaze, arm, _] = long;
         self.eye_events.sort_by_key(|(time, _)| *time);
         let mut files = Vec::new();
-        if !self.gaze.is_empty() {
-            let recording = if about.is_pointer { "recording-pointer" } else { "recording-eye1" };
+        if gaze.rows > 0 {
             let mut sidecar = about.sidecar(session);
             task.tell(&mut sidecar);
-            add_table(&mut sidecar, &self.gaze, &GAZE);
-            files.extend(pair(&format!("{recording}_physio"), sidecar, &self.gaze));
+            add_table(&mut sidecar, gaze, &GAZE);
+            files.push(BidsFile::json(format!("{}.json", about.stem(LongTable::Gaze)), &sidecar.into()));
             if !self.eye_events.is_empty() {
                 let mut sidecar = tsv::described(&EYE_EVENTS);
                 task.tell(&mut sidecar);
                 sidecar.insert("Columns".to_string(), json!(tsv::names(&EYE_EVENTS)));
                 sidecar.insert("Description".to_string(), json!("Fixations and blinks, as the eye tracker found them"));
                 sidecar.insert("OnsetSource".to_string(), json!("timestamp"));
-                files.extend(pair(&format!("{recording}_physioevents"), sidecar, &self.eye_events));
+                let name = format!("{}events", about.stem(LongTable::Gaze));
+                let text: String = self.eye_events.iter().map(|(_, line)| line.as_str()).collect();
+                files.push(BidsFile::new(format!("{name}.tsv.gz"), text));
+                files.push(BidsFile::json(format!("{name}.json"), &sidecar.into()));
             }
         }
-        if !self.arm.is_empty() {
+        if arm.rows > 0 {
             let mut sidecar = Map::new();
             task.tell(&mut sidecar);
-            add_table(&mut sidecar, &self.arm, &ARM);
+            add_table(&mut sidecar, arm, &ARM);
             let told = "Motion of the robot's arm, which the participant sees; sampled while it moves";
             sidecar.insert("Description".to_string(), json!(told));
-            files.extend(pair("recording-arm_stim", sidecar, &self.arm));
+            files.push(BidsFile::json(format!("{}.json", about.stem(LongTable::Arm)), &sidecar.into()));
         }
         files
     }
@@ -181,6 +239,16 @@ pub(super) struct ViewingFacts {
 }
 
 impl ViewingFacts {
+    /// End of the names of a long table's files, without the last ending.
+    pub(super) fn stem(&self, table: LongTable) -> &'static str {
+        match table {
+            LongTable::Gaze if self.is_pointer => "recording-pointer_physio",
+            LongTable::Gaze => "recording-eye1_physio",
+            LongTable::Arm => "recording-arm_stim",
+            LongTable::Beliefs => "beh",
+        }
+    }
+
     /// Description of the wall display for the sidecar file of the table of events.
     pub(super) fn presentation(&self, session: &Session) -> Value {
         let mut display = json!({
@@ -234,22 +302,9 @@ impl ViewingFacts {
 }
 
 /// Adds the sampling rate, the first time and the columns of a table of samples to the table's sidecar file.
-fn add_table(sidecar: &mut Map<String, Value>, rows: &[(SessionTime, String)], columns: &[BidsColumn]) {
-    sidecar.insert("SamplingFrequency".to_string(), json!(rate_hz(rows)));
-    sidecar.insert("StartTime".to_string(), json!(rows.first().map_or(0.0, |(time, _)| time.as_secs_f64())));
+fn add_table(sidecar: &mut Map<String, Value>, facts: &LongTableFacts, columns: &[BidsColumn]) {
+    sidecar.insert("SamplingFrequency".to_string(), json!(facts.rate_hz()));
+    sidecar.insert("StartTime".to_string(), json!(facts.first.map_or(0.0, SessionTime::as_secs_f64)));
     sidecar.insert("Columns".to_string(), json!(tsv::names(columns)));
     sidecar.extend(tsv::described(columns));
-}
-
-/// Sampling rate in Hz over intervals without gaps; 0 if there is no such interval.
-fn rate_hz(rows: &[(SessionTime, String)]) -> f64 {
-    let gaps = rows.windows(2).map(|pair| pair[1].0.secs_since(pair[0].0)).filter(|gap| *gap < GAP_S);
-    let (count, sum) = gaps.fold((0.0, 0.0), |(count, sum), gap| (count + 1.0, sum + gap));
-    if sum > 0.0 { (1000.0 * count / sum).round() / 1000.0 } else { 0.0 }
-}
-
-/// A table that the caller compresses, without a header line as BIDS wants it, and the table's sidecar file.
-fn pair(name: &str, sidecar: Map<String, Value>, rows: &[(SessionTime, String)]) -> [BidsFile; 2] {
-    let text: String = rows.iter().map(|(_, line)| line.as_str()).collect();
-    [BidsFile::new(format!("{name}.tsv.gz"), text), BidsFile::json(format!("{name}.json"), &sidecar.into())]
 }

@@ -4,7 +4,6 @@ use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, YES_NO, or_nothing, seconds, yes};
 use crate::base::time::SessionTime;
 use crate::session::event::TrialEndReason;
-use crate::session::study_arm::StudyArm;
 use crate::session::{LogHeader, Session};
 
 const CONDITIONS: &[(&str, &str)] = &[
@@ -31,7 +30,10 @@ const COLUMNS: [BidsColumn; 21] = [
         "study_arm",
         "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
     ),
-    BidsColumn::new("planned_arm", "Arm that the plan gave to the trial"),
+    BidsColumn::new(
+        "planned_arm",
+        "Arm under which the trial counts: that of the plan, without a plan that of the settings",
+    ),
     BidsColumn::of_levels("practice", YES_NO, "Whether it is practice, which no analysis takes"),
     BidsColumn::new("period", "Number of the trial in the plan, from 1"),
     BidsColumn::new("attempt", "Number of the attempt, from 1"),
@@ -75,7 +77,7 @@ impl BidsSessionRow {
             spec.trial.condition.name().to_string(),
             spec.assistant.concept.name().to_string(),
             session.study_arm().name().to_string(),
-            or_nothing(step.and_then(|step| step.arm).map(StudyArm::name)),
+            session.planned_arm().name().to_string(),
             yes(step.is_some_and(|step| step.period.is_none())),
             or_nothing(step.and_then(|step| step.period)),
             or_nothing(step.map(|step| step.attempt)),

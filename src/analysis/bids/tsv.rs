@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value, json};
 
+use crate::base::spreadsheet::without_formula;
 use crate::base::time::SessionTime;
 
 /// Text of a cell in a BIDS table that has no value.
@@ -105,10 +106,11 @@ pub(super) fn line<'a>(cells: impl IntoIterator<Item = impl Into<Cow<'a, str>>>)
     cells.join("\t") + "\n"
 }
 
-/// Text of one table cell: tabs and line ends become spaces, and text that contains quotation marks is quoted.
+/// Text of one table cell: tabs and line ends become spaces, text that a spreadsheet would compute gets a `'` in front,
+/// and text that contains quotation marks is quoted.
 fn cell(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    match plain.trim() {
+    match &*without_formula(plain.trim()) {
         "" => NOTHING.to_string(),
         trimmed if trimmed.contains('"') => format!("\"{}\"", trimmed.replace('"', "\"\"")),
         trimmed => trimmed.to_string(),
@@ -118,6 +120,12 @@ fn cell(text: &str) -> String {
 /// Session time in seconds with nine decimals (nanoseconds), for a table cell.
 pub(super) fn seconds(time: SessionTime) -> String {
     format!("{}.{:09}", time.0 / 1_000_000_000, time.0 % 1_000_000_000)
+}
+
+/// Time on a tracker's clock in seconds with nine decimals, which can be negative, for a table cell.
+pub(super) fn device_seconds(ns: i64) -> String {
+    let sign = if ns < 0 { "-" } else { "" };
+    format!("{sign}{}", seconds(SessionTime(ns.unsigned_abs())))
 }
 
 /// A value as text of a BIDS cell, or "n/a" for `None`.
@@ -131,4 +139,14 @@ pub(super) const YES_NO: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 /// BIDS cell of a truth value: 1 for yes, 0 for no.
 pub(super) fn yes(is: bool) -> String {
     u8::from(is).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_somebody_typed_is_one_cell_that_no_spreadsheet_computes() {
+        assert_eq!(line(["=1+1", "-0.5", "a\tb\nc", "", "@x \"y\""]), "'=1+1\t-0.5\ta b c\tn/a\t\"'@x \"\"y\"\"\"\n");
+    }
 }

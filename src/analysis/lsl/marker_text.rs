@@ -73,6 +73,7 @@ fn private_fields(event: &Event) -> &'static [&'static str] {
         Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
         Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
         Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
+        Event::Tracker(TrackerEvent::SeveralStreams { .. }) => &["streams"],
         Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
         Event::Probe(ProbeEvent::Answered { .. }) => &["answer", "confidence"],
         Event::Protocol(ProtocolEvent::Tutorial(TutorialEvent::Answered { .. })) => &["choice"],

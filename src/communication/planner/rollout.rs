@@ -297,7 +297,7 @@ impl Rollout<'_> {
 
     /// The possible choices of the robot's task policy in the true state.
     fn choices(&mut self, state: State) -> RobotChoices {
-        self.policy.choices(self.context.kitchen, self.cost, Fidelity::Exact, state, &self.context.recipes)
+        self.policy.choices(self.context.kitchen, self.cost, Fidelity::Searched, state, &self.context.recipes)
     }
 
     /// Starts the next press of an idle robot arm, as the robot's policy chooses.

@@ -107,7 +107,12 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     let [human, robot] = [Agent::Human, Agent::Robot].map(|agent| session.presses[agent.index()]);
     let errors = model.errors.len() as u64;
     let share = 100.0 * errors as f64 / f64::from(human.max(1));
-    let errors = format!("{errors} in {} of the human ({share:.0} %)", count(u64::from(human), "press", "presses"));
+    let unproven = match model.unproven {
+        0 => String::new(),
+        unproven => format!(", {unproven} not proven"),
+    };
+    let presses = count(u64::from(human), "press", "presses");
+    let errors = format!("{errors} in {presses} of the human ({share:.0} %){unproven}");
     let clock = session.trial_clock(model.now);
     let paused = if session.paused_total > SessionTime::ZERO {
         format!(", plus {} of pauses", session.paused_total)

@@ -6,6 +6,7 @@ use ratatui::style::Modifier;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
+use crate::base::words::count;
 use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
@@ -36,9 +37,10 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
     // The gaze panel shows only the most frequent fault; the preflight checks and the summaries show all.
-    let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
-    let rejected = Some((model.rejected_senders, "senders rejected")).filter(|(count, _)| *count > 0);
-    let told = worst.into_iter().chain(rejected).map(|(count, kind)| format!(", {count} {kind}"));
+    let worst = faults(session).into_iter().max_by_key(|(samples, _)| *samples);
+    let rejected = Some(model.rejected_senders).filter(|senders| *senders > 0);
+    let rejected = rejected.map(|senders| format!(", {} rejected", count(senders, "sender", "senders")));
+    let told = worst.map(|(samples, kind)| format!(", {samples} {kind}")).into_iter().chain(rejected);
     let remark = format!("{source}{}", told.collect::<String>());
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -110,7 +112,7 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
         }
     }
     let mut labels: Vec<Rect> = Vec::new();
-    let latest = session.gaze.last.map(|(at, _)| at);
+    let latest = session.gaze.last.map(|(at, sample)| sample.taken(at));
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());

@@ -277,8 +277,8 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     page.draw(pen, screen, "The practice criterion is not met", where_, hints);
 }
 
-/// Draws a question to the user before a recording, on an otherwise empty screen.
-pub fn draw_question(question: &StartQuestion, theme: Theme, frame: &mut Frame) {
+/// Draws a question to the user before a recording, and a notice below it, on an otherwise empty screen.
+pub fn draw_question(question: &StartQuestion, notice: Option<&str>, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
     let mut brush = Painter::new(frame.buffer_mut(), theme);
     let mut page = Page::new(screen);
@@ -290,6 +290,10 @@ pub fn draw_question(question: &StartQuestion, theme: Theme, frame: &mut Frame) 
         page.marked(&format!("  {}", index + 1), answer, TextRole::Strong);
     }
     page.focus_here();
+    if let Some(notice) = notice {
+        page.space();
+        page.text(0, notice, TextRole::Alarm);
+    }
     let keys = [("esc", "quit without recording", plain(KeyCode::Esc))];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }

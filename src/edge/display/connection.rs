@@ -38,6 +38,8 @@ struct Talk {
     place: Arc<ConnectionHandle>,
     life: PageLife,
     page: String,
+    /// Whether the page wants to watch while another page takes part.
+    waits: bool,
     size: ActivePage,
     faults: u32,
     /// Budget of messages that the page may still send (token bucket), with the time of the budget's last update.
@@ -52,8 +54,8 @@ struct Talk {
 pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionHandle>) {
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));
-    let (faults, allowed, pressed) = (0, (PER_SECOND, now), 0);
-    let mut talk = Talk { socket, hub, place, life, page, size, faults, allowed, pressed, last: None };
+    let (waits, faults, allowed, pressed) = (false, 0, (PER_SECOND, now), 0);
+    let mut talk = Talk { socket, hub, place, life, page, waits, size, faults, allowed, pressed, last: None };
     let Some(waits) = talk.greet().await else { return };
     // Beyond the limit of watching pages, only the page that takes part is admitted to the display.
     if !talk.take_seat(waits).await && !talk.place.admit() {
@@ -73,12 +75,25 @@ impl Talk {
         self.say(&MessageToPage::Words { words: self.hub.words.clone() }).await?;
         let hello_by = tokio::time::Instant::now() + HELLO;
         let (mut has_said, mut attempts) = (false, 0);
+        // The typed code, and when it is checked.
+        let mut typed: Option<(tokio::time::Instant, String)> = None;
         loop {
+            let check_at = typed.as_ref().map_or(hello_by, |(at, _)| *at);
             let message = tokio::select! {
                 biased;
                 () = self.place.closed() => return None,
                 said = self.socket.recv() => said?.ok()?,
                 () = sleep_until(hello_by), if !has_said => return None,
+                () = sleep_until(check_at), if typed.is_some() => {
+                    let (_, code) = typed.take()?;
+                    if self.pair(&code).await? {
+                        return Some(self.waits);
+                    }
+                    if attempts == ATTEMPTS {
+                        return None;
+                    }
+                    continue;
+                }
                 () = sleep_until(self.life.next().into()) => {
                     self.keep_alive().await?;
                     continue;
@@ -89,16 +104,20 @@ impl Talk {
                 Some(MessageFromPage::Hello { page, width, height, upright, code, waits }) => {
                     self.page = page;
                     self.note_size(width, height, upright);
+                    self.waits = waits;
                     if !self.hub.has_code() {
                         return Some(waits);
                     }
                     has_said = true;
-                    attempts += u32::from(code.is_some());
-                    if self.pair(code).await? {
-                        return Some(waits);
-                    }
-                    if attempts == ATTEMPTS {
-                        return None;
+                    match code {
+                        // One code at a time; codes beyond the limit are not even counted.
+                        Some(code) if typed.is_none() => {
+                            attempts += 1;
+                            let delay = self.hub.pairing_delay(&self.page, &code);
+                            typed = Some((tokio::time::Instant::now() + delay, code));
+                        }
+                        Some(_) => {}
+                        None => self.say(&MessageToPage::Pairing { why: "code", wait_s: 0 }).await?,
                     }
                 }
                 // A page that shows the form for the pairing code sends pings, too.
@@ -112,12 +131,8 @@ impl Talk {
     }
 
     /// Checks the page's pairing code, and tells the page if the code is wrong; returns whether the code is right.
-    async fn pair(&mut self, code: Option<String>) -> Option<bool> {
-        let Some(code) = code else {
-            self.say(&MessageToPage::Pairing { why: "code", wait_s: 0 }).await?;
-            return Some(false);
-        };
-        let (why, wait) = match self.hub.pair(self.place.address(), &self.page, &code) {
+    async fn pair(&mut self, code: &str) -> Option<bool> {
+        let (why, wait) = match self.hub.pair(self.place.address(), &self.page, code) {
             PairingVerdict::Right => return Some(true),
             PairingVerdict::Wrong(wait) => ("wrong", wait),
             PairingVerdict::Locked(wait) => ("locked", wait),

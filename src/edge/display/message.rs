@@ -155,7 +155,10 @@ fn is_reply(reply: &ParticipantResponse) -> bool {
                 && items.iter().all(|item| is_text(item))
                 && sure.is_none_or(|sure| (1..=3).contains(&sure))
         }
-        ParticipantResponse::Next | ParticipantResponse::Consent | ParticipantResponse::Confirm => true,
+        ParticipantResponse::Next
+        | ParticipantResponse::Hold { .. }
+        | ParticipantResponse::Consent
+        | ParticipantResponse::Confirm => true,
     }
 }
 

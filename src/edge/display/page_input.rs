@@ -62,7 +62,13 @@ pub enum ParticipantResponse {
         /// Name of the questionnaire item.
         item: String,
     },
-    /// Consent of the participant, who held the consent button for as long as the page asks.
+    /// The participant presses or releases the consent button.
+    Hold {
+        /// Whether the button is held from now on.
+        held: bool,
+    },
+    /// Consent of the participant, who held the consent button for as long as the page asks. It counts if the program
+    /// was told of the hold, and it lasted that long.
     Consent,
     /// Confirmation of all questionnaire answers.
     Confirm,

@@ -68,6 +68,13 @@ impl ServerState {
         self.pairing.is_some()
     }
 
+    /// Time to wait before a pairing code that was typed into a page is to be checked.
+    pub fn pairing_delay(&self, page: &str, typed: &str) -> Duration {
+        let Some(desk) = &self.pairing else { return Duration::ZERO };
+        let desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
+        desk.delay(Some(page), typed, Instant::now())
+    }
+
     /// Checks a pairing code that was typed into a page. Attempts of all connections are checked one after another.
     pub fn pair(&self, address: IpAddr, page: &str, typed: &str) -> PairingVerdict {
         match &self.pairing {

@@ -5,19 +5,15 @@ use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
 use crate::base::printable::printable;
-use crate::base::words::count;
 use crate::edge::file_error::FileError;
 use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
-use crate::gaze::surface::SurfaceHomography;
+use crate::gaze::tags::TagError;
+use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
-
-/// Corners of a surface that covers the whole display, used because the check of a gaze file does not depend on the
-/// display's markers.
-const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;
@@ -36,13 +32,13 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
 }
 
 /// Checks the session's gaze source.
-pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
+pub(super) fn gaze(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     match spec.participant.gaze {
-        GazeSource::Pupil => eye_tracker(&spec.tracker, true),
-        GazeSource::Json => lines(&spec.participant),
-        GazeSource::Lsl => stream(spec),
-        GazeSource::File => file(&spec.tracker),
-        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => eye_tracker(&spec.tracker, false),
+        GazeSource::Pupil => vec![eye_tracker(&spec.tracker, true)],
+        GazeSource::Json => vec![lines(&spec.participant)],
+        GazeSource::Lsl => vec![stream(spec)],
+        GazeSource::File => file(&spec.tracker, kitchen),
+        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => vec![eye_tracker(&spec.tracker, false)],
     }
 }
 
@@ -130,15 +126,22 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
     let there: Vec<(&DiscoveredLslStream, Vec<String>)> =
         streams.iter().map(|found| (found, lsl::channel_names(found, STREAM_S).unwrap_or_default())).collect();
     let told = |(found, channels): &(&DiscoveredLslStream, Vec<String>)| {
-        let [name, content, host] = found.identity();
-        format!("\"{name}\" of type \"{content}\" on {host}: {}", channels.join(", "))
+        format!("{}: {}", lsl::described(found), channels.join(", "))
     };
     let is_wanted = |(found, _): &&(&DiscoveredLslStream, Vec<String>)| {
-        let [name, content, _] = found.identity();
-        let is = |wanted: &Option<String>, found: &String| wanted.as_ref().is_none_or(|wanted| wanted == found);
-        is(&wanted.name, &name) && is(&wanted.content, &content)
+        let [name, content, host] = found.identity();
+        let wanted = [&wanted.name, &wanted.content, &wanted.host, &wanted.source_id];
+        let found = [name, content, host, found.source()];
+        wanted.iter().zip(found).all(|(wanted, found)| wanted.as_ref().is_none_or(|wanted| *wanted == found))
     };
-    if let Some(one) = there.iter().find(is_wanted) {
+    let fitting: Vec<_> = there.iter().filter(is_wanted).collect();
+    if let [_, _, ..] = fitting[..] {
+        let all: Vec<String> = fitting.into_iter().map(told).collect();
+        let found = format!("{} LSL streams {}: {}", all.len(), wanted.title(), all.join("; "));
+        let remedy = "set source_id or host under [lsl.gaze] to those of one of them, or end the others";
+        return PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy);
+    }
+    if let Some(one) = fitting.first() {
         let remedy = "set x, y and confidence under [lsl.gaze] to labels of channels, or to their numbers from 1";
         return match lsl::missing_channel(wanted, &one.1) {
             None => PreflightCheck::ok("gaze", told(one)),
@@ -163,17 +166,16 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
 }
 
 /// Checks whether the session's gaze file can be replayed.
-fn file(tracker: &TrackerSpec) -> PreflightCheck {
+fn file(tracker: &TrackerSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     let path = tracker.file.as_deref().unwrap_or_default();
-    let remedy =
-        "file under [tracker]: a table of gaze on the display, or the folder of a recording (docs/tracker-recorded.md)";
-    let found = SurfaceHomography::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map, tracker.file_start_s));
-    match found {
-        Some(Ok(found)) if !found.samples.is_empty() => {
-            PreflightCheck::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))
-        }
-        Some(Err(error)) => PreflightCheck::new("gaze", PreflightVerdict::Failed, error.to_string(), told(&error)),
-        _ => PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{path} has no gaze sample"), remedy),
+    let failed = |found: String, remedy| vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
+    let map = match tracker.surface_map(kitchen) {
+        Ok(map) => map,
+        Err(TagError { found, remedy }) => return failed(found, remedy),
+    };
+    match gaze_file::read(Path::new(path), &map, tracker) {
+        Ok(found) => recorded_gaze(path, &found.summary),
+        Err(error) => failed(error.to_string(), told(&error)),
     }
 }
 

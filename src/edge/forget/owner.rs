@@ -1,12 +1,15 @@
 //! Which participant the recording in a folder belongs to.
 
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
+use std::io::BufReader;
 use std::path::Path;
 
 use serde_json::Value;
 
-use crate::edge::log::{LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, is_written_settings};
+use crate::edge::file_error::read_regular;
+use crate::edge::log::{
+    LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, corrected_code, first_line, is_begun, is_written_settings,
+};
 use crate::edge::stream_head;
 use crate::session::header::FORMAT;
 
@@ -42,8 +45,17 @@ impl RecordingOwner {
     /// only if this program wrote it: a program that is killed before it writes the log leaves such a file behind.
     pub(super) fn read(folder: &Path) -> RecordingOwner {
         let settings = || read_settings(folder);
-        match first_line(folder) {
-            FirstLine::Header { code, began } => RecordingOwner::Participant { code, began },
+        match first_line_in(folder) {
+            FirstLine::Header { code, began } => match corrected_code(folder, &code) {
+                Ok(correction) => {
+                    let code = correction.map_or(code, |correction| correction.after);
+                    RecordingOwner::Participant { code, began }
+                }
+                Err(_) => RecordingOwner::Unknown(
+                    "a recording that does not say whose it is: correction.toml is damaged; it is to be deleted by hand, if it \
+                     is the participant's",
+                ),
+            },
             FirstLine::Foreign => RecordingOwner::NoRecording,
             FirstLine::Damaged => match settings() {
                 Some((code, _)) => RecordingOwner::Participant { code, began: None },
@@ -54,7 +66,7 @@ impl RecordingOwner {
             },
             FirstLine::Missing => {
                 let is_streamed = || stream_head::identity(&folder.join(RRD_NAME)).is_ok_and(|found| found.is_some());
-                let is_begun = || is_file(&folder.join(LOCK_NAME)) || is_file(&folder.join(format!("{LOG_NAME}.new")));
+                let is_begun = || is_file(&folder.join(LOCK_NAME)) || holds_begun(folder);
                 match settings() {
                     Some((code, is_own)) if is_own || is_begun() || is_streamed() => {
                         RecordingOwner::Participant { code, began: None }
@@ -76,14 +88,19 @@ fn is_file(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|data| data.is_file())
 }
 
-fn first_line(folder: &Path) -> FirstLine {
+/// Whether the folder has a log or settings that a program was writing when it was killed.
+fn holds_begun(folder: &Path) -> bool {
+    let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.any(|entry| is_file(&entry.path()) && entry.file_name().to_str().is_some_and(is_begun))
+}
+
+fn first_line_in(folder: &Path) -> FirstLine {
     let path = folder.join(LOG_NAME);
     if !is_file(&path) {
         return FirstLine::Missing;
     }
-    let mut line = String::new();
-    let read = File::open(path).and_then(|file| BufReader::new(file).read_line(&mut line));
-    let Some(Value::Object(header)) = read.ok().and_then(|_| serde_json::from_str(&line).ok()) else {
+    let line = File::open(path).and_then(|file| first_line(&mut BufReader::new(file)));
+    let Some(Value::Object(header)) = line.ok().and_then(|line| serde_json::from_slice(&line).ok()) else {
         return FirstLine::Damaged;
     };
     if header.get("format").and_then(Value::as_str) != Some(FORMAT) {
@@ -107,7 +124,7 @@ fn first_line(folder: &Path) -> FirstLine {
 /// settings and nothing else).
 fn read_settings(folder: &Path) -> Option<(String, bool)> {
     let path = folder.join(SETTINGS_NAME);
-    let text = is_file(&path).then(|| fs::read_to_string(path).ok()).flatten()?;
+    let text = is_file(&path).then(|| read_regular(&path).ok()).flatten()?;
     let settings: toml::Table = text.parse().ok()?;
     let code = settings.get("participant")?.get("code")?.as_str()?.to_string();
     Some((code, is_written_settings(&text)))

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
-use crate::session::participant_code::{is_participant_code, without_seed};
+use crate::session::person_code::{self, without_seed};
 
 /// Which person a name or a row of a table is about (when a participant's data are to be deleted).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,10 +101,10 @@ impl ForgetSubject {
         self.recordings.iter().any(own)
     }
 
-    /// Whether a text of unknown origin names the participant. Codes that are numbers or ordinary words do not count,
-    /// since in such a text they mean something else.
+    /// Whether a text of unknown origin names the participant. Codes of earlier versions that are numbers, or words for
+    /// missing values, do not count, since in such a text they mean something else.
     pub fn is_named_in(&self, text: &[u8]) -> bool {
-        let is_distinct = is_participant_code(&self.code) && self.code.bytes().any(|byte| byte.is_ascii_alphabetic());
+        let is_distinct = person_code::fault(&self.code).is_none();
         words(text).any(|word| self.is_own_folder(&word) || (is_distinct && self.is_own_code(&word)))
     }
 

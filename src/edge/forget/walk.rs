@@ -10,12 +10,13 @@ use super::subject::ForgetSubject;
 use crate::edge::bids_tree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::consensus_file::CONSENSUS_NAME;
+use crate::edge::log::rater_codes::is_codes_file;
 use crate::edge::log::{
-    CODES_LOCK, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log,
+    CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
+    is_damaged_log,
 };
 use crate::edge::replace_file::replaced_name;
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
-use crate::session::settings::is_code;
 
 /// Why an unknown file in the folder of a recording is kept.
 const STRANGE: &str = "in the folder of one of the participant's recordings, and tomcom did not write it; it is to be deleted or \
@@ -152,9 +153,11 @@ impl ForgetWalk {
 
     /// Searches recordings that were rescued from a folder below the folder `home`.
     fn enter_rescued(&mut self, home: &Path, temporary: &Path) {
+        // The note names the original folder as text.
+        let home = PathBuf::from(home.to_string_lossy().into_owned());
         for (folder, _) in entries(temporary).unwrap_or_default().iter().filter(is_rescued) {
             for (recording, kind) in entries(folder).unwrap_or_default() {
-                let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(home));
+                let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(&home));
                 if kind == EntryKind::Folder && is_from_here {
                     // The folder of rescued recordings is also removed once it is empty.
                     self.own_folders.push(folder.clone());
@@ -194,9 +197,18 @@ fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
 fn is_of_recording(path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else { return false };
     let name = replaced_name(name);
-    let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
+    let is_code_file = is_codes_file(name);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
-    let names = [LOG_NAME, SETTINGS_NAME, RRD_NAME, MCAP_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME];
+    let names = [
+        LOG_NAME,
+        SETTINGS_NAME,
+        RRD_NAME,
+        MCAP_NAME,
+        EXCLUSION_NAME,
+        CORRECTION_NAME,
+        CONSENSUS_NAME,
+        RESCUE_NOTE_NAME,
+    ];
     is_lock(path) || is_code_file || is_damaged_log(name) || names.contains(&name) || seal == RRD_NAME
 }
 
@@ -214,7 +226,7 @@ fn is_rescued((path, kind): &&(PathBuf, EntryKind)) -> bool {
 /// Whether this file is a Rerun stream that `tomcom review` left in the system's folder for temporary files.
 fn is_stream((path, kind): &(PathBuf, EntryKind)) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    *kind == EntryKind::File && name.starts_with("tomcom-") && (name.ends_with(".rrd") || name.ends_with(".rrd.new"))
+    *kind == EntryKind::File && name.starts_with("tomcom-") && replaced_name(&name).ends_with(".rrd")
 }
 
 fn canonical(path: &Path) -> PathBuf {

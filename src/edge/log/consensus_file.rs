@@ -1,16 +1,17 @@
 //! The file `consensus.csv` beside a log: codes of errors on which two raters agree, or which they decided together,
 //! each with the code that each rater had given before. The raters' own files are not changed.
 
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::RecordingWriteError;
+use super::decision_file::check_single;
 use super::rater_codes::{code_of, rows, text_of, wrong_line};
-use crate::edge::file_error::{FileError, FileResult, open_regular};
+use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::edge::replace_file;
 use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode};
 use crate::measures::consensus::{ConsensusCode, RaterConsensus};
-use crate::session::settings::is_code;
+use crate::session::person_code;
 
 /// Name of the consensus file in the folder of a recording.
 pub const CONSENSUS_NAME: &str = "consensus.csv";
@@ -25,9 +26,9 @@ const COLUMNS: [&str; 9] =
 /// The file exists but cannot be read, or contains something that cannot be about this recording.
 pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterConsensus>> {
     let path = folder.join(CONSENSUS_NAME);
-    let mut bytes = Vec::new();
-    match open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes)) {
-        Ok(_) => {}
+    check_single(folder, CONSENSUS_NAME)?;
+    let bytes = match read_bytes(&path, MAX_TEXT) {
+        Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
     };
@@ -40,7 +41,7 @@ pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterCo
         }
         let raters = [before[0].as_str(), before[3].as_str()];
         let into = consensus.get_or_insert_with(|| RaterConsensus::new(raters[0], raters[1]));
-        if raters.iter().any(|rater| !is_code(rater)) || raters[0] >= raters[1] {
+        if raters.iter().any(|rater| person_code::fault(rater).is_some()) || raters[0] >= raters[1] {
             let found = format!("the raters \"{}\" and \"{}\"", raters[0], raters[1]);
             return Err(wrong(found, "the codes of two raters, in the order of the alphabet"));
         }

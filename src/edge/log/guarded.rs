@@ -5,14 +5,13 @@ use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-#[cfg(unix)]
-use crate::edge::temporary::new_file;
-
 /// Length of the log's end that every check compares with the guarding copy, in bytes (some seconds of gaze).
 const TAIL: u64 = 64 << 10;
-/// Length of the further stretch that every check compares with the guarding copy, in bytes; consecutive checks go
-/// through the whole log.
+/// Least length of the further stretch that every check compares with the guarding copy, in bytes.
 const STRETCH: u64 = 1 << 20;
+/// Largest number of checks whose stretches go through the whole log. With four checks a second, damage anywhere in the
+/// log is found within 10 s, also if the walk has just passed its place.
+const PASS: u64 = 18;
 /// Number of bytes of log and copy that are compared at a time.
 #[cfg(unix)]
 const PIECE: usize = 64 << 10;
@@ -28,6 +27,8 @@ pub(super) struct GuardedFile {
     length: u64,
     /// Position in the log at which the next check's stretch begins, in bytes.
     next: u64,
+    /// Position in the log at which the present pass through the log ends, in bytes.
+    pass_end: u64,
 }
 
 impl Write for GuardedFile {
@@ -47,12 +48,12 @@ impl Write for GuardedFile {
 impl GuardedFile {
     /// A log file without a guarding copy.
     pub(super) fn unguarded(file: File) -> GuardedFile {
-        GuardedFile { file, copy: None, length: 0, next: 0 }
+        GuardedFile { file, copy: None, length: 0, next: 0, pass_end: 0 }
     }
 
     /// A log file with a guarding copy, which is in the system's folder for temporary files, or else in this folder.
     pub(super) fn guarded(file: File, folder: &Path) -> GuardedFile {
-        let copy = nameless(&std::env::temp_dir()).or_else(|_| nameless(folder)).ok();
+        let copy = tempfile::tempfile().or_else(|_| tempfile::tempfile_in(folder)).ok();
         GuardedFile { copy, ..GuardedFile::unguarded(file) }
     }
 
@@ -60,9 +61,9 @@ impl GuardedFile {
         &self.file
     }
 
-    /// Compares the length, the end and the next stretch of the log with what was written; returns the damage in words;
-    /// `None` if the log is undamaged.
-    pub(super) fn damage(&mut self) -> Option<String> {
+    /// Compares the length, the end and the next stretch of the log with what was written, or the whole log; returns the
+    /// damage in words; `None` if no damage is found.
+    pub(super) fn damage(&mut self, whole: bool) -> Option<String> {
         let length = match self.file.metadata() {
             Ok(data) => data.len(),
             Err(reason) => return Some(format!("cannot be read to be checked: {reason}")),
@@ -72,13 +73,21 @@ impl GuardedFile {
             return Some(format!("{how} by another program: {length} bytes, {} were recorded", self.length));
         }
         let tail = self.length.saturating_sub(TAIL);
-        if self.next >= tail {
-            self.next = 0;
-        }
-        let stretch = self.next..(self.next + STRETCH).min(tail);
-        self.next = stretch.end;
+        let stretch = if whole { 0..tail } else { self.next_stretch(tail) };
         let at = self.difference(tail, self.length).or_else(|| self.difference(stretch.start, stretch.end))?;
         Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
+    }
+
+    /// The stretch of the log that is compared next, between the log's beginning and `tail`. The end of a pass is fixed
+    /// where the pass begins: a walk that followed the growing log would never return to its beginning.
+    fn next_stretch(&mut self, tail: u64) -> std::ops::Range<u64> {
+        if self.next >= self.pass_end {
+            (self.next, self.pass_end) = (0, tail);
+        }
+        let length = STRETCH.max(self.pass_end.div_ceil(PASS));
+        let stretch = self.next..(self.next + length).min(self.pass_end);
+        self.next = stretch.end;
+        stretch
     }
 
     /// Position of the first byte in this range that differs between log and guarding copy; `None` if nothing differs
@@ -130,46 +139,37 @@ impl GuardedFile {
     }
 }
 
-/// A new file without a name, which only this process can reach.
-#[cfg(unix)]
-fn nameless(folder: &Path) -> io::Result<File> {
-    let (path, file) = new_file(folder, &format!(".tomcom-{}", std::process::id()), "")?;
-    std::fs::remove_file(path).map(|()| file)
-}
-
-/// Files without a name are not available on this operating system.
-#[cfg(not(unix))]
-fn nameless(_folder: &Path) -> io::Result<File> {
-    Err(io::Error::from(io::ErrorKind::Unsupported))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::temporary::new_folder;
 
     /// Test: damages a guarded log of this length, and compares the reported damage and the saved log with the expected
     /// ones.
     fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
-        let name_of_folder = format!("tomcom-guarded-{}-{name}", std::process::id());
-        let folder = new_folder(&std::env::temp_dir(), &name_of_folder).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
         let path = folder.join("log");
         let file = File::options().read(true).write(true).create_new(true).open(&path).unwrap();
-        let mut log = GuardedFile::guarded(file, &folder);
+        let mut log = GuardedFile::guarded(file, folder);
         log.write_all(&vec![b'x'; bytes]).unwrap();
-        assert_eq!(log.damage(), None);
+        // Something is written to the log before every check, as in a live session; the checks have gone through most
+        // of the log when it is damaged.
+        let mut lines = Vec::new();
+        let mut check = |log: &mut GuardedFile| {
+            log.write_all(b"more\n").unwrap();
+            lines.extend_from_slice(b"more\n");
+            log.damage(false)
+        };
+        assert_eq!((0..5).find_map(|_| check(&mut log)), None);
         harm(&path);
-        // Something is written to the log before the next check, as in a live session.
-        log.write_all(b"more\n").unwrap();
-        let rounds = bytes as u64 / STRETCH + 2;
-        let damage = (0..rounds).find_map(|_| log.damage());
+        let damage = (0..2 * PASS).find_map(|_| check(&mut log));
+        assert_eq!(log.damage(true).is_some(), found.is_some(), "{name}: the whole log");
         assert_eq!(damage.is_some(), found.is_some(), "{name}: {damage:?}");
         assert!(damage.iter().all(|damage| damage.contains(found.unwrap_or_default())), "{name}: {damage:?}");
         let saved = folder.join("saved");
         log.save(damage.is_some(), &mut File::create(&saved).unwrap()).unwrap();
-        assert_eq!(std::fs::read(saved).unwrap(), [&vec![b'x'; bytes][..], b"more\n"].concat(), "{name}");
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "{name}: the copy has no name");
-        std::fs::remove_dir_all(folder).unwrap();
+        assert_eq!(std::fs::read(saved).unwrap(), [&vec![b'x'; bytes][..], &lines].concat(), "{name}");
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 2, "{name}: the copy has no name");
     }
 
     fn overwrite(path: &Path, at: u64, with: &[u8]) {
@@ -191,10 +191,11 @@ mod tests {
         check(
             "longer",
             100,
-            |path| overwrite(path, 100, b"other longer line"),
+            |path| overwrite(path, 125, b"other longer line"),
             Some("was written to by another program"),
         );
         check("end", LONG, |path| overwrite(path, LONG as u64 - 9, b"y"), Some(&format!("at byte {}", LONG - 9)));
+        check("very long", 40 << 20, |path| overwrite(path, 30 << 20, b"y"), Some(&format!("at byte {}", 30 << 20)));
         check("beginning", LONG, |path| overwrite(path, 3, b"y"), Some("at byte 3 of"));
         check("middle", LONG, |path| overwrite(path, 3 << 20, b"y"), Some(&format!("at byte {}", 3 << 20)));
     }

@@ -12,6 +12,8 @@ use crate::edge::file_error::open_regular;
 pub const LOCK_NAME: &str = "lock";
 /// Prefix of the lock file's name while raters' codes are written; the names of the raters follow the prefix.
 pub const CODES_LOCK: &str = "lock-codes-";
+/// Number of bytes of a lock file that are read; process id and address are shorter.
+const MAX_BYTES: u64 = 1 << 12;
 /// Number of attempts to take the lock again because the lock's holder removed the file meanwhile.
 const ATTEMPTS: usize = 8;
 
@@ -22,6 +24,8 @@ const ATTEMPTS: usize = 8;
 pub struct RecordingLock {
     file: File,
     path: PathBuf,
+    /// Folder that was made for the lock alone; it goes with the lock if nothing was recorded in it.
+    made: Option<PathBuf>,
 }
 
 /// The program that writes a recording at present, as far as the lock file tells.
@@ -37,7 +41,7 @@ impl LockHolder {
     fn read(file: &mut File) -> LockHolder {
         let mut text = String::new();
         // A lock file that cannot be read still counts as held.
-        let _ = file.read_to_string(&mut text);
+        let _ = file.take(MAX_BYTES).read_to_string(&mut text);
         let mut lines = text.lines();
         let pid = lines.next().and_then(|line| line.trim().parse().ok());
         LockHolder { pid, viewers: lines.next().map(str::to_string) }
@@ -70,6 +74,25 @@ impl RecordingLock {
         })
     }
 
+    /// Takes the right to record a participant of a study plan in this folder, from before the first question until the
+    /// last recording is closed. The folder is made if it does not exist.
+    ///
+    /// # Errors
+    /// Another program has that right, or the folder cannot be written to.
+    pub fn take_for_participant(folder: &Path, plan: &str, code: &str) -> Result<RecordingLock, RecordingWriteError> {
+        let made = (!folder.exists()).then(|| folder.to_path_buf());
+        fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
+        let path = folder.join(format!("{LOCK_NAME}-{plan}-{code}"));
+        let mut lock = RecordingLock::take_file(path, folder).map_err(|error| match error {
+            RecordingWriteError::InUse { folder, pid } => {
+                RecordingWriteError::Attended { folder, plan: plan.to_string(), code: code.to_string(), pid }
+            }
+            other => other,
+        })?;
+        lock.made = made;
+        Ok(lock)
+    }
+
     fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
         let failed = |reason| RecordingWriteError::unwritable(&path, reason);
         // Taking the lock empties the lock file, which must therefore not be the target of a link; and opening a named
@@ -95,7 +118,7 @@ impl RecordingLock {
             // no effect.
             if is_same(&file, &path) {
                 file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
-                return Ok(RecordingLock { file, path });
+                return Ok(RecordingLock { file, path, made: None });
             }
         }
         Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid: None })
@@ -125,6 +148,10 @@ impl Drop for RecordingLock {
             // A lock file that cannot be removed does no harm.
             let _ = fs::remove_file(&self.path);
         }
+        if let Some(folder) = &self.made {
+            // A folder with recordings is not empty, and stays.
+            let _ = fs::remove_dir(folder);
+        }
     }
 }
 
@@ -148,48 +175,62 @@ pub fn is_same(_: &File, path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::temporary::new_folder;
 
     #[test]
     fn a_lock_tells_who_writes_and_where_viewers_look_on_until_it_is_dropped() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-lock-{}", std::process::id())).unwrap();
-        assert_eq!(RecordingLock::holder(&folder), None);
-        let mut lock = RecordingLock::take(&folder).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        assert_eq!(RecordingLock::holder(folder), None);
+        let mut lock = RecordingLock::take(folder).unwrap();
         let pid = Some(std::process::id());
-        assert_eq!(RecordingLock::holder(&folder), Some(LockHolder { pid, viewers: None }));
+        assert_eq!(RecordingLock::holder(folder), Some(LockHolder { pid, viewers: None }));
         lock.announce("rerun+http://127.0.0.1:9876/proxy").unwrap();
         let viewers = Some("rerun+http://127.0.0.1:9876/proxy".to_string());
-        assert_eq!(RecordingLock::holder(&folder), Some(LockHolder { pid, viewers }));
+        assert_eq!(RecordingLock::holder(folder), Some(LockHolder { pid, viewers }));
         drop(lock);
-        assert_eq!(RecordingLock::holder(&folder), None);
+        assert_eq!(RecordingLock::holder(folder), None);
         fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
-        assert_eq!(RecordingLock::holder(&folder), None, "what a killed program left behind is held by nobody");
-        fs::remove_dir_all(folder).unwrap();
+        assert_eq!(RecordingLock::holder(folder), None, "what a killed program left behind is held by nobody");
+    }
+
+    #[test]
+    fn one_program_at_a_time_records_a_participant_of_a_plan() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let first = RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap();
+        let refusal = RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap_err().to_string();
+        let told = format!("another program (process {}) records P02 of the plan main-study", std::process::id());
+        assert!(refusal.contains(&told), "{refusal}");
+        let _others =
+            ["P01", "P03"].map(|code| RecordingLock::take_for_participant(folder, "main-study", code).unwrap());
+        let _rehearsal = RecordingLock::take_for_participant(folder, "rehearsal", "P02").unwrap();
+        drop(first);
+        drop(RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap());
     }
 
     #[test]
     fn one_program_at_a_time_codes_as_one_rater() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-codes-lock-{}", std::process::id())).unwrap();
-        let first = RecordingLock::take_for_codes(&folder, &["R1"]).unwrap();
-        let refusal = RecordingLock::take_for_codes(&folder, &["R1"]).unwrap_err().to_string();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let first = RecordingLock::take_for_codes(folder, &["R1"]).unwrap();
+        let refusal = RecordingLock::take_for_codes(folder, &["R1"]).unwrap_err().to_string();
         assert!(refusal.contains("codes its errors as R1"), "{refusal}");
-        let _other = RecordingLock::take_for_codes(&folder, &["R2"]).unwrap();
-        let _recording = RecordingLock::take(&folder).unwrap();
+        let _other = RecordingLock::take_for_codes(folder, &["R2"]).unwrap();
+        let _recording = RecordingLock::take(folder).unwrap();
         drop(first);
-        drop(RecordingLock::take_for_codes(&folder, &["R1"]).unwrap());
-        fs::remove_dir_all(folder).unwrap();
+        drop(RecordingLock::take_for_codes(folder, &["R1"]).unwrap());
     }
 
     #[cfg(unix)]
     #[test]
     fn a_file_that_a_link_leads_to_is_left_as_it_is() {
-        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-lock-link-{}", std::process::id())).unwrap();
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
         let other = folder.join("notes.txt");
         fs::write(&other, "of somebody else").unwrap();
         std::os::unix::fs::symlink(&other, folder.join(LOCK_NAME)).unwrap();
-        let refusal = RecordingLock::take(&folder).unwrap_err().to_string();
+        let refusal = RecordingLock::take(folder).unwrap_err().to_string();
         assert!(refusal.contains("a link"), "{refusal}");
         assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
-        fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -3,11 +3,15 @@
 //! a further part in a folder beside it, whose header names the previous part.
 
 pub mod consensus_file;
+mod correcting;
+mod correction;
+mod decision_file;
 mod exclusion;
 mod guarded;
 mod lock;
 pub mod rater_codes;
 mod reader;
+mod same_log;
 mod simulated_log;
 mod writer;
 
@@ -16,12 +20,17 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::session::TimestampedEvent;
-pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
+pub use correcting::correct;
+pub use correction::CORRECTION_NAME;
+pub(super) use correction::corrected_code;
+pub use decision_file::DecisionError;
+pub use exclusion::{EXCLUSION_NAME, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
-pub(super) use reader::read_header;
-pub use reader::{LogEnding, LogLine, LogReader, at_line};
+pub use reader::{LogEnding, LogLine, LogPlace, LogReader, at_line};
+pub(super) use reader::{MAX_LINE, first_line, read_header};
+pub use same_log::{decisions, log_digest};
 pub use simulated_log::{SimulatedLogState, check_simulated};
-pub use writer::{LogWriter, check_continued, is_written_settings};
+pub use writer::{LogWriter, check_continued, is_begun, is_written_settings};
 
 /// File name of the log in the folder of a recording.
 pub const LOG_NAME: &str = "events.jsonl";
@@ -82,6 +91,21 @@ pub enum RecordingWriteError {
         /// Process id of the program that codes the errors; `None` if not known.
         pid: Option<u32>,
     },
+    /// Another program is recording this participant of a study plan.
+    #[error("{}: another program{} records {code} of the plan {plan}", folder.display(), process(.pid))]
+    #[diagnostic(help(
+        "go on there, or quit that program first; tomcom replay RECORDING --follow watches its session"
+    ))]
+    Attended {
+        /// Folder with the recordings of the study.
+        folder: PathBuf,
+        /// Name of the study plan.
+        plan: String,
+        /// Code of the participant.
+        code: String,
+        /// Process id of the program that records the participant; `None` if not known.
+        pid: Option<u32>,
+    },
     /// The recording has already been continued.
     #[error("{}: this recording was continued already", folder.display())]
     #[diagnostic(help("continue its next part, if that was cut: tomcom operate --continue {}", part.display()))]
@@ -106,6 +130,13 @@ pub enum RecordingWriteError {
 }
 
 impl RecordingWriteError {
+    /// Whether the recording cannot be written because the disk is full, so that it can be as soon as there is room.
+    pub fn is_disk_full(&self) -> bool {
+        let is_full =
+            |reason: &io::Error| matches!(reason.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded);
+        matches!(self, RecordingWriteError::Unwritable { reason, .. } if is_full(reason))
+    }
+
     fn unwritable(path: impl Into<PathBuf>, reason: io::Error) -> RecordingWriteError {
         RecordingWriteError::Unwritable { path: path.into(), reason, saved: None }
     }

@@ -3,21 +3,25 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::{self, ErrorKind, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::RecordingWriteError;
 use crate::base::words::count;
-use crate::edge::file_error::{FileError, FileResult, open_regular};
+use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::edge::overwrite;
 use crate::edge::replace_file;
 use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use crate::session::settings::is_code;
+use crate::session::person_code;
 
-/// Columns of the file of one rater's codes; an export of several recordings has two columns more, before these.
-const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
+/// Columns of the file of one rater's codes; an export of several recordings has one column more, before these. The file
+/// says whose codes it has, since its name can change when it is copied.
+const COLUMNS: [&str; 4] = ["rater", "press", "cause", "aspect"];
 /// Columns of a file with exported codes of several recordings.
 pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
+/// Advice for two files with the codes of one rater.
+const KEEP_ONE: &str =
+    "one file for each rater: compare the two, keep the codes that hold, and move the other file elsewhere";
 /// Advice for a line of a table of codes that has the wrong number of cells.
 const REMEDY: &str = "as many fields as the first line has";
 
@@ -36,51 +40,100 @@ pub struct RaterCodeRow {
     pub code: ErrorCauseCode,
 }
 
-/// The codes that one rater gave to the recording in this folder; empty if there is no such file.
-///
-/// # Errors
-/// The file exists but cannot be read, or contains something that cannot be about this recording.
-pub fn read(folder: &Path, rater: &str, codable: &CodableErrors) -> FileResult<RaterCodes> {
-    let path = path(folder, rater);
-    let mut bytes = Vec::new();
-    match open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes)) {
-        Ok(_) => {}
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(RaterCodes::default()),
-        Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
-    };
-    let text = text_of(&path, bytes)?;
-    let mut codes = RaterCodes::default();
-    for (line, _, press, code) in rows(&path, &text, &COLUMNS)? {
-        if let Some((found, remedy)) = codable.fault(press, &code) {
-            return Err(wrong_line(&path, &text, line, found, &remedy));
-        }
-        codes.0.insert(press, code);
+/// A file with the codes of one rater, who is named in each of its rows.
+struct CodeFile {
+    path: PathBuf,
+    text: String,
+    rows: Vec<ParsedRow>,
+}
+
+/// Whether a file of this name in the folder of a recording may have a rater's codes: `codes-R1.csv`, and how file
+/// managers, browsers and sync programs name copies of it.
+pub(in crate::edge) fn is_codes_file(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    (name.starts_with("codes-") || name.contains(" codes-")) && name.ends_with(".csv")
+}
+
+/// The files with codes in the folder of a recording, by the rater whom each names inside. Files without a row are
+/// nobody's.
+fn code_files(folder: &Path) -> FileResult<BTreeMap<String, CodeFile>> {
+    let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
+    let mut names = BTreeSet::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
+        names.extend(Some(name).filter(|name| is_codes_file(name)));
     }
-    Ok(codes)
+    let mut files: BTreeMap<String, CodeFile> = BTreeMap::new();
+    for name in &names {
+        let path = folder.join(name);
+        let read = read_bytes(&path, MAX_TEXT);
+        let bytes = read.map_err(|reason| FileError::unreadable(&path, reason, "a readable text file (UTF-8)"))?;
+        let text = text_of(&path, bytes)?;
+        let rows = rows(&path, &text, &COLUMNS)?;
+        let Some((first, before, ..)) = rows.first() else { continue };
+        let (first, rater) = (*first, before[0].clone());
+        let wrong = |line: usize, found: String, remedy: &str| Err(wrong_line(&path, &text, line, found, remedy));
+        if let Some(fault) = person_code::fault(&rater) {
+            return wrong(first, format!("the rater \"{rater}\": {fault}"), person_code::REMEDY);
+        }
+        if let Some((line, before, ..)) = rows.iter().find(|(_, before, ..)| before[0] != rater) {
+            let found = format!("codes of {}, after codes of {rater}", before[0]);
+            return wrong(
+                *line,
+                found,
+                "codes of one rater; a table of several raters: tomcom codes RECORDING --import",
+            );
+        }
+        let own = file_name(&rater);
+        if *name != own {
+            let (what, remedy) = match names.contains(&own) {
+                true => (format!("codes of {rater}, of whom {own} has codes, too"), KEEP_ONE.to_string()),
+                false => (
+                    format!("codes of {rater}, in a file with another name"),
+                    format!("the name {own}, so that {rater} goes on in this file: rename it"),
+                ),
+            };
+            return Err(FileError::from_finding(&path, what, remedy));
+        }
+        if let Some(other) = person_code::differing_in_case(&rater, files.keys().map(String::as_str)) {
+            let found = format!("codes of {rater}, beside codes of {other}");
+            return Err(FileError::from_finding(
+                &path,
+                found,
+                "one rater: rename the file, and the rater in it".to_string(),
+            ));
+        }
+        files.insert(rater, CodeFile { path, text, rows });
+    }
+    Ok(files)
 }
 
 /// Names of the raters who have coded the recording in this folder.
 ///
 /// # Errors
-/// The folder cannot be read.
+/// The folder or a file with codes cannot be read, or a rater has two files.
 pub fn raters(folder: &Path) -> FileResult<BTreeSet<String>> {
-    let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
-    let mut all = BTreeSet::new();
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
-        let rater = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv"));
-        all.extend(rater.filter(|rater| is_code(rater)).map(str::to_string));
-    }
-    Ok(all)
+    Ok(code_files(folder)?.into_keys().collect())
 }
 
 /// The codes of all raters for the recording in this folder, by rater.
 ///
 /// # Errors
-/// The errors of [`read`] and [`raters`].
+/// The folder or a file with codes cannot be read, a rater has two files, or a file contains something that cannot be
+/// about this recording.
 pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<String, RaterCodes>> {
-    let codes = |rater: String| read(folder, &rater, codable).map(|codes| (rater, codes));
-    raters(folder)?.into_iter().map(codes).collect()
+    let mut all = BTreeMap::new();
+    for (rater, CodeFile { path, text, rows }) in code_files(folder)? {
+        let mut codes = RaterCodes::default();
+        for (line, _, press, code) in rows {
+            if let Some((found, remedy)) = codable.fault(press, &code) {
+                return Err(wrong_line(&path, &text, line, found, &remedy));
+            }
+            codes.0.insert(press, code);
+        }
+        all.insert(rater, codes);
+    }
+    Ok(all)
 }
 
 /// Writes a rater's codes to the disk; programs that read the file meanwhile find the old file or the new one.
@@ -88,13 +141,13 @@ pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<S
 /// # Errors
 /// The folder cannot be written to.
 pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), RecordingWriteError> {
-    let path = path(folder, rater);
+    let path = folder.join(file_name(rater));
     let failed = |reason| RecordingWriteError::unwritable(&path, reason);
     let mut table = csv::Writer::from_writer(Vec::new());
-    let mut put = |fields: [&str; 3]| table.write_record(fields).map_err(io::Error::from);
+    let mut put = |fields: [&str; 4]| table.write_record(fields).map_err(io::Error::from);
     put(COLUMNS).map_err(failed)?;
     for (press, code) in &codes.0 {
-        put([&press.to_string(), code.kind().name(), code.aspect().unwrap_or_default()]).map_err(failed)?;
+        put([rater, &press.to_string(), code.kind().name(), code.aspect().unwrap_or_default()]).map_err(failed)?;
     }
     let bytes = table.into_inner().map_err(|error| failed(io::Error::other(error.to_string())))?;
     replace_file::replace(&path, &bytes).map_err(failed)
@@ -105,7 +158,7 @@ pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), Recor
 /// # Errors
 /// The file cannot be read, or is no export of raters' codes.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
-    let bytes = fs::read(path);
+    let bytes = read_bytes(path, MAX_TEXT);
     let bytes =
         bytes.map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))?;
     let text = text_of(path, bytes)?;
@@ -224,6 +277,7 @@ pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (Stri
     code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))
 }
 
-fn path(folder: &Path, rater: &str) -> PathBuf {
-    folder.join(format!("codes-{rater}.csv"))
+/// Name of the file with the codes of a rater.
+fn file_name(rater: &str) -> String {
+    format!("codes-{rater}.csv")
 }

@@ -6,6 +6,8 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::correction::correct_header;
+use super::lock::is_same;
 use super::{LOG_NAME, RecordingLock};
 use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
@@ -17,7 +19,7 @@ use crate::session::ranges;
 use crate::session::{Event, LogHeader, Session, TimestampedEvent};
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
-const MAX_LINE: usize = 1 << 24;
+pub const MAX_LINE: usize = 1 << 24;
 /// Number of bytes at the end of a log among which the last event is searched.
 const TAIL: u64 = 1 << 16;
 /// Largest number of parts of a recording.
@@ -32,6 +34,40 @@ pub struct LogLine {
     pub text: String,
     /// Event that the line of the log contains.
     pub stamped: TimestampedEvent,
+}
+
+/// Place of an event in the files of a recording, from which events can be read again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogPlace {
+    path: Arc<Path>,
+    /// Number of bytes of the file before the event's line.
+    offset: u64,
+}
+
+impl LogPlace {
+    /// Whether two events are in the same file of a recording.
+    pub fn is_in_file_of(&self, other: &LogPlace) -> bool {
+        self.path == other.path
+    }
+
+    /// Reads this number of events again, all of which are in one file and were read from there before.
+    ///
+    /// # Errors
+    /// The file cannot be read any more, or has changed.
+    pub fn read_again(&self, number: usize) -> FileResult<Vec<TimestampedEvent>> {
+        let unreadable =
+            |reason| FileError::unreadable(&self.path, reason, "the recording as it was when it was opened");
+        let mut file = open_regular(&self.path).map_err(unreadable)?;
+        file.seek(SeekFrom::Start(self.offset)).map_err(unreadable)?;
+        let mut input = BufReader::with_capacity(1 << 16, file);
+        let mut line = Vec::new();
+        let mut read = || {
+            line.clear();
+            input.by_ref().take(MAX_LINE as u64).read_until(b'\n', &mut line).map_err(unreadable)?;
+            serde_json::from_slice(&line).map_err(|error| unreadable(io::Error::new(io::ErrorKind::InvalidData, error)))
+        };
+        (0..number).map(|_| read()).collect()
+    }
 }
 
 /// How a recording ends, as far as its events have been read.
@@ -53,7 +89,9 @@ pub struct LogReader {
     pub header: LogHeader,
     /// Kitchen that the recording's header describes.
     pub kitchen: Arc<Kitchen>,
-    path: PathBuf,
+    path: Arc<Path>,
+    /// Number of bytes of the file before the next line.
+    offset: u64,
     /// Previous part of the recording, until all of its continued events are read.
     before: Option<Box<LogReader>>,
     input: BufReader<File>,
@@ -61,6 +99,9 @@ pub struct LogReader {
     next_seq: u64,
     /// Last line of the log without its line end: the line was cut off, or is not yet written completely.
     partial: Vec<u8>,
+    /// Number of the first line without any text since the last event. At the end of a log such lines are no damage: an
+    /// editor or a copy can add them.
+    blank: Option<usize>,
     ended: bool,
 }
 
@@ -98,7 +139,21 @@ impl LogReader {
         let layout = (Path::new(&header.layout.path), header.layout.text.clone());
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
-        Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
+        let (path, offset) = (Arc::from(path), line.len() as u64);
+        let (partial, blank) = (Vec::new(), None);
+        Ok(LogReader {
+            header,
+            kitchen,
+            path,
+            offset,
+            before,
+            input,
+            number: 1,
+            next_seq,
+            partial,
+            blank,
+            ended: false,
+        })
     }
 
     /// The first number in the header that is outside the range which settings files may have today; `None` if there is
@@ -131,20 +186,30 @@ impl LogReader {
             });
         }
         self.before = None;
-        let room = (MAX_LINE - self.partial.len()) as u64;
-        let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.partial);
-        read.map_err(|reason| FileError::unreadable(&self.path, reason, "a readable recording"))?;
-        if self.partial.last() != Some(&b'\n') {
-            self.number += usize::from(self.partial.len() == MAX_LINE);
-            return match self.partial.len() {
-                MAX_LINE => Err(self.wrong("", 0, "a line without an end")),
-                _ => Ok(None),
-            };
+        loop {
+            let room = (MAX_LINE - self.partial.len()) as u64;
+            let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.partial);
+            read.map_err(|reason| FileError::unreadable(&self.path, reason, "a readable recording"))?;
+            if self.partial.last() != Some(&b'\n') {
+                self.number += usize::from(self.partial.len() == MAX_LINE);
+                return match self.partial.len() {
+                    MAX_LINE => Err(self.wrong("", 0, "a line without an end")),
+                    _ => Ok(None),
+                };
+            }
+            self.offset += self.partial.len() as u64;
+            self.partial.pop();
+            self.number += 1;
+            let bytes = std::mem::take(&mut self.partial);
+            match self.blank {
+                _ if is_blank(&bytes) => self.blank = self.blank.or(Some(self.number)),
+                Some(number) => {
+                    self.number = number;
+                    return Err(self.wrong("", 0, "an empty line before another event"));
+                }
+                None => return self.event_of(bytes).map(Some),
+            }
         }
-        self.partial.pop();
-        self.number += 1;
-        let bytes = std::mem::take(&mut self.partial);
-        self.event_of(bytes).map(Some)
     }
 
     fn event_of(&mut self, bytes: Vec<u8>) -> FileResult<LogLine> {
@@ -181,7 +246,27 @@ impl LogReader {
         let mut lines = tail.split(|&byte| byte == b'\n').rev();
         // After the last line end comes nothing, or a line that is not complete.
         lines.next();
-        Ok(lines.next().and_then(|line| serde_json::from_slice(line).ok()))
+        Ok(lines.find(|line| !is_blank(line)).and_then(|line| serde_json::from_slice(line).ok()))
+    }
+
+    /// Checks that the log that is being read is still at its path: an open file can be read even after it was deleted,
+    /// but nothing is added to it any more.
+    ///
+    /// # Errors
+    /// The log was removed, moved or replaced, or its folder was.
+    pub fn check_there(&self) -> FileResult<()> {
+        if is_same(self.input.get_ref(), &self.path) {
+            return Ok(());
+        }
+        let found = match self.path.exists() {
+            true => "another file in the place of the log that was followed".to_string(),
+            false => "no log any more: it was removed or moved while it was followed".to_string(),
+        };
+        let remedy =
+            "the folder in which the recording is now, if its session goes on; the session's own console says where \
+                      what was recorded is saved"
+                .to_string();
+        Err(FileError::from_finding(&self.path, found, remedy))
     }
 
     /// Whether the events read so far lack the session's end.
@@ -201,8 +286,16 @@ impl LogReader {
     /// Paths of the logs of all parts of the recording, first part first; to be called before any event was read.
     pub fn logs(&self) -> Vec<PathBuf> {
         let mut logs = self.before.as_ref().map_or_else(Vec::new, |before| before.logs());
-        logs.push(self.path.clone());
+        logs.push(self.path.to_path_buf());
         logs
+    }
+
+    /// Place of the next event.
+    pub fn place(&self) -> LogPlace {
+        match self.before.as_ref().filter(|before| before.events() < self.next_seq) {
+            Some(before) => before.place(),
+            None => LogPlace { path: self.path.clone(), offset: self.offset },
+        }
     }
 
     /// Number of events that the reader has read so far.
@@ -213,6 +306,11 @@ impl LogReader {
     /// Path of the file that contains the last line read.
     pub fn path(&self) -> &Path {
         self.before.as_ref().map_or(&self.path, |before| before.path())
+    }
+
+    /// Path of the log that was opened; for a recording of several parts, of the last part's log.
+    pub fn path_of_last_part(&self) -> &Path {
+        &self.path
     }
 
     /// Folder of the opened recording; for a recording of several parts, the folder of the last part.
@@ -283,6 +381,11 @@ fn open_before(
     }
 }
 
+/// Whether a line of a log has no text.
+pub(super) fn is_blank(line: &[u8]) -> bool {
+    line.trim_ascii().is_empty()
+}
+
 /// Whether the first line of a log is what a power failure leaves of a header: nothing, zeros, or the beginning of a
 /// header.
 pub(super) fn ends_in_header(line: &[u8]) -> bool {
@@ -292,7 +395,7 @@ pub(super) fn ends_in_header(line: &[u8]) -> bool {
 }
 
 /// The first line of a log, including its line end if it has one.
-pub(super) fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
+pub fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }
@@ -315,10 +418,12 @@ fn json_message(error: &serde_json::Error) -> String {
     message.split(" at line ").next().unwrap_or(&message).to_string()
 }
 
-/// Parses the header of the log at this path from the log's first line.
+/// Parses the header of the log at this path from the log's first line. Every reader of a recording gets the
+/// participant's code from here, as corrections beside the log say it.
 ///
 /// # Errors
-/// The line is no header of a log, or of a format version that this program does not read.
+/// The line is no header of a log, or of a format version that this program does not read; or the file with corrections
+/// is damaged.
 pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
     let wrong = |column: usize, found: String, remedy: String| at_line(path, 1, text, column, found, remedy);
     let is_log = "the folder of a recording, or the events.jsonl in it, as tomcom wrote it".to_string();
@@ -337,10 +442,13 @@ pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
             return Err(wrong(0, found, remedy));
         }
     }
-    let header: LogHeader = serde_json::from_str(text)
+    let mut header: LogHeader = serde_json::from_str(text)
         .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
     match header.session.check_recorded() {
-        Ok(()) => Ok(header),
+        Ok(()) => {
+            correct_header(path.parent().unwrap_or(Path::new("")), &mut header)?;
+            Ok(header)
+        }
         Err(error) => Err(wrong(text.find(error.key()).unwrap_or(0), error.found, error.remedy.into_owned())),
     }
 }

@@ -100,9 +100,9 @@ fn is_whole(folder: &Path, header: &LogHeader) -> bool {
         log.seek(SeekFrom::Start(length.saturating_sub(LAST)))?;
         let mut end = Vec::new();
         log.read_to_end(&mut end)?;
-        let end = String::from_utf8_lossy(&end);
-        let last = end.strip_suffix('\n').and_then(|lines| lines.rsplit('\n').next());
-        let last = last.and_then(|line| serde_json::from_str::<TimestampedEvent>(line).ok());
+        let last =
+            end.strip_suffix(b"\n").and_then(|lines| lines.trim_ascii_end().rsplit(|&byte| byte == b'\n').next());
+        let last = last.and_then(|line| serde_json::from_slice::<TimestampedEvent>(line).ok());
         Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
     };
     ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)

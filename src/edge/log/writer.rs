@@ -1,6 +1,6 @@
 //! Writer of recordings: creates the folder, the settings file and the log, and appends events to the log.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -12,11 +12,15 @@ use super::lock::{LOCK_NAME, RecordingLock, is_same};
 use super::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::base::time::SessionTime;
 use crate::edge::file_error::read_regular;
+use crate::edge::replace_file::{self, new_beside, replaced_name};
 use crate::edge::rescue::{RescueNote, new_rescue_folder};
 use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 
 /// Longest time, in session time, for which gaze samples are held back before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
+/// Largest number of bytes that are handed on at once: less than the buffer, so that they are taken as a whole or not at
+/// all.
+const PIECE: usize = 1 << 14;
 /// Suffix of the folders of later parts: `<recording>-part2`, `<recording>-part3`, …
 const PART: &str = "-part";
 
@@ -26,6 +30,8 @@ pub struct LogWriter {
     folder: PathBuf,
     path: PathBuf,
     out: BufWriter<GuardedFile>,
+    /// Bytes of the last event that `out` has not taken, since the log could not be written.
+    left: Vec<u8>,
     /// Whether events are handed to the operating system at once, because other programs rely on them.
     prompt: bool,
     flushed_at: SessionTime,
@@ -73,17 +79,16 @@ impl LogWriter {
         let path = folder.join(LOG_NAME);
         let failed = |reason| RecordingWriteError::unwritable(&path, reason);
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
-        fs::write(folder.join(SETTINGS_NAME), &settings).map_err(failed)?;
-        let begun = folder.join(format!("{LOG_NAME}.new"));
+        replace_file::put(&folder.join(SETTINGS_NAME), settings.as_bytes()).map_err(failed)?;
         // The log file is opened for reading, too, since it has to be read if its folder vanishes.
-        let file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&begun).map_err(failed)?;
+        let (file, begun) = new_beside(&path).map_err(failed)?.into_parts();
         let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
         let mut out = BufWriter::with_capacity(1 << 16, file);
-        write_line(&mut out, header).and_then(|()| out.flush()).map_err(failed)?;
-        fs::rename(&begun, &path).map_err(failed)?;
+        line(header).and_then(|line| out.write_all(&line)).and_then(|()| out.flush()).map_err(failed)?;
+        begun.persist(&path).map_err(|error| failed(error.error))?;
         let home = fs::canonicalize(&folder).unwrap_or_else(|_| folder.clone());
-        Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, home, lock })
+        let (left, flushed_at) = (Vec::new(), SessionTime::ZERO);
+        Ok(LogWriter { folder, path, out, left, prompt, flushed_at, settings, home, lock })
     }
 
     /// Folder of the recording that is being written.
@@ -98,8 +103,15 @@ impl LogWriter {
     }
 
     /// Appends an event to the log.
+    ///
+    /// # Errors
+    /// The log cannot be written. Once there is room on a full disk, [`LogWriter::flush`] writes the event.
     pub fn append(&mut self, stamped: &TimestampedEvent) -> Result<(), RecordingWriteError> {
-        write_line(&mut self.out, stamped).map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))?;
+        let written = line(stamped).and_then(|line| {
+            self.left.extend(line);
+            self.hand_on()
+        });
+        written.map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))?;
         let waits = stamped.event.is_sample() && stamped.time - self.flushed_at < FLUSH_AFTER;
         if self.prompt && !waits {
             self.flushed_at = stamped.time;
@@ -110,22 +122,34 @@ impl LogWriter {
 
     /// Hands all events that were held back to the operating system.
     pub fn flush(&mut self) -> Result<(), RecordingWriteError> {
-        self.out.flush().map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
+        let flushed = self.hand_on().and_then(|()| self.out.flush());
+        flushed.map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
+    }
+
+    /// Hands the bytes of the last event on to the buffer, which writes them if it is full.
+    fn hand_on(&mut self) -> io::Result<()> {
+        while !self.left.is_empty() {
+            let piece = self.left.len().min(PIECE);
+            self.out.write_all(&self.left[..piece])?;
+            self.left.drain(..piece);
+        }
+        Ok(())
     }
 
     /// Checks that the log is still at its place and undamaged: an open file accepts every event even after it was
     /// deleted, moved, cut, overwritten or made read-only. If the log is not, the recording is saved into a folder of
-    /// the same name: at its place, or else below the system's folder for temporary files.
+    /// the same name: at its place, or else below the system's folder for temporary files. Every check compares a part
+    /// of the log with what was written, or `whole`, all of it.
     ///
     /// # Errors
     /// The log is gone or damaged, or must not be written any more.
-    pub fn check(&mut self) -> Result<(), RecordingWriteError> {
+    pub fn check(&mut self, whole: bool) -> Result<(), RecordingWriteError> {
         if !is_same(self.out.get_ref().file(), &self.path) {
             let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
             let reason = io::Error::new(io::ErrorKind::NotFound, found);
             return Err(RecordingWriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue(false) });
         }
-        if let Some(found) = self.out.get_mut().damage() {
+        if let Some(found) = self.out.get_mut().damage(whole) {
             return Err(RecordingWriteError::Damaged { path: self.path.clone(), found, saved: self.rescue(true) });
         }
         let is_readonly = |path: &Path| fs::metadata(path).is_ok_and(|data| data.permissions().readonly());
@@ -149,19 +173,15 @@ impl LogWriter {
         let elsewhere = new_rescue_folder().ok()?.join(name);
         self.save_to(&elsewhere, is_damaged).ok()?;
         // The recording is saved by now; the note only helps to find its original place later.
-        let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
+        let _ = RescueNote { home: self.home.clone().into() }.write(&elsewhere);
         Some(elsewhere)
     }
 
     fn save_to(&mut self, folder: &Path, is_damaged: bool) -> io::Result<()> {
         fs::create_dir_all(folder)?;
-        let (log, begun) = (folder.join(LOG_NAME), folder.join(format!("{LOG_NAME}.new")));
-        let mut saved = File::create(&begun)?;
-        if let Err(reason) = self.out.get_mut().save(is_damaged, &mut saved) {
-            // A temporary file that cannot be removed does no harm.
-            let _ = fs::remove_file(&begun);
-            return Err(reason);
-        }
+        let log = folder.join(LOG_NAME);
+        let mut saved = new_beside(&log)?;
+        self.out.get_mut().save(is_damaged, saved.as_file_mut())?;
         // An existing settings file is kept, since the log contains all settings, too.
         match OpenOptions::new().write(true).create_new(true).open(folder.join(SETTINGS_NAME)) {
             Ok(mut file) => file.write_all(self.settings.as_bytes())?,
@@ -169,7 +189,8 @@ impl LogWriter {
             Err(reason) => return Err(reason),
         }
         move_aside(&log)?;
-        fs::rename(&begun, &log)
+        saved.persist(&log)?;
+        Ok(())
     }
 }
 
@@ -203,16 +224,23 @@ fn next_part(folder: &Path) -> PathBuf {
 /// Whether a folder does not exist, or contains only a part whose program was killed before it wrote a log.
 fn holds_nothing(part: &Path) -> bool {
     let is_left = |entry: io::Result<fs::DirEntry>| {
-        entry.is_ok_and(|entry| match entry.file_name().to_str() {
+        // The program makes no links and pipes, and follows none.
+        let entry = entry.ok().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
+        entry.is_some_and(|entry| match entry.file_name().to_str() {
             Some(SETTINGS_NAME) => read_regular(&entry.path()).is_ok_and(|text| is_written_settings(&text)),
-            Some(name) => name == LOCK_NAME || name.strip_suffix(".new") == Some(LOG_NAME),
+            Some(name) => name == LOCK_NAME || is_begun(name),
             None => false,
         })
     };
-    match fs::read_dir(part) {
-        Ok(mut entries) => entries.all(is_left),
-        Err(reason) => reason.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(part).is_err(),
+    match fs::symlink_metadata(part) {
+        Ok(data) => data.is_dir() && fs::read_dir(part).is_ok_and(|mut entries| entries.all(is_left)),
+        Err(reason) => reason.kind() == io::ErrorKind::NotFound,
     }
+}
+
+/// Whether a file of this name is a log or a settings file that a program was writing when it was killed.
+pub fn is_begun(name: &str) -> bool {
+    [LOG_NAME, SETTINGS_NAME].iter().any(|whole| name != *whole && replaced_name(name) == *whole)
 }
 
 /// Whether this program wrote a settings file in the folder of a recording: it has all settings and nothing else.
@@ -221,12 +249,12 @@ pub fn is_written_settings(text: &str) -> bool {
     spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
 }
 
-/// Writes a line of the log completely or not at all.
-fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+/// A line of the log, with its line end.
+fn line(value: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut line = Vec::with_capacity(256);
     value.serialize(&mut serde_json::Serializer::with_formatter(&mut line, FiniteNumbers))?;
     line.push(b'\n');
-    out.write_all(&line)
+    Ok(line)
 }
 
 /// JSON serialiser that rejects `null`: in a log, only numbers that are not finite would become `null`, and a log with

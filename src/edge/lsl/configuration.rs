@@ -3,6 +3,8 @@
 
 use std::path::PathBuf;
 
+use crate::edge::file_error::read_regular;
+
 /// Environment variable that names liblsl's configuration file.
 const VARIABLE: &str = "LSLAPICFG";
 /// Default name of liblsl's configuration file.
@@ -18,7 +20,7 @@ pub(super) fn configuration() -> String {
     let home = std::env::home_dir().map(|home| home.join("lsl_api").join(NAME));
     let system = PathBuf::from("/etc/lsl_api").join(NAME);
     let places = named.into_iter().chain([PathBuf::from(NAME)]).chain(home).chain([system]);
-    let text = places.filter_map(|place| std::fs::read_to_string(place).ok()).next().unwrap_or_default();
+    let text = places.filter_map(|place| read_regular(&place).ok()).next().unwrap_or_default();
     quiet(&text)
 }
 

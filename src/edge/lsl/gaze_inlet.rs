@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 
 use super::gaze_stamps::StreamStamps;
-use super::library::{DiscoveredLslStream, LslInletHandle, LslLibrary};
-use super::predicate;
+use super::library::{DiscoveredLslStream, LslInletHandle, LslLibrary, LslStreamWatch};
+use super::{described, gaze_streams, predicate};
 use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use crate::edge::gaze_input::{TrackerMessage, WAITING};
 use crate::gaze::GazeSample;
@@ -55,7 +55,8 @@ pub fn follow(
     display_m: [f64; 2],
 ) -> io::Result<(Receiver<TrackerMessage>, InletThreadGuard)> {
     let ((news, heard), (end, ended)) = (channel(WAITING), mpsc::channel());
-    let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
+    let several = Vec::new();
+    let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None, several };
     let work = move || {
         inlet.run();
         // The side that waits for this thread may already have ended.
@@ -104,26 +105,48 @@ struct GazeInlet {
     lost: u64,
     /// Why the gaze stream cannot be read, if that was reported to the wizard.
     complaint: Option<String>,
+    /// The streams among which the settings do not choose, as last reported.
+    several: Vec<String>,
 }
 
 impl GazeInlet {
     fn run(&mut self) {
         while !self.news.is_closed() {
-            let Some(found) = self.library.resolve(&predicate(&self.stream), 1, LOOK_S).into_iter().next() else {
-                continue;
-            };
-            match self.read(&found) {
-                Err(NobodyListens) => return,
-                Ok(Some(reason)) if self.complaint.as_ref() != Some(&reason) => {
-                    self.complaint = Some(reason.clone());
-                    if self.tell(TrackerMessage::Lost(reason)).is_err() {
-                        return;
-                    }
-                    thread::sleep(RETRY);
-                }
-                Ok(_) => thread::sleep(RETRY),
+            if self.look().is_err() {
+                return;
             }
         }
+    }
+
+    /// Looks for the gaze stream, and reads it until it is lost.
+    fn look(&mut self) -> Result<(), NobodyListens> {
+        let found = gaze_streams(self.library, &self.stream, LOOK_S);
+        self.tell_several(&found)?;
+        let numbers = found.iter().find(|one| !one.is_text());
+        // Where several streams fit, none is taken: it could be another person's gaze.
+        let Some(chosen) = numbers.or(found.first()).filter(|_| self.several.is_empty()) else { return Ok(()) };
+        if let Some(reason) = self.read(chosen)?
+            && self.complaint.as_ref() != Some(&reason)
+        {
+            self.complaint = Some(reason.clone());
+            self.tell(TrackerMessage::Lost(reason))?;
+        }
+        thread::sleep(RETRY);
+        Ok(())
+    }
+
+    /// Reports the streams of numbers that fit the settings, if there are several, and when there are no longer several.
+    fn tell_several(&mut self, found: &[DiscoveredLslStream]) -> Result<(), NobodyListens> {
+        let mut several: Vec<String> = found.iter().filter(|one| !one.is_text()).map(described).collect();
+        several.sort();
+        if several.len() == 1 {
+            several.clear();
+        }
+        if several == self.several {
+            return Ok(());
+        }
+        self.several.clone_from(&several);
+        self.tell(TrackerMessage::SeveralStreams(several))
     }
 
     /// Reads the gaze stream until it is lost; returns why the stream cannot be read, or `None` if it only vanished
@@ -143,18 +166,25 @@ impl GazeInlet {
                 return Ok(Some(format!("the stream {name} has no channel \"{missing}\"; it has {there}")));
             }
         };
-        self.tell(TrackerMessage::Began)?;
         self.tell(TrackerMessage::Connected(format!("{name} on {host}")))?;
         self.complaint = None;
-        self.pass(&inlet, &channels)?;
+        let watch = self.library.watch(&predicate(&self.stream));
+        self.pass(&inlet, &channels, watch.as_ref())?;
         Ok(Some(format!("the stream {name} on {host} ended")))
     }
 
-    /// Passes on gaze samples until the LSL stream is lost.
-    fn pass(&mut self, inlet: &LslInletHandle, channels: &GazeChannels) -> Result<(), NobodyListens> {
+    /// Passes on gaze samples until the LSL stream is lost. `watch` finds streams that could have been meant instead.
+    fn pass(
+        &mut self,
+        inlet: &LslInletHandle,
+        channels: &GazeChannels,
+        watch: Option<&LslStreamWatch>,
+    ) -> Result<(), NobodyListens> {
         let mut clock = ClockOffsetEstimator::new();
         (0..ANSWERS).for_each(|_| compare(&mut clock, &self.library));
         let mut stamps = StreamStamps::new(inlet.time_correction(CONNECT_S));
+        // The library kept samples meanwhile, which are late.
+        inlet.flush();
         let (mut compared, mut values) = (Instant::now(), Vec::new());
         loop {
             let pulled = inlet.pull(&mut values, SAMPLE_S);
@@ -167,10 +197,14 @@ impl GazeInlet {
                 if let Some(step) = stamps.correct(inlet.time_correction(0.0)) {
                     self.tell(step)?;
                 }
+                if let Some(watch) = watch {
+                    self.tell_several(&watch.streams())?;
+                }
             }
             match pulled {
                 Ok(Some(stamp_s)) => self.take(stamp_s, &values, channels, &mut stamps, &clock),
                 Ok(None) => {}
+                Err(_) if stamps.is_faulty() => return self.tell(TrackerMessage::Stamps(None)),
                 Err(_) => return Ok(()),
             }
         }
@@ -197,12 +231,11 @@ impl GazeInlet {
             self.offer(TrackerMessage::Malformed(1));
             return;
         }
-        let (taken, step) = stamps.taken(stamp_s, clock, Instant::now());
-        if let Some(step) = step {
-            self.offer(step);
+        let (taken, told) = stamps.taken(stamp_s, clock, Instant::now());
+        if let Some(told) = told {
+            self.offer(told);
         }
-        let device_ns = (stamp_s > 0.0).then_some((stamp_s * 1e9) as u64);
-        let sample = GazeSample { device_ns, ..GazeSample::new(x, y, confidence) };
+        let sample = GazeSample { device_ns: Some((stamp_s * 1e9) as i64), ..GazeSample::new(x, y, confidence) };
         self.offer(TrackerMessage::Sample(sample, Some(taken)));
     }
 

@@ -1,11 +1,10 @@
 //! Conversion of the time stamps of a Lab Streaming Layer (LSL) stream into times on this computer.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use crate::base::time::SessionTime;
 use crate::edge::compared_clock::ClockOffsetEstimator;
 use crate::edge::gaze_input::TrackerMessage;
-use crate::gaze::device_clock::{ClockStep, DeviceClock};
+use crate::edge::sender_clock::SenderClock;
 
 /// Largest age of the first sample, in seconds, at which its time stamp still counts as one of LSL's clock.
 const OLDEST_S: f64 = 2.0;
@@ -17,16 +16,15 @@ const SET_S: f64 = 0.01;
 
 /// Maps time stamps of a gaze stream to instants. A stamp plus the correction is a time of this computer's LSL clock.
 /// If the first sample shows that it is not, the offset is estimated from the samples' arrival; if several samples
-/// agree that the sender's clock was set, the mapping follows the change.
+/// agree that the sender's clock was set, the mapping follows the change. Stamps that do not advance as time does are
+/// not used.
 #[derive(Debug)]
 pub(super) struct StreamStamps {
     /// Correction that is added to the stream's stamps, in seconds.
     correction_s: Option<f64>,
     /// Instant at which the clock correction was last found unchanged.
     known_at: Instant,
-    /// Instant that is zero for the times that `device` receives.
-    origin: Instant,
-    device: DeviceClock,
+    sender: SenderClock,
     /// Seconds by which the sender's clock is ahead of LSL's clock; `None` before the first sample.
     ahead_s: Option<f64>,
     /// Whether the time stamps come from another clock than LSL's.
@@ -36,24 +34,29 @@ pub(super) struct StreamStamps {
 impl StreamStamps {
     /// Mapping for a stream with this clock correction; `None` if the two computers' clocks could not be compared.
     pub fn new(correction_s: Option<f64>) -> StreamStamps {
-        let (now, device) = (Instant::now(), DeviceClock::default());
-        StreamStamps { correction_s, known_at: now, origin: now, device, ahead_s: None, is_foreign: false }
+        let now = Instant::now();
+        StreamStamps { correction_s, known_at: now, sender: SenderClock::new(now), ahead_s: None, is_foreign: false }
     }
 
     /// Takes over a new clock correction; returns a message if the clock of the sender's computer was set.
     pub fn correct(&mut self, correction_s: Option<f64>) -> Option<TrackerMessage> {
-        let correction_s = correction_s?;
+        let (correction_s, now) = (correction_s?, Instant::now());
         let by_s = self.correction_s.map(|before| before - correction_s).filter(|by_s| by_s.abs() > SET_S);
         let step = by_s.map(|by_s| TrackerMessage::ClockSet { by_s, known_at: self.known_at });
         if by_s.is_some() {
-            self.device = DeviceClock::default();
+            self.sender = SenderClock::new(now);
         }
-        (self.correction_s, self.known_at) = (Some(correction_s), Instant::now());
+        (self.correction_s, self.known_at) = (Some(correction_s), now);
         step
     }
 
+    /// Whether the time stamps do not advance as time does.
+    pub fn is_faulty(&self) -> bool {
+        self.sender.is_faulty()
+    }
+
     /// Instant at which a sample that has just arrived was taken, from its time stamp; and a message if the sender's
-    /// clock was set.
+    /// clock was set, or if its stamps cannot be used.
     pub fn taken(
         &mut self,
         stamp_s: f64,
@@ -67,22 +70,25 @@ impl StreamStamps {
                 self.correction_s.is_some() && late_s.is_some_and(|late_s| (-AHEAD_S..=OLDEST_S).contains(&late_s));
             (self.ahead_s, self.is_foreign) = (Some(0.0), !is_lsl);
         }
-        let arrived = SessionTime(now.saturating_duration_since(self.origin).as_nanos() as u64);
-        let (by_arrival, step) = self.device.session_time((corrected_s.max(0.0) * 1e9) as u64, arrived);
-        let told = step.map(|ClockStep { by_ns, uncertain_since }| {
-            let by_s = by_ns as f64 / 1e9;
+        let device_ns = (corrected_s * 1e9) as i64;
+        let told = self.sender.learn(device_ns, now);
+        if let Some(TrackerMessage::ClockSet { by_s, .. }) = told {
             self.ahead_s = self.ahead_s.map(|ahead_s| ahead_s + by_s);
-            TrackerMessage::ClockSet { by_s, known_at: self.origin + Duration::from_nanos(uncertain_since.0) }
-        });
-        let by_stamp = || clock.instant(corrected_s - self.ahead_s.unwrap_or(0.0));
-        let taken = if self.is_foreign { None } else { by_stamp() };
-        (taken.unwrap_or(self.origin + Duration::from_nanos(by_arrival.0)).min(now), told)
+        }
+        let taken = match self.is_foreign || self.sender.is_faulty() {
+            true => self.sender.taken(device_ns, now),
+            false => clock.instant(corrected_s - self.ahead_s.unwrap_or(0.0)),
+        };
+        (taken.map_or(now, |taken| taken.min(now)), told)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+    use crate::gaze::stamp_check::StampFault;
 
     /// Test data: this computer's clock, and LSL's clock, which is 100 s ahead of the seconds since `origin`.
     fn clocks() -> (Instant, ClockOffsetEstimator) {
@@ -143,6 +149,23 @@ mod tests {
                 assert!(off_s(found, taken) < 0.009 && step.is_none(), "{index}: {}", off_s(found, taken));
             }
         }
+    }
+
+    #[test]
+    fn stamps_that_do_not_run_with_time_are_told_and_not_used() {
+        let (origin, clock) = clocks();
+        // Test: the sender counts its samples, and is slower by 3 % than the rate that it assumes.
+        let mut stamps = StreamStamps::new(Some(0.0));
+        let mut told = Vec::new();
+        for index in 0..4000u64 {
+            let arrived = origin + Duration::from_micros(1_000_000 + 5150 * index);
+            let (found, news) = stamps.taken(101.0 + 0.005 * index as f64, &clock, arrived);
+            told.extend(news);
+            assert!(off_s(found, arrived) < 0.2, "{index}: {}", off_s(found, arrived));
+            assert!(index < 1000 || found == arrived, "{index}");
+        }
+        let [TrackerMessage::Stamps(Some(fault @ StampFault::Rate(_)))] = told[..] else { panic!("{told:?}") };
+        assert_eq!(fault.words(), "t runs at 97 % of real time");
     }
 
     #[test]

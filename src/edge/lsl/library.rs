@@ -31,6 +31,8 @@ const IRREGULAR: f64 = 0.0;
 /// this program, in seconds.
 const KEPT_OUT: i32 = 360;
 const KEPT_IN: i32 = 10;
+/// Time after which a stream that does not answer any more is forgotten, in seconds.
+const FORGET_S: f64 = 3.0;
 /// Largest number of LSL streams that one search can find.
 pub(super) const MOST_FOUND: u16 = 32;
 /// Error that a function of liblsl returns on a time-out (`lsl_timeout_error`).
@@ -66,6 +68,8 @@ functions! {
     get_name: fn(Pointer) -> *const c_char;
     get_type: fn(Pointer) -> *const c_char;
     get_hostname: fn(Pointer) -> *const c_char;
+    get_source_id: fn(Pointer) -> *const c_char;
+    get_uid: fn(Pointer) -> *const c_char;
     get_channel_count: fn(Pointer) -> i32;
     get_channel_format: fn(Pointer) -> i32;
     get_desc: fn(Pointer) -> Pointer;
@@ -80,11 +84,15 @@ functions! {
     push_sample_strt: fn(Pointer, *const *const c_char, f64) -> i32;
     have_consumers: fn(Pointer) -> i32;
     resolve_bypred: fn(*mut Pointer, u32, *const c_char, i32, f64) -> i32;
+    create_continuous_resolver_bypred: fn(*const c_char, f64) -> Pointer;
+    resolver_results: fn(Pointer, *mut Pointer, u32) -> i32;
+    destroy_continuous_resolver: fn(Pointer);
     create_inlet: fn(Pointer, i32, i32, i32) -> Pointer;
     destroy_inlet: fn(Pointer);
     get_fullinfo: fn(Pointer, f64, *mut i32) -> Pointer;
     open_stream: fn(Pointer, f64, *mut i32);
     time_correction: fn(Pointer, f64, *mut i32) -> f64;
+    inlet_flush: fn(Pointer) -> u32;
     pull_sample_d: fn(Pointer, *mut f64, i32, f64, *mut i32) -> f64;
 }
 
@@ -170,8 +178,41 @@ impl LslLibrary {
             let (buffer, room) = (found.as_mut_ptr(), u32::from(MOST_FOUND));
             (self.functions.resolve_bypred)(buffer, room, predicate.as_ptr(), i32::from(wanted), patience_s)
         };
-        found.truncate(usize::try_from(count).unwrap_or(0));
-        found.into_iter().map(|info| DiscoveredLslStream { functions: self.functions, info }).collect()
+        self.functions.discovered(found, count)
+    }
+
+    /// Goes on looking for streams that satisfy a predicate; `None` if the library cannot.
+    pub fn watch(&self, predicate: &str) -> Option<LslStreamWatch> {
+        let predicate = text(predicate);
+        // SAFETY: the text ends with a zero byte and lives until the call returns; the library copies it.
+        let pointer = unsafe { (self.functions.create_continuous_resolver_bypred)(predicate.as_ptr(), FORGET_S) };
+        (!pointer.is_null()).then_some(LslStreamWatch { functions: self.functions, pointer })
+    }
+}
+
+/// A search for LSL streams that goes on until this value is dropped. The value stays on the thread that created it.
+#[derive(Debug)]
+pub struct LslStreamWatch {
+    functions: &'static Functions,
+    pointer: Pointer,
+}
+
+impl LslStreamWatch {
+    /// The streams that there are now.
+    pub fn streams(&self) -> Vec<DiscoveredLslStream> {
+        let mut found = vec![std::ptr::null_mut(); usize::from(MOST_FOUND)];
+        // SAFETY: the resolver exists as long as this value, and the buffer has room for as many pointers as the library
+        // is told.
+        let count =
+            unsafe { (self.functions.resolver_results)(self.pointer, found.as_mut_ptr(), u32::from(MOST_FOUND)) };
+        self.functions.discovered(found, count)
+    }
+}
+
+impl Drop for LslStreamWatch {
+    fn drop(&mut self) {
+        // SAFETY: the resolver is destroyed once.
+        unsafe { (self.functions.destroy_continuous_resolver)(self.pointer) };
     }
 }
 
@@ -193,6 +234,12 @@ fn text(text: &str) -> CString {
 }
 
 impl Functions {
+    /// The stream descriptions that the library wrote into this buffer, as many as `count`.
+    fn discovered(&'static self, mut buffer: Vec<Pointer>, count: i32) -> Vec<DiscoveredLslStream> {
+        buffer.truncate(usize::try_from(count).unwrap_or(0));
+        buffer.into_iter().map(|info| DiscoveredLslStream { functions: self, info }).collect()
+    }
+
     /// Adds an element to an element of a stream's metadata.
     ///
     /// # Safety
@@ -276,6 +323,18 @@ impl DiscoveredLslStream {
             .map(|get| unsafe { Functions::read(get(self.info)) })
     }
 
+    /// The source of the stream, which the sender names: a device or a program.
+    pub fn source(&self) -> String {
+        // SAFETY: the description exists as long as this value, and its text with it; the text is copied.
+        unsafe { Functions::read((self.functions.get_source_id)(self.info)) }
+    }
+
+    /// The number that the library gave to this stream alone.
+    pub fn uid(&self) -> String {
+        // SAFETY: the description exists as long as this value, and its text with it; the text is copied.
+        unsafe { Functions::read((self.functions.get_uid)(self.info)) }
+    }
+
     /// Whether the samples of the LSL stream are texts.
     pub fn is_text(&self) -> bool {
         // SAFETY: the description exists as long as this value.
@@ -355,6 +414,12 @@ impl LslInletHandle {
         // SAFETY: the inlet exists, and the error is written before the call returns.
         let correction = unsafe { (self.functions.time_correction)(self.pointer, patience_s, &raw mut error) };
         (error == 0).then_some(correction)
+    }
+
+    /// Drops the samples that have arrived and were not read.
+    pub fn flush(&self) {
+        // SAFETY: the inlet exists as long as this value.
+        unsafe { (self.functions.inlet_flush)(self.pointer) };
     }
 
     /// Reads the next sample into `values` and returns its time on the stream's clock; `None` if no sample arrives in

@@ -34,9 +34,30 @@ pub fn load(spec: Option<&LslSpec>) -> Result<LslLibrary, LslError> {
     LslLibrary::load(path.as_deref(), &configuration::configuration())
 }
 
-/// Search expression that finds the session's gaze stream by name and type, but no stream of this program.
+/// Streams from other programs that are the session's gaze stream: more than one if the settings do not tell them apart.
+/// The search takes `patience_s` seconds.
+pub fn gaze_streams(library: LslLibrary, stream: &LslGazeSpec, patience_s: f64) -> Vec<DiscoveredLslStream> {
+    library.resolve(&predicate(stream), library::MOST_FOUND, patience_s)
+}
+
+/// What of a stream tells it apart from others, in words.
+pub fn described(found: &DiscoveredLslStream) -> String {
+    let [name, content, host] = found.identity();
+    let source = match found.source() {
+        none if none.is_empty() => "no source_id".to_string(),
+        source => format!("source_id \"{source}\""),
+    };
+    format!("\"{name}\" of type \"{content}\" on {host}, {source}")
+}
+
+/// Search expression that finds the session's gaze stream by what the settings name, but no stream of this program.
 fn predicate(stream: &LslGazeSpec) -> String {
-    let wanted = [("name", &stream.name), ("type", &stream.content)];
+    let wanted = [
+        ("name", &stream.name),
+        ("type", &stream.content),
+        ("source_id", &stream.source_id),
+        ("hostname", &stream.host),
+    ];
     let wanted = wanted.iter().filter_map(|(field, value)| Some(format!("{field}='{}'", value.as_ref()?)));
     wanted.chain([not_own()]).collect::<Vec<_>>().join(" and ")
 }

@@ -201,7 +201,7 @@ impl<'a> Listener<'a> {
 
     fn taken(&self, pupil_s: f64) -> TrackerTime {
         let at = self.clock.lock().ok().and_then(|clock| clock.instant(pupil_s));
-        TrackerTime { device_ns: (pupil_s * 1e9) as u64, at }
+        TrackerTime { device_ns: (pupil_s * 1e9) as i64, at }
     }
 
     fn offer(&mut self, news: TrackerMessage) {

@@ -5,6 +5,8 @@
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
 
+use crate::edge::gaze_input::MAX_SECONDS;
+
 /// Largest nesting depth of a Capture message.
 const MAX_DEPTH: usize = 16;
 /// Largest number of items in a datum of a Capture message.
@@ -27,7 +29,7 @@ pub struct SurfaceGaze {
     /// Position of the gaze in fractions of the surface, origin at the bottom left, y up; can lie outside of the
     /// surface.
     pub norm_pos: [f64; 2],
-    /// Capture's confidence in the sample, from 0 to 1.
+    /// Capture's confidence in the sample, from 0 to 1; NaN if Capture does not know it.
     pub confidence: f64,
     /// Time of the sample in Pupil time, in seconds.
     pub timestamp: f64,
@@ -154,7 +156,7 @@ fn items<'a>(datum: &'a Value, name: &str, malformed: &mut u64) -> &'a [Value] {
 }
 
 fn gaze(item: &Value) -> Option<SurfaceGaze> {
-    Some(SurfaceGaze { norm_pos: place(item)?, confidence: confidence(item)?, timestamp: time(item)? })
+    Some(SurfaceGaze { norm_pos: place(item)?, confidence: gaze_confidence(item)?, timestamp: time(item)? })
 }
 
 fn fixation(item: &Value, is_on_surface: bool) -> Option<PupilFixation> {
@@ -178,7 +180,7 @@ fn blink(item: &Value) -> Option<PupilBlink> {
     Some(PupilBlink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
 }
 
-/// Whether the blink detector sent NaN as its confidence, as it does while a pupil's confidence is NaN, whatever the
+/// Whether Capture sent NaN as its confidence. The blink detector does so while a pupil's confidence is NaN, whatever the
 /// lids do.
 fn is_undecided(item: &Value) -> bool {
     field(item, "confidence").and_then(Value::as_f64).is_some_and(f64::is_nan)
@@ -211,9 +213,15 @@ fn confidence(item: &Value) -> Option<f64> {
     number(item, "confidence").filter(|value| (0.0..=1.0).contains(value))
 }
 
-/// The Pupil time of a datum, in seconds from an arbitrary origin; `None` if the time does not fit into nanoseconds.
+/// The confidence of a gaze sample; NaN if Capture does not know it, as where a pupil was lost.
+fn gaze_confidence(item: &Value) -> Option<f64> {
+    if is_undecided(item) { Some(f64::NAN) } else { confidence(item) }
+}
+
+/// The Pupil time of a datum, in seconds from an arbitrary origin, so that it can be negative; `None` if the time does not
+/// fit into nanoseconds.
 fn time(item: &Value) -> Option<f64> {
-    number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
+    number(item, "timestamp").filter(|value| value.abs() < MAX_SECONDS)
 }
 
 /// The payload of a notification with which Capture starts a plugin.

@@ -3,7 +3,8 @@
 //!
 //! Capture answers `OK` to a request for a recording before the recording has begun: an annotation before
 //! `recording.started` is in no recording. A request while Capture is already recording has no effect and no
-//! notification, so a recording that was not announced is not this program's, and is never ended by it. Capture handles
+//! notification, so a recording that was not announced is not this program's, and is never ended by it; except where the
+//! log of a trial that goes on after a cut says that this program began a recording and did not end it. Capture handles
 //! requests before annotations in each of its frames, so a recording is ended some frames after its last annotation.
 
 use std::collections::VecDeque;
@@ -24,8 +25,14 @@ const LAST_FRAMES: Duration = Duration::from_millis(500);
 /// A request of the session to Capture.
 #[derive(Debug)]
 pub enum CaptureRequest {
-    /// Start a recording with this name in Capture.
-    Record(String),
+    /// Start a recording in Capture.
+    Record {
+        /// Name of Capture's recording.
+        name: String,
+        /// Whether a recording that this program began for the trial may still run: the program was cut off, and goes
+        /// on with the trial.
+        goes_on: bool,
+    },
     /// End Capture's recording.
     StopRecording,
     /// Annotate Capture's recording with an event.
@@ -96,6 +103,8 @@ pub struct CaptureRecordingControl {
     /// Instant at which Capture announced the present recording.
     since: Option<Instant>,
     hold: Option<Hold>,
+    /// Whether a recording that runs in Capture now was begun by this program before it was cut off.
+    may_go_on: bool,
     /// Time limit until which the annotation plugin is waited for; `None` if it listens or is no longer waited for.
     listens_by: Option<Instant>,
     /// Whether the next Capture recording is first annotated with the trial's state.
@@ -114,6 +123,7 @@ impl CaptureRecordingControl {
             owner: RecordingOwner::Nobody,
             since: None,
             hold: None,
+            may_go_on: false,
             listens_by: None,
             resumes: false,
             state: Vec::new(),
@@ -147,6 +157,7 @@ impl CaptureRecordingControl {
         self.listens_by = (!listens).then_some(now + LISTENS_WITHIN);
         let is_ours = is_same_run && self.owner == RecordingOwner::Us;
         self.owner = if is_ours { RecordingOwner::Us } else { RecordingOwner::Nobody };
+        self.may_go_on &= is_same_run;
         self.drop_missed();
         if is_ours && self.wanted.is_none() {
             self.stop(&mut actions);
@@ -192,11 +203,15 @@ impl CaptureRecordingControl {
                 // Annotations sent before the Capture recording began are not in it, so the trial's state is annotated
                 // again.
                 self.resumes |= !is_beginning;
-                (self.owner, self.since) = (RecordingOwner::Us, Some(now));
+                (self.owner, self.since, self.may_go_on) = (RecordingOwner::Us, Some(now), false);
                 actions.push(CaptureAction::Tell(TrackerRecording::Begun));
                 self.begun(now);
             }
-            CaptureNotification::Started(_) if is_beginning => self.is_not_ours(now, &mut actions),
+            CaptureNotification::Started(_) if is_beginning => {
+                // Somebody began a recording, so that none ran.
+                self.may_go_on = false;
+                self.is_not_ours(now, &mut actions);
+            }
             CaptureNotification::Started(_) => {}
             CaptureNotification::Stopped if matches!(self.hold, Some(Hold::Ending(_))) => {
                 (self.hold, self.owner) = (None, RecordingOwner::Nobody);
@@ -205,7 +220,7 @@ impl CaptureRecordingControl {
                 self.owner = RecordingOwner::Nobody;
                 actions.push(CaptureAction::Tell(TrackerRecording::Ended));
             }
-            CaptureNotification::Stopped => {}
+            CaptureNotification::Stopped => self.may_go_on = false,
         }
         self.go_on(now, &mut actions);
         actions
@@ -237,6 +252,11 @@ impl CaptureRecordingControl {
                 // After a lost connection the Capture recording of this program may still run, which Capture does not
                 // announce again.
                 RecordingOwner::Us => self.begun(now),
+                RecordingOwner::Nobody | RecordingOwner::Lab if std::mem::take(&mut self.may_go_on) => {
+                    self.owner = RecordingOwner::Us;
+                    actions.push(CaptureAction::Tell(TrackerRecording::GoesOn));
+                    self.begun(now);
+                }
                 RecordingOwner::Nobody | RecordingOwner::Lab => self.is_not_ours(now, &mut actions),
             },
             Some(Hold::Ending(by)) if by <= now => self.stop(&mut actions),
@@ -293,12 +313,12 @@ impl CaptureRecordingControl {
         while self.hold.is_none() && self.listens_by.is_none() {
             match self.waiting.pop_front() {
                 None => return,
-                Some(CaptureRequest::Record(name)) if self.records => {
-                    (self.owner, self.since) = (RecordingOwner::Nobody, None);
+                Some(CaptureRequest::Record { name, goes_on }) if self.records => {
+                    (self.owner, self.since, self.may_go_on) = (RecordingOwner::Nobody, None, goes_on);
                     self.wanted = Some(name.clone());
                     self.start(name, now, actions);
                 }
-                Some(CaptureRequest::Record(_)) => {}
+                Some(CaptureRequest::Record { .. }) => {}
                 Some(CaptureRequest::StopRecording) => {
                     self.wanted = None;
                     self.state.clear();

@@ -21,7 +21,7 @@ use super::action::Button;
 use super::aspect::{AspectKind, StateAspect};
 use super::compiled::Kitchen;
 use super::content::{Content, ContentId};
-use super::cost_to_go::MAX_BUTTONS;
+use super::cost_to_go::{MAX_BUTTONS, MAX_STATES};
 use super::dish::{Dish, DishId};
 use super::layout::LayoutSpec;
 use super::layout_ranges;
@@ -31,9 +31,6 @@ use super::recipe::RecipesSpec;
 use super::state::OrderContent;
 use super::transition_tables::TransitionTables;
 
-/// Largest number of joint contents of all locations other than orders, since the keys of the cost-to-go cache have a
-/// fixed size.
-const MAX_STATES: u128 = 1 << 39;
 /// Largest number of places where items are processed (stations).
 const MAX_STATIONS: usize = 8;
 

@@ -12,7 +12,7 @@ use crate::kitchen::location::{DisplayArea, IngredientStorage, Location, Locatio
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
 
-/// Largest number of simultaneous orders; the cost to go is exact for one and for two orders.
+/// Largest number of simultaneous orders; the cost to go is computed for one and for two orders.
 pub const MAX_ORDERS: usize = 2;
 /// Least distance between locations on the display, in metres, so that gaze can tell them apart.
 pub const MIN_GAP_M: f64 = 0.15;

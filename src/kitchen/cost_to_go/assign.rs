@@ -31,7 +31,7 @@ impl Assignment {
     ///
     /// Known limit: a usable stack on the board is always taken. Where a larger stack of the same target dish lies
     /// elsewhere, clearing the board for the larger stack can be shorter, and the search, which the lower bound guides,
-    /// does not find that way. With nori on the board, nori and salmon on the counter and rice on the plate, salmon
+    /// does not find that way (`proof` does). With nori on the board, nori and salmon on the counter and rice on the plate, salmon
     /// maki takes 8 presses (the robot takes the nori away and keeps it), and 10 are found.
     pub fn choose(
         ground: &KitchenTables,

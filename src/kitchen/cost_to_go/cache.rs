@@ -10,6 +10,9 @@ pub const MAX_BUTTONS: usize = 40;
 /// Number of low bits of a cache key that tell the kind of value; all kinds of value of one state share a bucket.
 pub const KIND_BITS: u32 = 2;
 
+/// Number of bits of a cache key; an entry holds the key and the value of one byte.
+pub const KEY_BITS: u32 = u64::BITS - u8::BITS;
+
 /// Marks an empty cache entry, and is larger than any key. All entries are written at creation, so that the memory is
 /// mapped before use.
 const EMPTY: u64 = u64::MAX;
@@ -22,7 +25,7 @@ const EMPTY: u64 = u64::MAX;
 #[derive(Clone, Copy, Debug)]
 struct Bucket([u64; 8]);
 
-/// Cache of one-byte values by keys below 2^56 - 1, in buckets of eight entries.
+/// Cache of one-byte values by keys of [`KEY_BITS`] bits, not all of them set, in buckets of eight entries.
 #[derive(Clone, Debug)]
 pub struct ValueCache {
     buckets: Vec<Bucket>,

@@ -14,7 +14,7 @@ impl CostToGo {
     /// before.
     #[inline]
     pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
-        self.decision_with(Fidelity::Exact, state, recipes, agent)
+        self.decision_with(Fidelity::Searched, state, recipes, agent)
     }
 
     /// Cost to go of the state and after every button of `agent`, at a given fidelity. Values of other fidelities are
@@ -51,7 +51,7 @@ impl CostToGo {
 
     /// Bit set of the buttons of `agent` whose press lowers the cost to go.
     pub fn nearer(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> u64 {
-        if fidelity != Fidelity::Exact {
+        if fidelity != Fidelity::Searched {
             let buttons = self.kitchen.buttons[agent.index()].len();
             let decision = self.decision_with(fidelity, state, recipes, agent);
             let after = decision.after[..buttons].iter().enumerate();
@@ -59,7 +59,7 @@ impl CostToGo {
         }
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);
-        let here = self.value_kept(Fidelity::Exact, state, kept);
+        let here = self.value_kept(Fidelity::Searched, state, kept);
         let mut nearer = 0;
         for next in &nexts {
             nearer |= u64::from(self.is_below(here, next.state, next.kept)) << next.button;
@@ -98,7 +98,7 @@ impl CostToGo {
     ) {
         self.counts.decisions_missed += 1;
         let (here, after) = match fidelity {
-            Fidelity::Exact => self.each(Fidelity::Exact, state, recipes, agent),
+            Fidelity::Searched => self.each(Fidelity::Searched, state, recipes, agent),
             Fidelity::PlanBound => self.close(state, recipes, agent),
             Fidelity::LowerBound => self.each(Fidelity::LowerBound, state, recipes, agent),
         };

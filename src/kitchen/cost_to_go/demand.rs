@@ -65,8 +65,21 @@ impl TaskRequirements {
         }
     }
 
-    /// Lower bound of the number of presses: presses of the journeys plus presses for clearing obstacles.
+    /// Lower bound of the number of presses: presses of the journeys plus presses for clearing obstacles. It is a press
+    /// too high in a few states, in which a hand that a journey through an occupied station needs is free again before
+    /// the station is cleared.
     pub fn bound(&self, ground: &KitchenTables, state: &CompactState) -> u32 {
+        self.least(ground, state, |needs| needs & 3 != 3)
+    }
+
+    /// Lower bound of the number of presses that holds in every state.
+    pub fn floor(&self, ground: &KitchenTables, state: &CompactState) -> u32 {
+        self.least(ground, state, |_| true)
+    }
+
+    /// Least number of presses; `can_keep` says whether a hand can keep the content of a station, through which journeys
+    /// with these needs lead, until the end.
+    fn least(&self, ground: &KitchenTables, state: &CompactState, can_keep: fn(JourneyNeeds) -> bool) -> u32 {
         let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
         let mut in_the_way = 0;
         // Every useless content of a hand has to be thrown away, except in a hand that is not needed any more.
@@ -83,7 +96,7 @@ impl TaskRequirements {
             let needs = self.station_needs[index];
             if needs != 0 && unused(station.index()) && station.index() != ground.plate {
                 in_the_way += 1;
-                kept |= needs & 3 != 3;
+                kept |= can_keep(needs);
             }
         }
         let held = ground.hands.map(unused);

@@ -4,9 +4,10 @@
 //! be served (targets), the number of presses to the board from every place and for every combination of free hands and
 //! places. An `assign::Assignment` chooses which item becomes which part, which gives a lower bound. A
 //! `partial_plan::PressPlan` executes the assignment press by press and clears obstacles, which gives an upper bound. Where the
-//! bounds differ, a bounded `search` over single presses decides. Values are cached by state classes (see `goal`: all
-//! useless contents are one class), whole decisions by state. A value depends on the state and the recipes only, never
-//! on earlier requests.
+//! bounds differ, a bounded `search` over single presses decides, which misses the shortest way from a few states. Values
+//! are cached by state classes (see `goal`: all useless contents are one class), whole decisions by state. A value depends
+//! on the state and the recipes only, never on earlier requests. Presses are judged by values that are proven: by a lower
+//! bound over all assignments (`floor`), or by a longer search (`proof`).
 //!
 //! Exact tables for each pair of targets, made once by backward search, were considered instead. The burger kitchen has
 //! 3 to 5 million state classes for a pair of targets, so its tables would fit into memory. The sushi kitchen has 45
@@ -22,6 +23,7 @@
 //!   `clear` (the move that is mostly best), `alternatives` (all other moves), `carry_out` (execution).
 //! - Both bounds: `rating`. Where they differ: `store` (cached results), `search`.
 //! - Queries: `value` (of one state), `decide` (after each button).
+//! - Proven values: `floor`, `proof`.
 
 mod alternatives;
 mod assign;
@@ -32,12 +34,14 @@ mod clear;
 mod decide;
 mod demand;
 mod fidelity;
+mod floor;
 mod goal;
 mod ground;
 mod journeys;
 mod moves;
 mod needs;
 mod partial_plan;
+mod proof;
 mod rating;
 mod search;
 mod store;
@@ -47,4 +51,5 @@ mod value;
 
 pub use self::cache::{DecisionCosts, MAX_BUTTONS};
 pub use self::fidelity::Fidelity;
-pub use self::store::{CostToGo, EvaluationCounts, UNREACHABLE};
+pub use self::proof::{ProofBudget, ProvenCost};
+pub use self::store::{CostToGo, EvaluationCounts, MAX_STATES, UNREACHABLE};

@@ -1,5 +1,8 @@
 //! The bounded best-first search over single presses, for states whose cost to go bounds and plans do not decide. The
-//! search stops at states with a known value and wherever a plan reaches the lower bound.
+//! search stops at states with a known value, wherever a plan reaches the lower bound, and after 48 states (again after 24
+//! more). So its result is a way that exists, and mostly but not surely the shortest: see
+//! [`Fidelity::Searched`]. Simulations and recommendations ask for millions of values and use it; what people are judged by
+//! is proven (`proof`).
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -24,8 +27,8 @@ pub struct SearchLimits {
     takes: bool,
 }
 
-/// Limits of the first search: enough for 99 % of the states met in sessions and for 95 % of states after random
-/// presses.
+/// Limits of the first search. With the second one, the shortest way is found from 99.8 % of the states met in sessions, and
+/// from 96 % of the states after random presses (sushi kitchen, all orders).
 pub const NEAR: SearchLimits = SearchLimits { expansions: 48, takes: false };
 /// Limits of the second search, for states whose first result is still two or more presses above the lower bound.
 pub const FAR: SearchLimits = SearchLimits { expansions: 24, takes: true };
@@ -296,6 +299,6 @@ impl CostToGo {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
         }
         let key = self.key(slot, &rest, &classes);
-        self.cache.get(key).unwrap_or_else(|| self.compute(Fidelity::Exact, key, slot, &rest, &classes))
+        self.cache.get(key).unwrap_or_else(|| self.compute(Fidelity::Searched, key, slot, &rest, &classes))
     }
 }

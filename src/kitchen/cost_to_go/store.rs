@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cache::{DecisionCache, KIND_BITS, ValueCache};
+use super::cache::{DecisionCache, KEY_BITS, KIND_BITS, ValueCache};
 use super::classes::{CompactState, MAX_TARGETS};
 use super::fidelity::Fidelity;
 use super::goal::ServingGoal;
@@ -17,6 +17,8 @@ const CACHE_BITS: u32 = 18;
 const DECISION_BITS: u32 = 15;
 /// Number of bits of a cache key for the goal and the kind of value together.
 pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
+/// Largest number of joint contents of all locations other than orders, for which the remaining bits of a key are enough.
+pub const MAX_STATES: u128 = 1 << (KEY_BITS - SLOT_BITS);
 
 /// Computes costs to go of a kitchen's states, with caches.
 #[derive(Clone, Debug)]
@@ -121,7 +123,7 @@ impl CostToGo {
         Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
     }
 
-    /// Cache key of a state's exact cost to go.
+    /// Cache key of a state's searched cost to go.
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &CompactState) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
     }

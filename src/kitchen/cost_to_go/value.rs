@@ -13,12 +13,12 @@ impl CostToGo {
     /// orders cannot be served.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
-        self.cost(Fidelity::Exact, state, &mut targets[..count])
+        self.cost(Fidelity::Searched, state, &mut targets[..count])
     }
 
     /// C_k(s, recipes): number of presses until the order at this location is served; 0 without an order.
     pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
-        self.order_with(Fidelity::Exact, state, recipes, order)
+        self.order_with(Fidelity::Searched, state, recipes, order)
     }
 
     /// Number of presses until the order at this location is served, at a given fidelity.
@@ -40,7 +40,7 @@ impl CostToGo {
         limit: u32,
     ) -> bool {
         match state.order(order) {
-            OrderContent::Dish(dish) if fidelity == Fidelity::Exact => {
+            OrderContent::Dish(dish) if fidelity == Fidelity::Searched => {
                 let kept = self.kept_for(state, &mut [recipes.get(dish)]);
                 self.is_below(limit, state, kept)
             }
@@ -48,7 +48,7 @@ impl CostToGo {
         }
     }
 
-    fn cost(&mut self, fidelity: Fidelity, state: State, targets: &mut [ContentId]) -> u32 {
+    pub(super) fn cost(&mut self, fidelity: Fidelity, state: State, targets: &mut [ContentId]) -> u32 {
         if targets.is_empty() {
             return 0;
         }

@@ -243,7 +243,7 @@ impl Particle {
         let square = |index: usize| vec![vec![0.0; self.of[index].len()]; self.of[index].len()];
         let mut turned: Vec<Vec<Vec<f64>>> = (0..locations).map(square).collect();
         for way in self.ways(kitchen, states, random) {
-            let choices = policy::choices(kitchen, cost, Fidelity::Exact, way.state, &way.recipes);
+            let choices = policy::choices(kitchen, cost, Fidelity::Searched, way.state, &way.recipes);
             let after: Vec<State> = choices
                 .iter()
                 .map(|&button| kitchen.press(way.state, &way.recipes, Agent::Robot, button).unwrap_or(way.state))

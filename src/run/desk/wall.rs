@@ -1,7 +1,8 @@
 //! The participant's display at the operator's desk.
 
+use crate::base::time::SessionTime;
 use crate::display::page_language::DisplayWords;
-use crate::display::{consent_sight, scene};
+use crate::display::{ConsentHold, consent_sight, scene};
 pub(in crate::run) use crate::edge::display::PageInput;
 use crate::edge::display::{DisplayServer, ParticipantResponse};
 use crate::run::error::LiveError;
@@ -50,7 +51,15 @@ impl WallDisplay {
     }
 }
 
-/// Whether an input of the participant's page is the participant's consent.
-pub(in crate::run) fn is_consent(input: &PageInput) -> bool {
-    *input == PageInput::Reply(ParticipantResponse::Consent)
+/// Handles an input of the participant's page while it asks for consent; returns false if the page says that the
+/// participant consented, although the button was not held.
+pub(in crate::run) fn hear_consent(input: &PageInput, button: &mut ConsentHold, now: SessionTime) -> bool {
+    match input {
+        PageInput::Reply(ParticipantResponse::Hold { held }) => button.hold(*held, now),
+        PageInput::Reply(ParticipantResponse::Consent) => return button.tell(now),
+        // The button of another page, or of one that was loaded again, is not held.
+        PageInput::Connected { .. } | PageInput::Lost => *button = ConsentHold::default(),
+        _ => {}
+    }
+    true
 }

@@ -1,5 +1,7 @@
 //! Stand-in for the participant's display at the operator's desk, in a build without the feature `display`.
 
+use crate::base::time::SessionTime;
+use crate::display::ConsentHold;
 use crate::run::error::LiveError;
 use crate::session::{Session, SessionSpec};
 
@@ -31,6 +33,6 @@ impl WallDisplay {
 }
 
 /// Never called, since this build has no participant's page.
-pub(in crate::run) fn is_consent(_: &PageInput) -> bool {
-    false
+pub(in crate::run) fn hear_consent(input: &PageInput, _: &mut ConsentHold, _: SessionTime) -> bool {
+    match *input {}
 }

@@ -63,7 +63,11 @@ impl SessionEngine {
         }
         match &stamped.event {
             Event::TrialStarted => wizard.on_trial_start(state),
-            Event::Gaze(_) => wizard.on_gaze(now, session.looked_at(now), state),
+            Event::Gaze(sample) => {
+                let location = session.looked_at();
+                let sees_present = location.is_some_and(|location| session.sees_present_content(location));
+                wizard.on_gaze(sample.taken(now), location, sees_present.then_some(state));
+            }
             Event::SignalShown { .. } => {
                 if let Some(location) = session.shown.as_ref().and_then(|shown| shown.location) {
                     wizard.on_signal(now, location, state);

@@ -11,6 +11,7 @@ use crate::session::{Event, Session, TrialPhase};
 
 const RUNNING: &str = "trial running";
 const PAUSED: &str = "trial paused";
+const LEFT: &str = "session left";
 
 /// Sends requests to Pupil Capture for one recording.
 #[derive(Debug, Default)]
@@ -40,7 +41,7 @@ impl CaptureRequestSender {
             _ => None,
         };
         if let Some(phase) = capture.phase {
-            capture.record();
+            capture.record(session.tracker.is_recording());
             capture.annotate(phase.to_string(), now);
         }
         capture
@@ -54,7 +55,7 @@ impl CaptureRequestSender {
         let ends = matches!(event, Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded);
         let label = match event {
             Event::TrialStarted => {
-                self.record();
+                self.record(false);
                 self.phase = Some(RUNNING);
                 "trial started".to_string()
             }
@@ -86,6 +87,10 @@ impl CaptureRequestSender {
                 self.signal = None;
                 "signal ended".to_string()
             }
+            Event::SessionEnded if self.is_on => {
+                self.annotate(LEFT.to_string(), at);
+                "trial ended".to_string()
+            }
             Event::SessionEnded => String::new(),
             _ => return,
         };
@@ -100,18 +105,24 @@ impl CaptureRequestSender {
         }
     }
 
-    /// Ends Pupil Capture's recording when the wizard leaves before the end of the trial.
+    /// Whether a trial is recorded in Pupil Capture that has not ended.
+    pub fn is_on(&self) -> bool {
+        self.is_on
+    }
+
+    /// Ends Pupil Capture's recording when the wizard leaves a trial that can be continued later.
     pub fn leave(&mut self, at: Instant) {
         if std::mem::take(&mut self.is_on) {
             (self.phase, self.signal, self.probe) = (None, None, None);
-            self.annotate("session left".to_string(), at);
+            self.annotate(LEFT.to_string(), at);
             self.order(CaptureRequest::StopRecording);
         }
     }
 
-    fn record(&mut self) {
+    /// Requests a recording of the trial; `goes_on` says that one may still run that this program began for it.
+    fn record(&mut self, goes_on: bool) {
         self.is_on = true;
-        self.order(CaptureRequest::Record(self.name.clone()));
+        self.order(CaptureRequest::Record { name: self.name.clone(), goes_on });
     }
 
     fn annotate(&self, label: String, at: Instant) {

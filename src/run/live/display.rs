@@ -21,6 +21,8 @@ use crate::session::{Event, Session};
 
 /// Number of characters that a message to the wizard shows of a name that the participant's page sent.
 const SHOWN_NAME: usize = 40;
+/// Time by which a page's timer can be early, in seconds: browsers round times.
+const EARLY_S: f64 = 0.25;
 
 /// The participant's display during one recording.
 pub(super) struct ParticipantDisplay {
@@ -108,7 +110,7 @@ impl PageEvent {
                 let is_gaze = session.spec.participant.gaze == GazeSource::Mouse;
                 is_gaze.then(|| Event::Gaze(GazeSample::new(x, y, 1.0)))
             }
-            PageInput::Reply(reply) => answered(reply, session),
+            PageInput::Reply(reply) => answered(reply, session, now),
             PageInput::Drawn { cue, at } => {
                 Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))
             }
@@ -118,20 +120,31 @@ impl PageEvent {
 }
 
 /// Converts a reply of the participant to an event of the session; `None` if the reply is not possible now.
-fn answered(reply: ParticipantResponse, session: &Session) -> Option<Event> {
+fn answered(reply: ParticipantResponse, session: &Session, now: SessionTime) -> Option<Event> {
     match reply {
         ParticipantResponse::Answer { item, answer: Some(given) } => {
             answer(ProtocolEvent::ItemAnswered { item, answer: given }, session)
         }
         ParticipantResponse::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
-        ParticipantResponse::Next => session.next_item().and_then(|next| answer(next, session)),
-        ParticipantResponse::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
+        // The page goes on from an item only once it is answered, and back only to the item before.
+        ParticipantResponse::Next if is_answered(session) => session.next_item().and_then(|next| answer(next, session)),
+        ParticipantResponse::Back { item } if item_before(session) == Some(&item) => {
+            answer(ProtocolEvent::ItemShown { item }, session)
+        }
+        ParticipantResponse::Next | ParticipantResponse::Back { .. } => None,
         // Consent is asked for before a recording begins; a late consent changes nothing.
-        ParticipantResponse::Consent => None,
+        ParticipantResponse::Hold { .. } | ParticipantResponse::Consent => None,
         ParticipantResponse::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
         ParticipantResponse::Turn { step, forward } => turn(session, &step, forward),
         ParticipantResponse::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
-        ParticipantResponse::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
+        ParticipantResponse::CardsShown { step } => {
+            // The page's clock ends the time of the cards, and the session's clock has to agree.
+            let is_over = session.tutorial_step().is_some_and(|(shown, state)| {
+                let left_s = state.cards_left_s(shown).unwrap_or(0.0);
+                now.secs_since(state.shown_since) >= left_s - EARLY_S
+            });
+            is_over.then(|| practise(session, TutorialEvent::CardsHidden { step })).flatten()
+        }
         ParticipantResponse::Believe { probe, question, choice, items, sure } => {
             believe(session, (probe, question), (choice, &items), sure)
         }
@@ -196,6 +209,11 @@ fn believe(
         Some(number) => Some(asked.choices.get(usize::from(number).checked_sub(1)?)?.clone()),
         None => None,
     };
+    // Whoever answers also says how sure they are, if that is asked.
+    let asks_confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
+    if confidence.is_some() != (asks_confidence && answer.is_some()) {
+        return None;
+    }
     let on = AnswerDevice::Display;
     let event = Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on });
     admit(session, &event).is_ok().then_some(event)
@@ -204,6 +222,17 @@ fn believe(
 /// Converts an answer to a questionnaire to an event, if participants answer on the display in this session.
 fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
     (session.spec.display.questionnaire == AnswerDevice::Display).then_some(Event::Protocol(event))
+}
+
+/// Whether the shown questionnaire item is answered.
+fn is_answered(session: &Session) -> bool {
+    session.protocol.as_ref().is_some_and(|protocol| protocol.given(protocol.item).is_some())
+}
+
+/// Name of the questionnaire item before the shown one.
+fn item_before(session: &Session) -> Option<&String> {
+    let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
+    questionnaire.items.get(protocol.item.checked_sub(1)?).map(|item| &item.id)
 }
 
 /// Session time of an instant shortly before `now`.

@@ -7,23 +7,25 @@ use crate::base::time::SessionTime;
 use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{TrackerMessage, TrackerTime};
 use crate::gaze::GazeSample;
-use crate::gaze::device_clock::{ClockStep, DeviceClock};
 use crate::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
+use crate::gaze::stamp_check::StampFault;
 use crate::run::desk::GazeTracker;
-use crate::session::tracker::TrackerEvent;
+use crate::session::tracker::{MissingConfidence, TrackerEvent};
 use crate::session::{Event, Session, TrialPhase};
-
-/// The result for a tracker message that leads to no event.
-const NONE: [Option<Event>; 2] = [None, None];
 
 /// Gaze input of one recording.
 #[derive(Debug, Default)]
 pub(super) struct GazeInput {
-    clock: DeviceClock,
     limit: GazeRateLimiter,
     dropped: DroppedInputCounts,
     /// Whether the wizard was already told of a wrong time stamp of gaze.
     has_complained: bool,
+    /// What is wrong with the time stamps of the latest sender of gaze.
+    stamp_fault: Option<StampFault>,
+    /// Whether the wizard was already told that samples without confidence are not read.
+    has_told_missing: bool,
+    /// How samples without confidence are taken.
+    missing_confidence: MissingConfidence,
     /// The file from which gaze is replayed, with the index of the next sample.
     file: Option<Arc<GazeFile>>,
     next: usize,
@@ -32,43 +34,58 @@ pub(super) struct GazeInput {
 impl GazeInput {
     /// The gaze input of a recording that begins or continues with this session.
     pub fn at(tracker: &GazeTracker, session: &Session) -> GazeInput {
-        let Some(file) = tracker.file() else { return GazeInput::default() };
-        let dropped = DroppedInputCounts { malformed: file.malformed, ..DroppedInputCounts::default() };
+        let missing_confidence = session.spec.tracker.missing_confidence;
+        let Some(file) = tracker.file() else { return GazeInput { missing_confidence, ..GazeInput::default() } };
+        let dropped = DroppedInputCounts { malformed: file.summary.malformed, ..DroppedInputCounts::default() };
         let clock_s = session.trial_clock(session.time).as_secs_f64();
         let is_past = |(at_s, _): &&(f64, GazeSample)| session.phase != TrialPhase::Ready && *at_s < clock_s;
         let next = file.samples.iter().take_while(is_past).count();
-        GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
+        GazeInput { dropped, file: Some(file), next, missing_confidence, ..GazeInput::default() }
     }
 
-    /// Message to the wizard about the first gaze sample with a wrong time stamp.
+    /// Message to the wizard about the first gaze sample with a wrong time stamp, and about the first one without
+    /// confidence if such samples are not read.
     pub fn complaint(&mut self, news: &TrackerMessage) -> Option<String> {
-        let TrackerMessage::WrongTime(t) = news else { return None };
-        let is_first = !std::mem::replace(&mut self.has_complained, true);
-        is_first.then(|| format!("gaze sample refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
+        let is_first = |told: &mut bool| !std::mem::replace(told, true);
+        match news {
+            TrackerMessage::WrongTime(t) => is_first(&mut self.has_complained)
+                .then(|| format!("gaze sample refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970")),
+            TrackerMessage::Sample(sample, _)
+                if sample.confidence.is_nan() && self.missing_confidence == MissingConfidence::Bad =>
+            {
+                is_first(&mut self.has_told_missing).then(|| {
+                    "gaze without confidence is recorded and not read: missing_confidence is \"bad\"".to_string()
+                })
+            }
+            _ => None,
+        }
     }
 
-    /// The session's events for a tracker message; empty for messages that are only counted.
-    pub fn events(&mut self, news: TrackerMessage, now: SessionTime) -> [Option<Event>; 2] {
+    /// The session's event for a tracker message; `None` for messages that are only counted.
+    pub fn event(&mut self, news: TrackerMessage, now: SessionTime) -> Option<Event> {
         let tracker = match news {
             TrackerMessage::Sample(sample, at) => return self.sample(sample, at, now),
             TrackerMessage::Malformed(count) => {
                 self.dropped.malformed += count;
-                return NONE;
+                return None;
             }
             TrackerMessage::WrongTime(_) => {
                 self.dropped.malformed += 1;
-                return NONE;
+                return None;
             }
             TrackerMessage::Overrun(count) => {
                 self.dropped.overrun += count;
-                return NONE;
+                return None;
             }
-            // Messages of senders that are not trackers are counted at the console only, not in the log.
-            TrackerMessage::Rejected(_) | TrackerMessage::Refused { .. } => return NONE,
-            TrackerMessage::Began => {
-                self.clock = DeviceClock::default();
-                return NONE;
+            // Senders that are not trackers are counted at the console only, not in the log.
+            TrackerMessage::Rejected { .. } => return None,
+            // Every sender's stamps are judged; what is the same for the next sender is no news.
+            TrackerMessage::Stamps(fault) if fault == self.stamp_fault => return None,
+            TrackerMessage::Stamps(fault) => {
+                self.stamp_fault = fault;
+                TrackerEvent::Stamps { fault }
             }
+            TrackerMessage::SeveralStreams(streams) => TrackerEvent::SeveralStreams { streams },
             TrackerMessage::Connected(device) => TrackerEvent::Connected { device },
             TrackerMessage::Lost(reason) => TrackerEvent::Lost { reason },
             TrackerMessage::SeesDisplay(true) => TrackerEvent::DisplayFound,
@@ -89,28 +106,20 @@ impl GazeInput {
                 TrackerEvent::Blink { closed: is_onset, confidence, device_ns, taken_ns }
             }
         };
-        [Some(Event::Tracker(tracker)), None]
+        Some(Event::Tracker(tracker))
     }
 
-    /// The event of a gaze sample, after an event that the tracker's clock was set, if the sample's time stamp shows
-    /// that.
-    fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> [Option<Event>; 2] {
+    /// The event of a gaze sample, which was taken at the instant `at`, if that is known.
+    fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> Option<Event> {
         if !self.limit.admits(now) {
             self.dropped.too_frequent += 1;
-            return NONE;
+            return None;
         }
-        let (taken_ns, step) = match (at, sample.device_ns) {
-            (Some(at), _) => (Some(ago(now, at)), None),
-            (None, Some(device_ns)) => {
-                let (taken, step) = self.clock.session_time(device_ns, now);
-                (Some(taken), step)
-            }
-            (None, None) => (None, None),
+        let confidence = match sample.confidence {
+            missing if missing.is_nan() => self.missing_confidence.confidence(),
+            known => known,
         };
-        let step = step.map(|ClockStep { by_ns, uncertain_since }| {
-            Event::Tracker(TrackerEvent::ClockSet { by_s: by_ns as f64 / 1e9, uncertain_since_ns: uncertain_since })
-        });
-        [step, Some(Event::Gaze(GazeSample { taken_ns, ..sample }))]
+        Some(Event::Gaze(GazeSample { taken_ns: at.map(|at| ago(now, at)), confidence, ..sample }))
     }
 
     /// An event with the counts of gaze input that was dropped, if they have grown.

@@ -9,6 +9,7 @@ use crate::gaze::GazeSample;
 use crate::history::wording;
 use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
+use crate::session::preflight_checks::RejectedGaze;
 use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::{Event, TrialPhase};
 
@@ -67,19 +68,16 @@ impl Live {
 
     /// Handles a message of the eye tracker in the live session.
     pub(super) fn take_gaze(&mut self, news: TrackerMessage) {
-        if let TrackerMessage::Rejected(count) = news {
-            self.model.count_rejected(count);
-            self.dirty = true;
-        }
-        if let TrackerMessage::Refused { from, why, senders } = news {
-            self.model.refuse_sender(&from.to_string(), why.words(), senders);
+        if let TrackerMessage::Rejected { from, why, senders } = &news {
+            let told = format!("gaze from {from} is rejected: {}", why.words());
+            self.model.reject_sender(RejectedGaze { told, remedy: why.remedy().to_string() }, *senders);
             self.dirty = true;
         }
         if let Some(complaint) = self.gaze.complaint(&news) {
             self.model.warn(complaint);
             self.dirty = true;
         }
-        for event in self.gaze.events(news, self.clock.now()).into_iter().flatten() {
+        if let Some(event) = self.gaze.event(news, self.clock.now()) {
             if let Event::Tracker(told) = &event
                 && is_warning(told)
                 && let Some(words) = wording::tracker(told)
@@ -109,6 +107,8 @@ impl Live {
 fn is_warning(event: &TrackerEvent) -> bool {
     match event {
         TrackerEvent::ClockSet { .. } | TrackerEvent::OtherSurfaces { .. } => true,
+        TrackerEvent::Stamps { fault } => fault.is_some(),
+        TrackerEvent::SeveralStreams { streams } => !streams.is_empty(),
         TrackerEvent::Recording { state } => *state != TrackerRecording::Begun,
         _ => false,
     }

@@ -32,6 +32,7 @@ use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
 use crate::run::watch_desk::ComparisonThreadHandle;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
+use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{Event, LogHeader, Session};
 
@@ -172,6 +173,7 @@ impl Live {
         let (display, health) = ParticipantDisplay::at(desk);
         model.display = health;
         model.gaze_pairing = desk.tracker.pairing();
+        model.recorded_gaze = desk.tracker.file().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
         let mut live = Live {
@@ -262,9 +264,12 @@ impl Live {
             // A planned recording that the wizard leaves early stays unfinished, so that it can be continued.
             if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
                 self.input(Event::SessionEnded);
+            } else if self.capture.is_on() && self.engine.session().tracker.is_recording() {
+                // A trial that is continued later needs a new recording of the tracker's program.
+                self.input(Event::Tracker(TrackerEvent::Recording { state: TrackerRecording::Ended }));
             }
             self.flush_log();
-            self.check_log();
+            self.check_log(true);
         }
         self.capture.leave(Instant::now());
         if let Some(viewing) = self.viewing.take() {

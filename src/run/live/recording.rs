@@ -6,7 +6,7 @@ use super::viewing::StreamedSession;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
-use crate::edge::log::RecordingWriteError;
+use crate::edge::log::{LogWriter, RecordingWriteError};
 use crate::history::belief_track::{self, BeliefSnapshot};
 use crate::history::{probe_wording, wording};
 use crate::session::probes::ProbeEvent;
@@ -33,11 +33,7 @@ impl Live {
             if let Some(comparison) = &self.comparison {
                 comparison.tell(stamped);
             }
-            if self.failed.is_none()
-                && let Err(error) = self.log.append(stamped)
-            {
-                self.fail(error);
-            }
+            self.write_log(|log| log.append(stamped));
         }
         self.show_participant();
         if let Some(last) = events.last() {
@@ -59,6 +55,7 @@ impl Live {
         let judged = self.engine.judged();
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
         self.model.errors.extend(new);
+        self.model.unproven += judged[self.judged..].iter().filter(|press| !press.verdict.is_proven).count() as u64;
         self.judged = judged.len();
         if let Some(viewing) = &mut self.viewing {
             viewing.view(events, &self.engine);
@@ -75,9 +72,25 @@ impl Live {
     }
 
     pub(super) fn flush_log(&mut self) {
-        if self.failed.is_none()
-            && let Err(error) = self.log.flush()
+        self.write_log(LogWriter::flush);
+    }
+
+    /// Writes to the log. On a full disk the stream's file is given up first, since it can be made from the log; only if
+    /// the log cannot be written even then, the session ends.
+    fn write_log(&mut self, write: impl FnOnce(&mut LogWriter) -> Result<(), RecordingWriteError>) {
+        if self.failed.is_some() {
+            return;
+        }
+        let mut written = write(&mut self.log);
+        if written.as_ref().is_err_and(RecordingWriteError::is_disk_full)
+            && self.viewing.as_mut().is_some_and(StreamedSession::give_up_file)
         {
+            written = self.log.flush();
+            let text =
+                "the disk is full: the Rerun stream's file was deleted to make room for the log; free some space";
+            self.model.say(NoticeLevel::Alarm, text);
+        }
+        if let Err(error) = written {
             self.fail(error);
         }
     }
@@ -102,13 +115,13 @@ impl Live {
         if self.engine.session().phase == TrialPhase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
         }
-        self.check_log();
+        self.check_log(false);
     }
 
-    /// Checks that the log file is in place and undamaged.
-    pub(super) fn check_log(&mut self) {
+    /// Checks that the log file is in place and undamaged: a part of it, or the whole file.
+    pub(super) fn check_log(&mut self, whole: bool) {
         if self.failed.is_none()
-            && let Err(error) = self.log.check()
+            && let Err(error) = self.log.check(whole)
         {
             self.fail(error);
         }

@@ -73,6 +73,11 @@ impl StreamedSession {
         self.stream.tell(self.scene.until(now - BEHIND));
     }
 
+    /// Gives up the stream's file, to make room on a full disk; returns false if there is none.
+    pub fn give_up_file(&mut self) -> bool {
+        self.stream.give_up_file()
+    }
+
     /// State of the stream to Rerun, for the console.
     pub fn status(&self) -> RerunStreamStatus {
         let fares = self.stream.fares();

@@ -37,6 +37,11 @@ impl StreamedSession {
     }
 
     /// Never called, since this build has no stream to Rerun.
+    pub fn give_up_file(&mut self) -> bool {
+        match *self {}
+    }
+
+    /// Never called, since this build has no stream to Rerun.
     pub fn status(&self) -> RerunStreamStatus {
         match *self {}
     }

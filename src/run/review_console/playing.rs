@@ -22,7 +22,8 @@ impl Review {
             ReplayAction::PlayPause => {
                 let at_end = self.film.position == self.film.length().1 && !self.grows;
                 if at_end {
-                    self.stand_at(self.film.trial_start());
+                    let start = self.film.trial_start();
+                    self.stand_at(start);
                 }
                 self.playback(|playback| playback.playing = !playback.playing);
             }
@@ -73,7 +74,8 @@ impl Review {
     /// Goes to a session time, and plays on if it played.
     fn seek(&mut self, time: SessionTime) {
         self.now = time.min(self.film.length().0);
-        self.wind(self.film.until(self.now));
+        let position = self.film.until(self.now);
+        self.wind(position);
     }
 
     fn wind(&mut self, position: usize) {

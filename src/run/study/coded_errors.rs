@@ -17,7 +17,7 @@ use crate::session::settings::ParticipantKind;
 pub struct CodedErrors {
     /// Codes of two raters: of those whom the user named or who settled a consensus, else of the two who coded most
     /// errors. `None` with fewer than two raters, or if it is ambiguous which two.
-    pub raters: Option<[RaterCodes; 2]>,
+    pub raters: Option<RaterPair>,
     /// Consensus codes of the two raters, if the codes hold and cover every error.
     pub consensus: Option<RaterCodes>,
     /// The two raters who settled the consensus.
@@ -35,13 +35,13 @@ impl CodedErrors {
     pub fn read(log: &LogReader, follower: &SessionFollower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
         let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
         let all = rater_codes::read_all(log.folder(), &codable)?;
-        let own_codes = || -> FileResult<Option<[RaterCodes; 2]>> {
+        let own_codes = || -> FileResult<Option<RaterPair>> {
             let choice = named.map_or_else(
                 || RaterChoice::most_complete(&all),
                 |raters| RaterChoice::Pair(RaterPair::named(&all, raters)),
             );
             match choice {
-                RaterChoice::Pair(pair) => Ok(Some(pair.codes)),
+                RaterChoice::Pair(pair) => Ok(Some(pair)),
                 RaterChoice::Tied { raters, coded } if is_needed(follower, &codable, coded) => Err(tied(log, &raters)),
                 RaterChoice::TooFew | RaterChoice::Tied { .. } => Ok(None),
             }
@@ -51,7 +51,12 @@ impl CodedErrors {
         let Some(consensus) = consensus.filter(|consensus| is_asked(&consensus.raters)) else {
             return Ok(CodedErrors { raters: own_codes()?, ..CodedErrors::default() });
         };
-        let own = RaterPair::named(&all, &consensus.raters).codes;
+        let pair = RaterPair::named(&all, &consensus.raters);
+        let own = &pair.codes;
+        if let Some(rater) = consensus.without_codes(own.each_ref()) {
+            let stale = format!("there are no codes of {rater}");
+            return Ok(CodedErrors { raters: own_codes()?, stale: Some(stale), ..CodedErrors::default() });
+        }
         if let Some(changed) = consensus.changed(own.each_ref()).first() {
             let error = codable.errors.partition_point(|&press| press < changed.press) + 1;
             let [one, other] = &consensus.raters;
@@ -64,7 +69,7 @@ impl CodedErrors {
         let shared = consensus.current(own.each_ref());
         match codable.errors.iter().all(|press| shared.0.contains_key(press)) {
             true => Ok(CodedErrors {
-                raters: Some(own),
+                raters: Some(pair),
                 consensus: Some(shared),
                 settled_by: Some(consensus.raters),
                 stale: None,
@@ -113,7 +118,7 @@ impl CodedErrors {
     fn complete_raters(&self, judged: &[JudgedPress]) -> Option<&[RaterCodes; 2]> {
         let coded =
             |codes: &RaterCodes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
-        self.raters.as_ref().filter(|raters| raters.iter().all(coded))
+        self.raters.as_ref().map(|pair| &pair.codes).filter(|codes| codes.iter().all(coded))
     }
 }
 

@@ -16,30 +16,30 @@ mod tell;
 mod tutorials;
 mod twin;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
+use super::gathered::GatheredRecordings;
 use super::kept_cost::KeptCost;
-use super::replay::{SameKitchenCheck, log_place};
+use super::replay::SameKitchenCheck;
 use super::{consents, parallel};
 use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
 use crate::edge::file_error::FileError;
 use crate::edge::frozen_file::read_frozen;
-use crate::edge::log::LogReader;
-use crate::edge::recordings;
+use crate::edge::log::{LogReader, log_digest};
 use crate::kitchen::Kitchen;
-use crate::session::SessionSpec;
 use crate::study::column::CsvTable;
 use crate::study::detail_totals::DetailTotals;
 use crate::study::dictionary::{DataDictionaryRow, dictionary};
 use crate::study::facts::RecordingFacts;
-use crate::study::figures::StudySummary;
+use crate::study::figures::{CorrectedRecording, StudySummary};
 use crate::study::frozen_plan::FrozenPlan;
 use crate::study::missing_trials::missing_trials;
-use crate::study::preregistration::{PlaceInPlan, PreregistrationCheck, RecordedPlan};
+use crate::study::planned_trial::RecordingCopy;
+use crate::study::preregistration::{PreregistrationCheck, RecordedPlan};
 use crate::study::recorded_consent::RecordedConsent;
 use crate::study::report;
 use crate::study::study_part::AnalysedRecording;
@@ -88,6 +88,7 @@ pub struct AnalysisRequest {
 #[derive(Clone, Debug)]
 pub struct NamedRecordings {
     found: Vec<(PathBuf, String)>,
+    copies: Vec<RecordingCopy>,
 }
 
 impl NamedRecordings {
@@ -95,19 +96,10 @@ impl NamedRecordings {
     /// recordings are spread over folders.
     ///
     /// # Errors
-    /// A path is neither a recording nor a folder with recordings.
+    /// The errors of [`GatheredRecordings::find`].
     pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
-        let mut found: Vec<(PathBuf, String)> = Vec::new();
-        let mut known = BTreeSet::new();
-        for path in paths {
-            for recording in recordings::of_folder(path)? {
-                // Different paths can lead to one recording, which must not be counted twice.
-                if known.insert(log_place(&recording)) {
-                    let name = name(&recording);
-                    found.push((recording, name));
-                }
-            }
-        }
+        let GatheredRecordings { paths, copies } = GatheredRecordings::find(paths)?;
+        let mut found: Vec<(PathBuf, String)> = paths.into_iter().map(|path| (path.clone(), name(&path))).collect();
         // Recordings from several folders with the same name are identified by their full paths.
         let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
         for (path, name) in &mut found {
@@ -116,7 +108,7 @@ impl NamedRecordings {
             }
         }
         found.sort_by(|(one, a), (other, b)| (a, one).cmp(&(b, other)));
-        Ok(NamedRecordings { found })
+        Ok(NamedRecordings { found, copies })
     }
 
     /// Number of recordings that were found.
@@ -151,7 +143,7 @@ pub fn study(
         Ok(keep(&export, analysis.extent, index, &analysed, &rows)?)
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
-    conclude(numbered.len(), &export, analysis.extent, frozen)
+    conclude(numbered.len(), &export, analysis.extent, frozen, recordings.copies.clone())
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -168,25 +160,15 @@ fn analyse(
     kept: &mut KeptCost,
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
     let log = LogReader::open(path)?;
-    let plan = recorded_plan(&log.header.session);
+    let (plan, correction) = (RecordedPlan::from_header(&log.header), log.header.correction.clone());
+    let digest = log_digest(log.path_of_last_part())?;
     let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
     let (mut trial, mut rows) = (None, Default::default());
     if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref(), kept)? {
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }
-    Ok((AnalysedRecording { recording: name.clone(), plan, consent, tutorial, trial }, rows))
-}
-
-/// The study plan to which a recording with these settings belongs.
-fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
-    let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
-    let place = spec.step.as_ref().map(|step| PlaceInPlan {
-        participant: step.participant,
-        period: step.period,
-        periods: step.periods,
-    });
-    RecordedPlan { participant: spec.participant.code.clone(), plan, place }
+    Ok((AnalysedRecording { recording: name.clone(), digest, plan, correction, consent, tutorial, trial }, rows))
 }
 
 /// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
@@ -212,6 +194,7 @@ struct CollectedRecordings {
     /// By the name of each trial's recording, the number under which the recording is kept.
     kept: BTreeMap<String, usize>,
     plans: Vec<RecordedPlan>,
+    corrections: Vec<CorrectedRecording>,
     /// Consents, each with its recording's name.
     consents: Vec<(String, RecordedConsent)>,
     tutorials: Vec<TutorialQuestionRow>,
@@ -230,6 +213,9 @@ impl CollectedRecordings {
     /// Adds the recording that is kept under this number.
     fn add(&mut self, index: usize, recording: AnalysedRecording) {
         self.plans.push(recording.plan);
+        let name = recording.recording.clone();
+        self.corrections
+            .extend(recording.correction.map(|correction| CorrectedRecording { recording: name, correction }));
         self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
         self.tutorials.extend(recording.tutorial);
         if let Some((trial, _, facts)) = recording.trial {
@@ -241,25 +227,31 @@ impl CollectedRecordings {
 }
 
 /// Computes the summary, the tables and the report from all recordings of a study, which are kept under the numbers
-/// below `number`.
+/// below `number`, and from which `copies` were left out.
 fn conclude(
     number: usize,
     export: &AnalysisFolder,
     extent: AnalysisScope,
     frozen: Option<(String, FrozenPlan)>,
+    copies: Vec<RecordingCopy>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings { mut trials, facts, kept, plans, mut consents, mut tutorials } =
+    let CollectedRecordings { mut trials, facts, kept, plans, mut corrections, mut consents, mut tutorials } =
         CollectedRecordings::read(export, number)?;
     arrange(&mut trials);
     let practice = (plans.len() - trials.len()) as u64;
     consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
     let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
+    corrections.sort_by(|a, b| a.recording.cmp(&b.recording));
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
     let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
     let figures = StudySummary::from_trials(&trials, details, &facts, practice).with_tutorials(&tutorials);
-    let figures = figures.with_preregistration(preregistration).with_missing_trials(missing_trials(&plans));
+    let figures = figures
+        .with_preregistration(preregistration)
+        .with_missing_trials(missing_trials(&plans))
+        .with_copies(copies)
+        .with_corrections(corrections);
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     export.remove_kept()?;

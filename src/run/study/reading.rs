@@ -190,7 +190,7 @@ pub fn read(
     };
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters)) {
-        trial.shared_beliefs = coded.raters.as_ref().map(RaterFalseBeliefAgreement::count);
+        trial.shared_beliefs = coded.raters.as_ref().map(|pair| RaterFalseBeliefAgreement::count(&pair.codes));
         trial.raters = coded.raters;
     }
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
@@ -311,14 +311,6 @@ fn beliefs(
 fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: ExclusionStatus) -> TrialStatistics {
     let (session, spec) = (&follower.session, &header.session);
     let step = spec.step.as_ref();
-    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
-    let left_out = match standing {
-        ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
-        ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
-        _ if !is_over => Some("cut before the trial's end".to_string()),
-        _ if session.presses == [0, 0] => Some("no press in it".to_string()),
-        _ => None,
-    };
     let between = |times: Vec<SessionTime>| -> Vec<f64> {
         times.windows(2).map(|pair| since(session, pair[0], pair[1])).collect()
     };
@@ -334,11 +326,11 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         is_planned: step.is_some(),
         condition: spec.trial.condition,
         study_arm: session.study_arm(),
-        planned_arm: step.and_then(|step| step.arm),
+        planned_arm: session.planned_arm(),
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
         acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),
-        left_out,
+        left_out: standing.left_out(session),
         ended: None,
         arm: spec.robot.arm,
         robot: RobotEventSummary::default(),
@@ -346,6 +338,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         robot_presses: u64::from(session.presses[Agent::Robot.index()]),
         errors: follower.errors() as u64,
         races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
+        unproven: follower.unproven() as u64,
         beliefs: None,
         orders: session.served.len() as u64,
         order_s: median(order_times(session)),

@@ -77,7 +77,7 @@ impl<'a> TrialPressAnalyses<'a> {
             sequence: sequence.map(|number| number + 1),
             by_estimate: estimated.map(|(_, cause)| *cause),
             codes: match &self.coded.raters {
-                Some(raters) => raters.each_ref().map(|codes| codes.0.get(&seq)),
+                Some(pair) => pair.codes.each_ref().map(|codes| codes.0.get(&seq)),
                 None => [None, None],
             },
             shared: self.coded.consensus.as_ref().and_then(|codes| codes.0.get(&seq)),
@@ -116,7 +116,7 @@ impl RowCollector {
             Event::ParticipantBelieves(witness) => self.witness = Some(witness.clone()),
             Event::Gaze(sample) if was_running && session.gaze.fault.is_none() => {
                 let sample = session.corrected(*sample);
-                let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
+                let taken = sample.taken(stamped.time);
                 let point = [sample.x, sample.y];
                 let inside = sample.confidence >= MIN_CONFIDENCE;
                 let nearest =

@@ -5,14 +5,12 @@
 //! --shard`. So a job that simulated shard 3 of 8 also analyses shard 3 of 8, whether the job has a folder of its own
 //! or shares one with other jobs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::reading::AnalysisScope;
-use super::{
-    AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording, recorded_plan,
-};
+use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
 use crate::edge::export::AnalysisFolder;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
@@ -23,7 +21,11 @@ use crate::run::parallel::{self, WorkerPool};
 use crate::run::replay::SameKitchenCheck;
 use crate::run::simulate::SimulationShard;
 use crate::study::figures::StudySummary;
-use crate::study::study_part::{PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
+use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
+use crate::study::preregistration::RecordedPlan;
+use crate::study::study_part::{
+    AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index,
+};
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;
@@ -39,7 +41,7 @@ impl RecordingPlace {
     fn read(recording: &Path, shard: SimulationShard) -> FileResult<RecordingPlace> {
         let header = LogReader::open(recording)?.header;
         let is_own = trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1;
-        Ok(RecordingPlace { is_own, plan: recorded_plan(&header.session).plan })
+        Ok(RecordingPlace { is_own, plan: RecordedPlan::from_header(&header).plan })
     }
 }
 
@@ -75,6 +77,7 @@ pub fn analyse_shard(
         shards: shard.of,
         recordings: own.len() as u64,
         left_out,
+        copies: recordings.copies.into_iter().collect(),
         analysis: PartAnalysisOptions { concepts, events, raters: analysis.raters.clone() },
         plans,
     };
@@ -123,17 +126,17 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
     let extent = AnalysisScope { concepts, events };
     let export = AnalysisFolder::create(&analysis.out)?;
-    let mut names = BTreeSet::new();
+    let mut joined = JoinedRecordings::default();
     for part in &mut parts {
+        joined.copies.extend(part.header.copies.iter().cloned());
         while let Some((recording, rows)) = part.next_recording()? {
-            let index = names.len();
-            if !names.insert(recording.recording.clone()) {
-                let found = format!("the recording {}, which is in another part, too", recording.recording);
-                return Err(FileError::from_finding(part.path(), found, "each recording once".to_string()).into());
+            let index = joined.number;
+            if joined.admit(part.path(), &recording, &export)? {
+                keep(&export, extent, index, &recording, &rows)?;
             }
-            keep(&export, extent, index, &recording, &rows)?;
         }
     }
+    let JoinedRecordings { number, names, copies, .. } = joined;
     let lost =
         parts.iter().find_map(|part| Some((part, part.header.left_out.iter().find(|name| !names.contains(*name))?)));
     if let Some((part, name)) = lost {
@@ -142,8 +145,55 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
                       made before a recording was deleted are made anew";
         return Err(FileError::from_finding(part.path(), found, remedy.to_string()).into());
     }
-    if names.is_empty() {
+    if number == 0 {
         return Err(no_recording(analysis));
     }
-    conclude(names.len(), &export, extent, frozen)
+    conclude(number, &export, extent, frozen, copies.into_iter().collect())
+}
+
+/// The recordings of a study's parts. Parts of different folders can have copies, or the same trial.
+#[derive(Debug, Default)]
+struct JoinedRecordings {
+    /// Number of recordings that are joined.
+    number: usize,
+    names: BTreeSet<String>,
+    /// By the digest of a log: the number under which the first recording with this log is kept, and its place.
+    logs: BTreeMap<String, (usize, String)>,
+    /// By trial: the place of the recording that counts for it.
+    trials: BTreeMap<PlannedTrialKey, String>,
+    copies: BTreeSet<RecordingCopy>,
+}
+
+impl JoinedRecordings {
+    /// Whether a recording of the part at this path is joined; not if it is a copy of an earlier one.
+    fn admit(
+        &mut self,
+        part: &Path,
+        recording: &AnalysedRecording,
+        export: &AnalysisFolder,
+    ) -> Result<bool, StudyError> {
+        let wrong = |(found, remedy): (String, String)| Err(FileError::from_finding(part, found, remedy).into());
+        let place = format!("{} in {}", recording.recording, part.display());
+        if let Some((first, first_place)) = self.logs.get(&recording.digest) {
+            if !recording.is_copy_of(&export.kept_analysed(*first)?) {
+                return wrong(differing_copy(first_place));
+            }
+            self.names.insert(recording.recording.clone());
+            self.copies.insert(RecordingCopy { recording: place, copy_of: first_place.clone() });
+            return Ok(false);
+        }
+        if let Some(trial) = recording.counted_trial() {
+            if let Some(first) = self.trials.get(&trial) {
+                return wrong(trial.counted_twice(first));
+            }
+            self.trials.insert(trial, place.clone());
+        }
+        if !self.names.insert(recording.recording.clone()) {
+            let found = format!("the recording {}, which is in another part, too", recording.recording);
+            return wrong((found, "each recording once".to_string()));
+        }
+        self.logs.insert(recording.digest.clone(), (self.number, place));
+        self.number += 1;
+        Ok(true)
+    }
 }

@@ -6,10 +6,11 @@ use crate::measures::belief_basis::BeliefSource;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::TrialEndReason;
 use crate::study::arm_comparison::StudyArmComparison;
-use crate::study::effect::AssistanceEffect;
-use crate::study::figures::StudySummary;
+use crate::study::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
+use crate::study::figures::{StudySummary, pairs_in_words};
 use crate::study::live_arms::SignalSenderResults;
 use crate::study::missing_trials::in_words;
+use crate::study::planned_trial::copies_in_words;
 use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 
 /// Summary of a study as lines of text.
@@ -30,8 +31,18 @@ pub fn describe(figures: &StudySummary) -> String {
         percent(totals.error_rate),
         percent(totals.error_rate_human),
     );
+    if totals.unproven > 0 {
+        text += &format!(
+            "{} judged by a cost to go that is not proven to be the least\n",
+            count(totals.unproven, "press of the human is", "presses of the human are")
+        );
+    }
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &in_words(&figures.missing_trials).map_or(String::new(), |missing| format!("{missing}\n"));
+    for one in &figures.corrections {
+        text += &format!("{}\n", one.in_words());
+    }
+    text += &copies_in_words(&figures.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
             "belief related errors: {related} ({}), in {} of {} errors each ({} if a sequence may mix aspects), \
@@ -51,7 +62,8 @@ pub fn describe(figures: &StudySummary) -> String {
     };
     if let Some(found) = &figures.raters {
         text += &format!(
-            "two raters: same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
+            "two raters ({}): same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
+            pairs_in_words(&figures.rater_pairs),
             found.same_cause,
             found.errors,
             number(found.kappa_cause),
@@ -59,6 +71,9 @@ pub fn describe(figures: &StudySummary) -> String {
             found.beliefs,
             number(found.kappa_aspect)
         );
+    }
+    for one in &figures.identical_codes {
+        text += &format!("{}\n", one.in_words());
     }
     if let (Some(shared), Some(episodes)) = (&figures.shared_beliefs, totals.false_belief_episodes) {
         text += &format!(
@@ -101,6 +116,14 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     text += &figures.effects.first().map_or(String::new(), of_effect);
     text += &figures.arms.as_ref().map_or(String::new(), describe_arms);
+    for one in &figures.deviations {
+        text += &format!("counted in the planned condition: {}\n", one.describe());
+    }
+    if let Some(carried_out) = &figures.as_carried_out {
+        text += "by the conditions as carried out:\n";
+        text += &carried_out.effects.first().map_or(String::new(), of_effect);
+        text += &carried_out.arms.as_ref().map_or(String::new(), describe_arms);
+    }
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
@@ -202,10 +225,23 @@ fn of_effect(effect: &AssistanceEffect) -> String {
             100.0 * found.high
         )
     });
+    let [second, first] = effect.groups;
     format!(
-        "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n",
-        test.df[0], test.df[1], test.f, test.p, pearson.r
+        "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n  \
+         {} participants: {second} assisted in the second trial, {first} in the first{}\n",
+        test.df[0],
+        test.df[1],
+        test.f,
+        test.p,
+        pearson.r,
+        second + first,
+        left_out_of(&effect.left_out),
     )
+}
+
+/// Participants whom a test leaves out, as the end of a line.
+fn left_out_of(left_out: &[LeftOutParticipant]) -> String {
+    left_out_in_words(left_out).map_or(String::new(), |who| format!("; left out: {who}"))
 }
 
 /// A p value as text: "p = 0.123", or "p < 0.001".
@@ -216,10 +252,11 @@ fn p_value(p: f64) -> String {
 /// Contrasts of the primary outcome between study arms, as text.
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
-        "{} per press of the human, by condition (linear mixed model of {} trials of {}):\n",
+        "{} per press of the human, by condition (linear mixed model of {} trials of {}{}):\n",
         found.outcome.title(),
         found.trials,
-        count(found.participants as u64, "participant", "participants")
+        count(found.participants as u64, "participant", "participants"),
+        left_out_of(&found.left_out),
     );
     for one in &found.contrasts {
         let [low, high] = one.interval;

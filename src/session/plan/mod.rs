@@ -27,7 +27,9 @@ pub use groups::{StartingGroup, orders};
 pub use item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, RatingScale, SLIDER_END};
 pub use plan_spec::{FamiliarisationSpec, Participants, PlanSpec, QuestionnaireSpec};
 pub use planned_study::{PlannedTrial, Study, WantedRecording};
-pub use progress::{NextRecording, ParticipantProgress, PlanRecording, PlannedTrialProgress, RecordingOutcome};
+pub use progress::{
+    NextRecording, ParticipantProgress, PlanRecording, PlannedTrialProgress, RecordingOutcome, TrialAttempt,
+};
 pub use questionnaire::{Questionnaire, QuestionnaireItem, ScoreRule};
 pub use step::{PhaseSpec, PlanPosition, PracticeCriterion};
 pub use study_aims::{PrimaryOutcome, StudyAims};

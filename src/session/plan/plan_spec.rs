@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::groups::orders;
 use super::study_aims::StudyAims;
 use crate::session::console_settings::WizardVisibility;
+use crate::session::person_code;
 use crate::session::setting_checks::{SettingError, is_code};
 use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::AnswerDevice;
@@ -189,14 +190,20 @@ impl PlanSpec {
                 wrong("no participants".to_string(), "how many there are, or a list of their codes")
             }
             Participants::Codes(codes) => {
-                if let Some(code) = codes.iter().find(|code| !is_code(code)) {
-                    let remedy = "codes of 1 to 32 letters, digits, - and _, such as \"P07\"; never names";
-                    return wrong(format!("the code \"{code}\""), remedy);
+                for (index, code) in codes.iter().enumerate() {
+                    let before = &codes[..index];
+                    if let Some(fault) = person_code::fault(code) {
+                        return wrong(format!("the code \"{code}\": {fault}"), person_code::REMEDY);
+                    }
+                    if before.contains(code) {
+                        return wrong(format!("the code \"{code}\" twice"), "each code once");
+                    }
+                    if let Some(other) = person_code::differing_in_case(code, before.iter().map(String::as_str)) {
+                        let found = format!("the codes \"{other}\" and \"{code}\"");
+                        return wrong(found, "codes that differ in more than capital letters");
+                    }
                 }
-                match (1..codes.len()).find(|&index| codes[..index].contains(&codes[index])) {
-                    Some(index) => wrong(format!("the code \"{}\" twice", codes[index]), "each code once"),
-                    None => Ok(()),
-                }
+                Ok(())
             }
         }
     }

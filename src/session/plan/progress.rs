@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::planned_study::{PlannedTrial, Study, WantedRecording};
 use super::step::PlanPosition;
+use crate::session::study_arm::StudyArm;
 
 /// State of a recording of a plan: complete, open, excluded or void.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -14,6 +15,8 @@ pub enum RecordingOutcome {
     Complete,
     /// The recording is unfinished: cut off or left early, so that it can be continued.
     Open,
+    /// A program is making the recording at present.
+    Running,
     /// The recording is finished and excluded from the analysis, but not repeated.
     Excluded {
         /// Why the recording is excluded.
@@ -33,7 +36,9 @@ pub struct PlanRecording {
     pub recording: String,
     /// The participant's code.
     pub code: String,
-    /// Position of the recording in the study plan.
+    /// The participant's code in the log, if it was corrected afterwards.
+    pub recorded_as: Option<String>,
+    /// Position of the recording in the study plan; of a corrected recording, that of the other participant.
     pub step: PlanPosition,
     /// Whether the participant consented to being recorded.
     pub consent: bool,
@@ -65,6 +70,13 @@ pub enum NextRecording {
         /// The number of the new attempt if the trial is repeated, counted from 1.
         attempt: u32,
     },
+    /// A program is making this recording at present.
+    Running {
+        /// Name of the folder of the recording that is being made.
+        recording: String,
+        /// The index of the planned trial in the participant's series.
+        slot: usize,
+    },
     /// No recording is needed: the participant has completed the series.
     Finished,
 }
@@ -73,7 +85,9 @@ impl NextRecording {
     /// Index of the planned trial that comes next; `None` when all trials are done.
     pub fn slot(&self) -> Option<usize> {
         match self {
-            NextRecording::Begin { slot, .. } | NextRecording::Choose { slot, .. } => Some(*slot),
+            NextRecording::Begin { slot, .. }
+            | NextRecording::Choose { slot, .. }
+            | NextRecording::Running { slot, .. } => Some(*slot),
             NextRecording::Finished => None,
         }
     }
@@ -104,6 +118,12 @@ pub struct TrialAttempt {
     pub outcome: RecordingOutcome,
     /// Whether the attempt was recorded under another version of the plan.
     pub other_version: bool,
+    /// The participant's code in the attempt's log, if it was corrected afterwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded_as: Option<String>,
+    /// The study arm in which the attempt was carried out, if it is not that of the plan for this participant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_arm: Option<StudyArm>,
 }
 
 /// Progress of one participant through the study plan.
@@ -140,7 +160,8 @@ impl ParticipantProgress {
         let code = study.plan.code(participant);
         let group = study.group(participant).name;
         let own: Vec<&PlanRecording> = made.iter().filter(|made| made.code == code).collect();
-        if let Some(other) = own.iter().find(|made| made.step.group != group) {
+        // A recording whose code was corrected has the group of the participant for whom it was begun.
+        if let Some(other) = own.iter().find(|made| made.recorded_as.is_none() && made.step.group != group) {
             let (recording, recorded) = (&other.recording, &other.step.group);
             return Err(format!("{code} was in group {recorded} in {recording}, and is in {group} now"));
         }
@@ -183,6 +204,8 @@ impl PlannedTrialProgress {
             presses: made.presses,
             outcome: made.outcome.clone(),
             other_version: made.step.digest != study.digest,
+            recorded_as: made.recorded_as.clone(),
+            other_arm: made.step.arm.filter(|arm| made.recorded_as.is_some() && *arm != slot.condition),
         };
         // A later attempt at a planned trial replaces earlier ones, since the experimenter asked for the repetition.
         let is_done = here
@@ -203,6 +226,9 @@ impl PlannedTrialProgress {
             _ if self.is_done => None,
             Some(last) if last.outcome == RecordingOutcome::Open => {
                 Some(NextRecording::Choose { recording: last.recording.clone(), slot, attempt })
+            }
+            Some(last) if last.outcome == RecordingOutcome::Running => {
+                Some(NextRecording::Running { recording: last.recording.clone(), slot })
             }
             _ => Some(NextRecording::Begin { slot, attempt }),
         }

@@ -2,25 +2,43 @@
 
 use maud::{Markup, Render, html};
 
-use super::elements::{Captions, PageColumn, nothing, number, p_value, scroll, section, with_interval};
+use super::assistance;
+use super::elements::{Captions, PageColumn, number, p_value, scroll, section, with_interval};
+use crate::study::arm_analysis::{ArmAnalysis, ArmDeviation};
 use crate::study::arm_chart;
 use crate::study::arm_comparison::{NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts};
+use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::group_orders::GroupOrder;
-use crate::study::trial_statistics::TrialStatistics;
 
-/// Section with the arms' rates, their contrasts, and the non-inferiority of the assistant to the wizard.
-pub(super) fn arms(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
-    let misfits: Vec<(&TrialStatistics, String)> =
-        trials.iter().filter(|trial| trial.counts()).filter_map(|trial| Some((trial, trial.misfit()?))).collect();
+/// Section with the arms' rates, their contrasts, the non-inferiority of the assistant to the wizard, and the deviations
+/// from the planned arms.
+pub(super) fn arms(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
-        @for (trial, misfit) in &misfits {
-            p class="warning" { "Condition and what the wizard saw do not fit: " (trial.recording) ": " (misfit) "." } "\n"
-        }
         @if let Some(found) = &figures.arms { (comparison(captions, found)) }
+        @if let Some(found) = &figures.as_carried_out { (carried_out(captions, &figures.deviations, found)) }
     };
-    let has_content = !misfits.is_empty() || figures.arms.is_some();
-    section("How do the conditions compare?", if has_content { content } else { nothing() })
+    section("How do the conditions compare?", content)
+}
+
+/// The deviations from the planned arms, and the analysis by the arms as carried out.
+fn carried_out(captions: &mut Captions, deviations: &[ArmDeviation], found: &ArmAnalysis) -> Markup {
+    html! {
+        h3 { "Deviations from the plan" } "\n"
+        p class="warning" {
+            "Each trial counts in the condition to which the plan assigned it. Carried out otherwise: "
+            (deviations.iter().map(ArmDeviation::describe).collect::<Vec<_>>().join("; "))
+            ". The same analysis by the conditions as carried out follows."
+        }
+        "\n"
+        (scroll(assistance::conditions(captions, &found.conditions)))
+        @if found.effects.iter().any(AssistanceEffect::has_pairs) { (assistance::tests(captions, &found.effects)) }
+        @if let Some(arms) = &found.arms {
+            (scroll(rates(captions, arms)))
+            (scroll(contrasts(captions, arms)))
+            (assistance::left_out("the contrasts", &arms.left_out))
+        }
+    }
 }
 
 fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
@@ -48,6 +66,7 @@ fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
         }
         "\n"
         (scroll(contrasts(captions, found)))
+        (assistance::left_out("the contrasts", &found.left_out))
         @for one in &found.non_inferiority { (in_words(one, outcome)) }
         @if found.arms.len() > 2 && found.with_carry_over.is_empty() {
             p class="note" { "The effect of the condition before (carry-over) cannot be estimated from these trials." } "\n"

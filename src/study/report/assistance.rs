@@ -6,9 +6,10 @@ use super::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
     with_interval,
 };
+use crate::study::arm_analysis::StudyConditionSummary;
 use crate::study::charts;
-use crate::study::effect::AssistanceEffect;
-use crate::study::figures::{StudyConditionSummary, StudySummary};
+use crate::study::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
+use crate::study::figures::StudySummary;
 use crate::study::statistics::FTest;
 use crate::study::trial_statistics::TrialStatistics;
 
@@ -17,20 +18,20 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
         // Charts and tests compare two conditions; a study with more conditions has another section for that.
-        return section("Errors and times", scroll(conditions(captions, figures)));
+        return section("Errors and times", scroll(conditions(captions, &figures.conditions)));
     }
     let pictures = pictures(captions, figures, trials);
     if pictures.0.is_empty() {
         return nothing();
     }
     let content = html! {
-        (scroll(conditions(captions, figures)))
+        (scroll(conditions(captions, &figures.conditions)))
         div class="figures" { (pictures) } "\n"
         (headline.map_or_else(nothing, in_words))
         (experience(figures))
         @if figures.effects.iter().any(AssistanceEffect::has_pairs) {
             h3 { "Tests" } "\n"
-            (scroll(tests(captions, figures)))
+            (tests(captions, &figures.effects))
             @if let Some(effect) = headline { (anova(captions, effect)) }
         } @else {
             p class="note" {
@@ -62,7 +63,8 @@ fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStat
     }
 }
 
-fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
+/// Table of means by condition.
+pub(super) fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Markup {
     let columns: [PageColumn<StudyConditionSummary>; 15] = [
         ("condition", |one| one.condition.title().render()),
         ("trials", |one| one.trials.render()),
@@ -83,7 +85,7 @@ fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
                    errors a trial, seconds from an order's appearance to its serving, additional presses (summed regret of both \
                    agents) and seconds a press are means over trials.";
-    captions.table_of_columns(caption, &columns, figures.conditions.iter())
+    captions.table_of_columns(caption, &columns, found.iter())
 }
 
 /// Sentence on the effect of assistance on the main measure.
@@ -97,7 +99,7 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
     html! {
         p {
-            "Assistance reduces errors by " (number(Some(estimate), 1)) " per 100 presses of the human (Hodges-Lehmann"
+            "In " (test.n) " participants, assistance reduces errors by " (number(Some(estimate), 1)) " per 100 presses of the human (Hodges-Lehmann"
             (interval) "). Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
             (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
         }
@@ -117,17 +119,18 @@ fn experience(figures: &StudySummary) -> Markup {
             "Experience: from the first trial to the second the time between presses falls by " (faster_second) " s (second trial \
             assisted) and " (faster_first) " s (first trial assisted); period F(" (format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]))
             ")\u{a0}=\u{a0}" (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "; assistance "
-            (p_sentence(effect.assistance().map(|test| test.p))) "."
+            (p_sentence(effect.assistance().map(|test| test.p))) "; " (test.n) " participants."
         }
         "\n"
     }
 }
 
-/// Table of statistical tests, with one row per compared measure.
-fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let columns: [PageColumn<AssistanceEffect>; 12] = [
+/// Table of statistical tests, with one row per compared measure, and the participants whom the tests leave out.
+pub(super) fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
+    let columns: [PageColumn<AssistanceEffect>; 13] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
+        ("left out", |effect| effect.left_out.len().render()),
         ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2).render()),
         ("p", |effect| p_value(effect.assistance().map(|test| test.p)).render()),
         ("partial \u{3b7}\u{b2}", |effect| number(effect.assistance().map(|test| test.partial_eta_sq), 2).render()),
@@ -148,8 +151,26 @@ fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     ];
     let caption = "Tests of what assistance takes away. Participants: assisted in the second trial + in the first. Less by: the \
                    Hodges-Lehmann estimate with its interval (at least 95 %). Period: the second trial against the first, whatever \
-                   the condition, which is experience.";
-    captions.table_of_columns(caption, &columns, figures.effects.iter())
+                   the condition, which is experience, at the unweighted mean of both groups (type III). Left out: participants with \
+                   recordings of whom not both trials have the measure.";
+    // Measures that leave out the same participants share a sentence.
+    let mut sentences: Vec<(&[LeftOutParticipant], Vec<&str>)> = Vec::new();
+    for effect in effects {
+        match sentences.iter_mut().find(|(left_out, _)| *left_out == effect.left_out) {
+            Some((_, titles)) => titles.push(effect.measure.title),
+            None => sentences.push((&effect.left_out, vec![effect.measure.title])),
+        }
+    }
+    html! {
+        (scroll(captions.table_of_columns(caption, &columns, effects.iter())))
+        @for (who, titles) in sentences { (left_out(&titles.join(", "), who)) }
+    }
+}
+
+/// Sentence on the participants whom the tests of something leave out; empty if nobody is left out.
+pub(super) fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
+    let Some(who) = left_out_in_words(left_out) else { return nothing() };
+    html! { p class="note" { "Left out of the tests of " (what) ": " (who) "." } "\n" }
 }
 
 /// Table of the mixed analysis of variance, in both codings of the factors.
@@ -175,6 +196,9 @@ fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     let heads = ["", "F", "degrees of freedom", "p", "partial \u{3b7}\u{b2}"];
     html! {
         h3 { "Mixed ANOVA of " (effect.measure.title) } "\n"
-        (captions.table("Mixed ANOVA, in the coding of a crossover and in the paper\u{2019}s.", &heads, &rows))
+        (captions.table(html! {
+            "Mixed ANOVA of " (effect.groups.iter().sum::<usize>()) " participants, in the coding of a crossover and in the paper\u{2019}s; \
+             sums of squares of type III."
+        }, &heads, &rows))
     }
 }

@@ -30,7 +30,7 @@ pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &Recordin
         results::beside_the_paper(captions, figures),
         assistance::assistance(captions, figures, trials),
         awareness::awareness(captions, figures),
-        arm_section::arms(captions, figures, trials),
+        arm_section::arms(captions, figures),
         concept_comparison::concepts(captions, figures),
         results::similarity(captions, figures),
         robot_counts::robot(captions, figures),

@@ -25,6 +25,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         row("presses of both agents", totals.actions.to_string(), "8515"),
         row("presses per trial", number(per_trial, 0), "304"),
         row("errors of the human", totals.errors.to_string(), "587"),
+        row("presses of the human judged by unproven costs to go", totals.unproven.to_string(), UNKNOWN),
         row("errors per press of both", percent(totals.error_rate), "6.9 %"),
         row("errors per press of the human", percent(totals.error_rate_human), "about 11 to 13 %"),
         row("belief related errors", count(totals.belief_related_errors), "481"),
@@ -43,6 +44,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     // A study without the test, such as one with more than two conditions, has no result to compare with the paper's.
     if let Some(test) = figures.anova {
         rows.extend([
+            row("assistance: participants with both trials", test.n.to_string(), "14"),
             row("assistance: p of the mixed ANOVA", p_value(Some(test.p)), "0.014"),
             row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
             row("assistance: p of r", p_value(figures.pearson.map(|found| found.p)), "0.014"),

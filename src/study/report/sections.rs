@@ -9,8 +9,9 @@ use crate::measures::cause_codes::RaterAgreement;
 use crate::session::event::TrialEndReason;
 use crate::study::column::CsvTable;
 use crate::study::definitions::DEFINITIONS;
-use crate::study::figures::StudySummary;
+use crate::study::figures::{StudySummary, pairs_in_words};
 use crate::study::missing_trials::in_words;
+use crate::study::planned_trial::copies_in_words;
 use crate::study::trial_statistics::TrialStatistics;
 
 /// Least number of participants with both trials from which on r and p are shown among the main results.
@@ -58,7 +59,10 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
         }
         @if let Some(missing) = in_words(&figures.missing_trials) { p class="note" { (missing) } "\n" }
+        @for one in &figures.corrections { p class="note" { (one.in_words()) "." } "\n" }
+        @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
         @if let Some(found) = &figures.raters { (raters(found, figures)) }
+        @for one in &figures.identical_codes { p class="warning" { (one.in_words()) "." } "\n" }
         @for one in &figures.stale_consensus {
             p class="warning" { "Stale consensus, not used: " (one.recording) ": " (one.reason) "." } "\n"
         }
@@ -77,7 +81,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
 fn raters(found: &RaterAgreement, figures: &StudySummary) -> Markup {
     html! {
         p {
-            "Two raters coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
+            "Two raters (" (pairs_in_words(&figures.rater_pairs)) ") coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
             " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "). Of " (found.beliefs) " errors that both \
             attribute to a false belief, they agree on its location for " (found.same_aspect) " (kappa "
             (number(found.kappa_aspect, 2)) "). Without a consensus an error counts as belief related if both coded a false belief."
@@ -123,7 +127,7 @@ fn counting(captions: &mut Captions, trials: &[TrialStatistics]) -> Markup {
         ("participant", |trial| trial.participant.render()),
         ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
         ("trial", |trial| count(trial.period.map(u64::from)).render()),
-        ("condition", |trial| trial.study_arm.title().render()),
+        ("condition", |trial| trial.planned_arm.title().render()),
         ("ended by", |trial| trial.ended.map_or(UNKNOWN, TrialEndReason::name).render()),
         ("presses, human", |trial| trial.human_presses.render()),
         ("robot", |trial| trial.robot_presses.render()),

@@ -1,9 +1,9 @@
 //! Columns of the table of trials about the arms of a study.
 
 use super::trial_column::{TrialColumn, plain};
-use crate::session::study_arm::StudyArm;
 
-/// Columns for the arm as carried out, the planned arm, what the wizard could see, and the contents of signals.
+/// Columns for the arm as carried out, the planned arm, what the wizard could see, the contents of signals, and presses
+/// whose judgement is not proven.
 pub(super) fn arms() -> Vec<TrialColumn> {
     vec![
         plain(
@@ -12,9 +12,13 @@ pub(super) fn arms() -> Vec<TrialColumn> {
             "arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
             |t| t.study_arm.name().into(),
         ),
-        plain("planned_arm", "", "arm that the plan gave to the trial; empty without a plan", |t| {
-            t.planned_arm.map(StudyArm::name).into()
-        }),
+        plain(
+            "planned_arm",
+            "",
+            "arm under which the trial counts: that of the plan, without a plan that of the settings; differs from study_arm \
+             where the trial was carried out otherwise",
+            |t| t.planned_arm.name().into(),
+        ),
         plain(
             "wizard_sees",
             "",
@@ -26,6 +30,12 @@ pub(super) fn arms() -> Vec<TrialColumn> {
             "contents",
             "contents of the signals: a proposal of k presses has k, any other signal one",
             |t| t.signal_contents.into(),
+        ),
+        plain(
+            "unproven",
+            "presses",
+            "human presses whose judgement rests on a cost to go that is not proven to be the least",
+            |t| t.unproven.into(),
         ),
     ]
 }

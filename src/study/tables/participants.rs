@@ -25,7 +25,7 @@ impl ParticipantRow<'_> {
     /// The participant's compared pair of trials for a measure; `None` unless two trials of the participant count and
     /// have the measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
-        pairs(self.0, measure).pop()
+        pairs(self.0, measure).pairs.pop()
     }
 }
 

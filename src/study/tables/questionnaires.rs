@@ -1,5 +1,6 @@
 //! Table of answers to questionnaires.
 
+use crate::base::spreadsheet::GUARDED;
 use crate::session::answer_value::AnswerValue;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
@@ -20,8 +21,10 @@ impl CsvRow for AnswerRow<'_> {
     const TABLE: CsvTable = CsvTable::Questionnaires;
 
     fn columns() -> Vec<CsvColumn<Self>> {
-        let given = "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, \
-                     words, or ids of options separated by spaces; empty: skipped";
+        let given = format!(
+            "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, words, \
+             or ids of options separated by spaces; empty: skipped; {GUARDED}"
+        );
         let score = "score of the whole questionnaire at this occasion, the same at all its items; empty: it has none, or an item \
                      was skipped";
         vec![

@@ -1,5 +1,7 @@
 //! Declaration of a column of the table of trials.
 
+use std::borrow::Cow;
+
 use crate::study::column::{CsvCell, CsvColumn, CsvRow};
 use crate::study::effect::StudyMeasure;
 use crate::study::trial_statistics::TrialStatistics;
@@ -15,7 +17,7 @@ pub(super) enum TrialColumn {
 pub(super) fn plain(
     name: &'static str,
     unit: &'static str,
-    meaning: &'static str,
+    meaning: impl Into<Cow<'static, str>>,
     value: fn(&TrialStatistics) -> CsvCell<'_>,
 ) -> TrialColumn {
     TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, value))

@@ -3,6 +3,7 @@
 use super::trial_column::TrialColumn::{self, Compared};
 use super::trial_column::plain;
 use crate::analysis::offer_summary::OfferSummary;
+use crate::base::spreadsheet::GUARDED;
 use crate::measures::cause_kinds::BeliefErrorCounts;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
@@ -87,6 +88,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(false_beliefs())
         .chain(probed())
         .chain(arm_columns::arms())
+        .chain(coded())
 }
 
 fn kind_of_trial() -> Vec<TrialColumn> {
@@ -98,9 +100,11 @@ fn kind_of_trial() -> Vec<TrialColumn> {
         plain("group", "", "as in participants", |t| t.group.as_ref().into()),
         plain("period", "", "1: the participant's first trial, 2: the second", |t| t.period.into()),
         plain("condition", "", "who sends signals: none, wizard or assistant", |t| t.condition.name().into()),
-        plain("assisted", "", "whether the wizard or the assistant sends signals", |t| t.is_assisted().into()),
+        plain("assisted", "", "whether the planned arm has signals, of the wizard or the assistant", |t| {
+            t.is_assisted().into()
+        }),
         plain("counts", "", "whether the trial counts; false: left out of all statistics", |t| t.counts().into()),
-        plain("left_out", "", "reason for leaving the trial out", |t| t.left_out.as_ref().into()),
+        plain("left_out", "", format!("reason for leaving the trial out; {GUARDED}"), |t| t.left_out.as_ref().into()),
         plain(
             "ended",
             "",
@@ -393,6 +397,16 @@ fn false_beliefs() -> Vec<TrialColumn> {
         wizard("wizard_hits", "episodes", "episodes with a signal of the wizard in time", |wizard| wizard.hits),
         wizard("wizard_omissions", "episodes", "episodes without one", |wizard| wizard.omissions),
     ]
+}
+
+/// Columns about raters' codes.
+fn coded() -> Vec<TrialColumn> {
+    vec![plain(
+        "raters",
+        "",
+        "the two raters, as R1+R2, whose codes or consensus determine the causes of errors; empty: nobody's",
+        |t| t.raters.as_ref().map(|pair| pair.name()).into(),
+    )]
 }
 
 /// Columns about answers to freeze probes.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::base::spreadsheet::GUARDED;
 use crate::base::time::SessionTime;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
@@ -138,7 +139,7 @@ impl CsvRow for TutorialQuestionRow {
             Self::column("tutorial", "", "name of the tutorial", |row| (&row.tutorial).into()),
             Self::column("step", "", "id of the step", |row| (&row.step).into()),
             Self::column("question", "", "as the participant read it", |row| (&row.question).into()),
-            Self::column("first_answer", "", "the first choice; empty: not answered", |row| {
+            Self::column("first_answer", "", format!("the first choice; empty: not answered; {GUARDED}"), |row| {
                 row.first_answer.as_ref().into()
             }),
             Self::column("right", "", right, |row| row.right.into()),

@@ -9,8 +9,9 @@ use tomcom::edge::log::{LOG_NAME, RecordingLock, consensus_file};
 use tomcom::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use tomcom::measures::consensus::{RaterConsensus, unsettled};
 use tomcom::measures::rater_choice::RaterChoice;
-use tomcom::run::code_exchange::{export, import};
+use tomcom::run::code_exchange::{self, export};
 use tomcom::run::codes::{CodedRecording, InterRaterSummary, describe};
+use tomcom::run::error::RunError;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
@@ -94,6 +95,11 @@ fn the_two_raters_who_coded_most_errors_are_taken_and_none_by_name() {
     assert_eq!(choice(&[9]), "too few");
     assert_eq!(choice(&[9, 9, 9]), "R1 or R2 or R3 with 9", "nobody is left out by name");
     assert_eq!(choice(&[9, 5, 5]), "R1 or R2 or R3 with 5");
+}
+
+/// Imports a table whose new raters are meant.
+fn import(coded: &mut [CodedRecording], table: &Path) -> Result<u64, RunError> {
+    code_exchange::read(coded, table)?.import(coded)
 }
 
 /// A row of a table that is wrong is named with what would be right, and nothing of the table is taken over.
@@ -199,7 +205,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
             format!("{name},R1+R2,{},other,", agreed.expect("one")),
             "with another cause than the one that both raters gave",
         ),
-        (format!("{name},R1+R3,{},other,", open[0]), "the consensus of R1 and R3"),
+        (format!("{name},R1+R3,{},other,", open[0]), "a consensus of R1 and R3, while R3 has coded nothing"),
         (format!("{name},R1+R1,{},other,", open[0]), "the rater \"R1+R1\""),
     ] {
         fs::write(&table, format!("recording,rater,press,cause,aspect\n{row}\n")).expect("written");
@@ -262,8 +268,12 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
 
     // The same beside the log, which somebody may have written by hand.
     let first = coded[0].codable.errors[0];
-    for (row, found) in [(format!("{first},belief,the_moon"), "the_moon"), ("1,slip,".to_string(), "no error")] {
-        fs::write(recording.join("codes-R3.csv"), format!("press,cause,aspect\n{row}\n")).expect("written");
+    for (row, found) in [
+        (format!("R3,{first},belief,the_moon"), "the_moon"),
+        ("R3,1,slip,".to_string(), "no error"),
+        (format!("007,{first},slip,"), "the rater \"007\": a code begins with a letter"),
+    ] {
+        fs::write(recording.join("codes-R3.csv"), format!("rater,press,cause,aspect\n{row}\n")).expect("written");
         let told = CodedRecording::open(&recording).expect_err(&row).to_string();
         assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
         let extent = AnalysisScope { concepts: false, events: false };
@@ -272,4 +282,100 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
             .map(|error| error.to_string());
         assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
     }
+}
+
+/// A file says inside whose codes it has. What sync programs and spreadsheets make of it is told, and is no rater.
+#[test]
+fn one_rater_does_not_become_two_by_copies_of_a_file() {
+    let out = folder("copied-codes");
+    let made = run(&paper(304), 1, SimulationShard::WHOLE, &out);
+    let recording = PathBuf::from(&made.recordings[0]);
+    let coded = || CodedRecording::open(&recording).expect("a recording");
+    let slips = RaterCodes(coded().codable.errors.iter().map(|press| (*press, ErrorCauseCode::Slip)).collect());
+    assert!(slips.0.len() > 1, "{slips:?}");
+    write(&recording, "R1", &slips).expect("written");
+    let own = recording.join("codes-R1.csv");
+    assert!(fs::read_to_string(&own).expect("codes").starts_with("rater,press,cause,aspect\nR1,"));
+    let told = || {
+        let error = CodedRecording::open(&recording).expect_err("refused");
+        (error.to_string(), error.help().map(|help| help.to_string()).unwrap_or_default())
+    };
+    for copy in ["codes-R1-LAB-PC2.csv", "codes-R1 (1).csv", "Copy of codes-R1.csv", "codes-02.csv", "CODES-R1.CSV"] {
+        let copy = recording.join(copy);
+        fs::copy(&own, &copy).expect("copied");
+        let (found, remedy) = told();
+        assert!(
+            found.contains(&copy.display().to_string()) && found.contains("of whom codes-R1.csv has codes"),
+            "{found}"
+        );
+        assert!(remedy.contains("one file for each rater"), "{remedy}");
+        // Without the original, it is the rater's only file, and must not be lost.
+        fs::rename(&own, out.join("aside.csv")).expect("moved");
+        let (found, remedy) = told();
+        assert!(found.contains("codes of R1, in a file with another name"), "{found}");
+        assert!(remedy.contains("the name codes-R1.csv"), "{remedy}");
+        fs::rename(out.join("aside.csv"), &own).expect("moved");
+        fs::remove_file(copy).expect("removed");
+    }
+    let mixed = recording.join("codes-R2.csv");
+    let press = *slips.0.keys().next().expect("an error");
+    fs::write(&mixed, format!("rater,press,cause,aspect\nR2,{press},slip,\nR3,{press},slip,\n")).expect("written");
+    let (found, remedy) = told();
+    assert!(
+        found.contains("codes-R2.csv:3: found codes of R3, after codes of R2") && remedy.contains("--import"),
+        "{found}"
+    );
+    fs::write(&mixed, "rater,press,cause,aspect\n").expect("written");
+    assert_eq!(coded().codes.len(), 1, "a file without codes is nobody's");
+    fs::write(recording.join("codes-r1.csv"), format!("rater,press,cause,aspect\nr1,{press},slip,\n"))
+        .expect("written");
+    assert!(told().0.contains("codes of r1, beside codes of R1"), "{:?}", told());
+    fs::remove_file(recording.join("codes-r1.csv")).expect("removed");
+    fs::write(recording.join("consensus (1).csv"), "").expect("written");
+    assert!(told().0.contains("what looks like a copy of consensus.csv"), "{:?}", told());
+    fs::remove_file(recording.join("consensus (1).csv")).expect("removed");
+
+    // Two raters who gave the same codes to all errors are told: one may be a copy of the other.
+    let mut other = slips.clone();
+    other.0.insert(press, ErrorCauseCode::Race);
+    write(&recording, "R2", &other).expect("written");
+    let words = "R1 and R2 gave the same codes to all";
+    assert!(!describe(&InterRaterSummary::from_recordings(&[coded()])).contains(words));
+    write(&recording, "R2", &slips).expect("written");
+    let figures = InterRaterSummary::from_recordings(&[coded()]);
+    assert!(describe(&figures).contains(words), "{}", describe(&figures));
+    assert_eq!(figures.recordings[0].identical[0].errors, slips.0.len() as u64);
+}
+
+#[test]
+fn new_raters_in_a_table_are_known_before_it_is_imported() {
+    let out = folder("new-raters");
+    let made = run(&paper(304), 1, SimulationShard::WHOLE, &out);
+    let recording = PathBuf::from(&made.recordings[0]);
+    let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];
+    let (name, press) = (coded[0].name(), coded[0].codable.errors[0]);
+    let table = out.join("codes.csv");
+    let put = |raters: &[&str]| {
+        let rows: Vec<String> = raters.iter().map(|rater| format!("{name},{rater},{press},slip,\n")).collect();
+        fs::write(&table, format!("recording,rater,press,cause,aspect\n{}", rows.concat())).expect("written");
+    };
+    // Neither has coded: there is nothing to settle.
+    put(&["R1+R2"]);
+    let told = import(&mut coded, &table).expect_err("refused").to_string();
+    assert!(told.contains("a consensus of R1 and R2, while R1 has coded nothing"), "{told}");
+    put(&["R1", "R1+R2"]);
+    let told = import(&mut coded, &table).expect_err("refused").to_string();
+    assert!(told.contains("while R2 has coded nothing"), "{told}");
+    assert_eq!(read_all(&recording, &coded[0].codable).expect("readable").len(), 0, "nothing was imported");
+    put(&["R1"]);
+    assert_eq!(import(&mut coded, &table).expect("imported"), 1);
+    coded = vec![CodedRecording::open(&recording).expect("a recording")];
+    put(&["R1", "R2", "R1+R2"]);
+    let codes = code_exchange::read(&coded, &table).expect("readable");
+    assert_eq!((codes.new_raters.join(" "), codes.known_raters.join(" ")), ("R2".to_string(), "R1".to_string()));
+    codes.import(&mut coded).expect("imported");
+    put(&["r2"]);
+    let told = code_exchange::read(&[CodedRecording::open(&recording).expect("a recording")], &table);
+    let told = told.expect_err("refused").to_string();
+    assert!(told.contains("codes.csv:2:") && told.contains("the rater \"r2\", beside the rater R2"), "{told}");
 }

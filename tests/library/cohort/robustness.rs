@@ -10,6 +10,7 @@ use tomcom::measures::flags::ThresholdSource;
 use tomcom::mind::model::AdaptationSettings;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
+use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::robustness::{RobustnessRequest, measure};
 use tomcom::run::simulate::SimulationShard;
 use tomcom::session::battery::CohortSpec;
@@ -114,8 +115,9 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
         let related = figures.beliefs.belief_related_errors.expect("known of simulated people");
         (related, figures.recordings.iter().map(PathBuf::from).collect())
     };
+    let gathered = |paths: &[PathBuf]| GatheredRecordings::find(paths).expect("recordings");
     let [(related, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::default()));
-    let check = check_beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
+    let check = check_beliefs::check(&gathered(&judged), &gathered(&chosen_on), || ()).expect("recordings");
     assert_eq!(row.usual.detection, check.detection);
     assert_eq!(row.usual.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
     assert_eq!(row.usual.log_likelihood, check.log_likelihood);
@@ -123,7 +125,7 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
     assert!((counted - related as f64).abs() < 1e-6, "{counted} and {related}");
     // The second filter on the same events gives what the recordings of an adapting session have.
     let [(_, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::ALL));
-    let check = check_beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
+    let check = check_beliefs::check(&gathered(&judged), &gathered(&chosen_on), || ()).expect("recordings");
     let found = row.adapting.as_ref().expect("measured");
     assert_eq!(found.detection, check.detection);
     assert_eq!(found.log_likelihood, check.log_likelihood);

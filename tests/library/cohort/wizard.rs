@@ -90,12 +90,12 @@ fn a_wizard_tells_what_was_not_looked_at_and_nothing_that_was() {
         wizard.on_trial_start(wanted);
         wizard.on_change(second(1.0), wanted, filled);
         if looks {
-            wizard.on_gaze(second(2.0), Some(pot), filled);
-            wizard.on_gaze(second(2.0 + spec.look_s), Some(pot), filled);
+            wizard.on_gaze(second(2.0), Some(pot), Some(filled));
+            wizard.on_gaze(second(2.0 + spec.look_s), Some(pot), Some(filled));
         } else {
             // A look that is too short, and one elsewhere.
-            wizard.on_gaze(second(2.0), Some(pot), filled);
-            wizard.on_gaze(second(2.05), Some(LocationId(0)), filled);
+            wizard.on_gaze(second(2.0), Some(pot), Some(filled));
+            wizard.on_gaze(second(2.05), Some(LocationId(0)), Some(filled));
         }
         let mut signals = Vec::new();
         while let Some(due) = wizard.next_due() {

@@ -13,6 +13,7 @@ mod keys;
 mod layers;
 mod notices;
 mod palette;
+mod pasting;
 mod pointer;
 mod probes;
 mod recording_picker;

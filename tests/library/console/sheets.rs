@@ -155,6 +155,22 @@ fn numbers_and_words_are_typed() {
 }
 
 #[test]
+fn a_paste_is_typed_into_an_item_that_is_answered_by_typing_and_no_other() {
+    let mut stage = asked(&["demographics.toml"]);
+    assert_eq!(stage.paste(Some("7,5")), None);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("whole number"), "{}", stage.notice());
+    stage.key(KeyCode::Backspace);
+    stage.key(KeyCode::Backspace);
+    assert_eq!(stage.paste(Some("5\n")), None);
+    assert_eq!(answered(&mut stage, KeyCode::Enter), "age 75");
+    assert_eq!(stage.paste(Some("please call me")), None);
+    assert_eq!(answered(&mut stage, KeyCode::Enter), r#"gender "please call me""#);
+    assert_eq!(stage.paste(Some("2")), None);
+    assert!(stage.notice().contains("paste only into a text field"), "{}", stage.notice());
+}
+
+#[test]
 fn options_are_chosen_with_digits() {
     let mut stage = asked(&["demographics.toml"]);
     write(&mut stage, "31");

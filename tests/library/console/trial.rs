@@ -4,6 +4,9 @@ use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::display_status::ParticipantDisplayHealth;
+use tomcom::console::preflight::checks;
+use tomcom::gaze::GazeSample;
+use tomcom::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom::session::TrialPhase;
 use tomcom::session::event::Event;
 use tomcom::session::preflight_checks::PreflightVerdict;
@@ -37,6 +40,35 @@ fn the_trial_is_started_paused_and_ended_by_keys() {
     stage.control('c');
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('y')), Some(ConsoleCommand::Quit));
+}
+
+#[test]
+fn recorded_gaze_is_told_before_the_trial_with_what_is_odd_in_it() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    stage.session.spec.participant.gaze = GazeSource::File;
+    stage.session.spec.tracker.file = Some("gaze/of/gaze.csv".to_string());
+    let samples: Vec<(f64, GazeSample)> =
+        (0..100).map(|nth| (f64::from(nth) / 50.0, GazeSample::new(0.5, 0.5, 0.9))).collect();
+    let whole = RecordedGazeSummary::from_samples(&samples);
+    let beside: Vec<(f64, GazeSample)> =
+        samples.iter().map(|(at_s, sample)| (*at_s, GazeSample { confidence: 0.1, ..*sample })).collect();
+    let odd = RecordedGazeSummary { remarks: vec!["line 7: the clock was set".to_string()], ..whole.clone() };
+    for (found, name, verdict, words) in [
+        (whole, "gaze", PreflightVerdict::Ok, "gaze.csv: 100 samples in 2.0 s; no gap of more than 1 s"),
+        (odd, "gaze file", PreflightVerdict::Warning, "line 7: the clock was set"),
+        (
+            RecordedGazeSummary::from_samples(&beside),
+            "gaze",
+            PreflightVerdict::Failed,
+            "100 samples in 2.0 s, 0 of them on the display with enough confidence",
+        ),
+    ] {
+        stage.model.recorded_gaze = Some(found);
+        let checks = checks(&stage.session, &stage.model);
+        let told: Vec<_> = checks.iter().filter(|check| check.name == name).collect();
+        assert!(told.len() == 1 && told[0].verdict == verdict && told[0].found.contains(words), "{told:?}");
+        assert!(!told[0].found.contains("of/"), "the list has room for the name of the file only");
+    }
 }
 
 #[test]

@@ -142,6 +142,10 @@ fn words(actions: Vec<CaptureAction>) -> Vec<String> {
     actions.into_iter().map(word).collect()
 }
 
+fn request(goes_on: bool) -> CaptureRequest {
+    CaptureRequest::Record { name: "P07".to_string(), goes_on }
+}
+
 struct Desk {
     recorder: CaptureRecordingControl,
     start: Instant,
@@ -161,7 +165,7 @@ impl Desk {
     }
 
     fn record(&mut self, ms: u64) -> Vec<String> {
-        words(self.recorder.order(CaptureRequest::Record("P07".to_string()), self.at(ms)))
+        words(self.recorder.order(request(false), self.at(ms)))
     }
 
     fn annotate(&mut self, ms: u64, label: &str, state: &[&str]) -> Vec<String> {
@@ -320,6 +324,55 @@ fn a_recording_whose_end_capture_did_not_answer_is_ended_after_the_next_connecti
     assert!(desk.connected(9000, false).is_empty());
 }
 
+#[test]
+fn a_recording_that_was_ours_before_a_kill_is_ours_in_the_continued_trial() {
+    // It runs on: Capture announces nothing, and it is ended with the trial.
+    let mut desk = Desk::new(true);
+    desk.recorder.queue(request(true));
+    let annotation = desk.annotation(0, "trial running", &["trial running"]);
+    desk.recorder.queue(annotation);
+    assert_eq!(desk.connected(0, false), ["R P07"]);
+    assert_eq!(desk.pass(3000), ["GoesOn", "trial running"]);
+    assert_eq!(desk.annotate(5000, "trial ended", &[]), ["trial ended"]);
+    assert!(desk.stop(5000).is_empty());
+    assert_eq!(desk.pass(5500), ["r"]);
+    // Capture was closed meanwhile, or its recording was ended: a new one begins.
+    let mut desk = Desk::new(true);
+    desk.connected(0, false);
+    assert_eq!(words(desk.recorder.order(request(true), desk.at(10))), ["R P07"]);
+    assert_eq!(desk.started(60, "P07"), ["Begun"]);
+    assert!(desk.stop(900).is_empty());
+    assert_eq!(desk.pass(1400), ["r"]);
+    // The lab ends ours and begins its own just then: that one is the lab's.
+    let own: [fn(&mut Desk) -> Vec<String>; 2] =
+        [|desk| desk.started(60, "lab"), |desk| [desk.stopped(50), desk.pass(3010)].concat()];
+    for lab in own {
+        let mut desk = Desk::new(true);
+        desk.connected(0, false);
+        words(desk.recorder.order(request(true), desk.at(10)));
+        assert_eq!(lab(&mut desk), ["NotBegun"]);
+        assert!(desk.stop(5000).is_empty() && desk.recorder.due().is_none());
+    }
+    // Capture is restarted before it is known whose recording runs.
+    let mut desk = Desk::new(true);
+    desk.connected(0, false);
+    words(desk.recorder.order(request(true), desk.at(10)));
+    desk.recorder.disconnected();
+    assert_eq!(desk.connected(1000, false), ["R P07"]);
+    assert_eq!(desk.pass(4000), ["NotBegun"]);
+}
+
+#[test]
+fn a_recording_of_the_tracker_is_ours_in_the_log_until_it_ends() {
+    use tomcom::session::tracker::TrackerRecording::{Begun, Ended, GoesOn, NotAnnotated, NotBegun};
+    let mut engine = engine(|spec| spec.participant.gaze = GazeSource::Pupil);
+    assert!(!engine.session().tracker.is_recording());
+    for (state, is_ours) in [(NotBegun, false), (Begun, true), (NotAnnotated, true), (Ended, false), (GoesOn, true)] {
+        let outcome = engine.input(SessionTime::ZERO, Event::Tracker(TrackerEvent::Recording { state }));
+        assert_eq!((outcome.refused, engine.session().tracker.is_recording()), (None, is_ours), "{state:?}");
+    }
+}
+
 #[tokio::test]
 async fn requests_wait_for_a_capture_that_is_not_there_without_filling_their_channel() {
     let free = std::net::TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port");
@@ -328,9 +381,9 @@ async fn requests_wait_for_a_capture_that_is_not_there_without_filling_their_cha
     let (_news, orders) = follow(CaptureConfiguration { address, port: free.port(), surface, map, records: true });
     let room = orders.capacity();
     for _ in 0..room {
-        orders.try_send(CaptureRequest::Record("P07".to_string())).expect("room");
+        orders.try_send(request(false)).expect("room");
     }
-    let until = Instant::now() + Duration::from_secs(30);
+    let until = Instant::now() + Duration::from_secs(300);
     while orders.capacity() < room {
         assert!(Instant::now() < until, "nobody takes the requests: {} of {room} places are free", orders.capacity());
         tokio::time::sleep(Duration::from_millis(20)).await;
@@ -373,7 +426,7 @@ fn where_only_other_surfaces_are_seen_their_names_are_told() {
     let mut check = |event: TrackerEvent| {
         let outcome = engine.input(SessionTime::ZERO, Event::Tracker(event));
         assert_eq!(outcome.refused, None);
-        let checks = preflight_checks::participant(engine.session(), SessionTime::ZERO, "^v");
+        let checks = preflight_checks::participant(engine.session(), SessionTime::ZERO, "^v", None);
         let found = checks.into_iter().find(|check| check.name == "eye tracker").expect("a check of the tracker");
         format!("{}: {}", found.found, found.remedy.unwrap_or_default())
     };

@@ -13,6 +13,7 @@ use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
 use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::run::options::SettingOverrides;
 use tomcom::session::settings::GazeSource;
+use tomcom::session::tracker::TrackerSpec;
 
 const DATUM: &[u8] = include_bytes!("../../pupil/surfaces_wall.msgpack");
 
@@ -85,8 +86,8 @@ fn broken_messages_of_pupil_are_counted_and_nothing_more() {
         assert!(told.gaze.len() <= 8);
         let is_number = |gaze: &message::SurfaceGaze| {
             gaze.norm_pos.iter().all(|v| v.is_finite())
-                && (0.0..=1.0).contains(&gaze.confidence)
-                && gaze.timestamp >= 0.0
+                && (gaze.confidence.is_nan() || (0.0..=1.0).contains(&gaze.confidence))
+                && gaze.timestamp.abs() < 9.2e9
         };
         assert!(told.gaze.iter().all(is_number), "{told:?}");
         if random.random::<bool>() {
@@ -115,6 +116,16 @@ fn broken_messages_of_pupil_are_counted_and_nothing_more() {
     let told = read(&bytes);
     assert_eq!((told.gaze.len(), told.malformed), (2, 3));
     assert_eq!(told.gaze[0].timestamp, 7.0);
+    // Pupil time starts anywhere, and where a pupil was lost the confidence is NaN.
+    let place = Value::Array(vec![Value::from(0.5), Value::from(0.5)]);
+    let item = |confidence: Value| {
+        let fields = [("norm_pos", place.clone()), ("confidence", confidence), ("timestamp", Value::from(-3.5))];
+        Value::Map(fields.into_iter().map(|(name, value)| (Value::from(name), value)).collect())
+    };
+    let items = vec![item(Value::from(f64::NAN)), item(Value::from(0.9)), item(Value::Nil)];
+    let told = read(&packed(&[("gaze_on_surfaces", Value::Array(items))]));
+    assert_eq!((told.gaze.len(), told.malformed), (2, 1));
+    assert!(told.gaze[0].confidence.is_nan() && told.gaze.iter().all(|gaze| gaze.timestamp == -3.5));
 }
 
 #[test]
@@ -155,17 +166,18 @@ fn map() -> SurfaceHomography {
 #[test]
 fn exports_of_pupil_player_and_own_recordings_are_replayed() {
     let path = Path::new("tests/pupil/gaze_positions_on_surface_wall.csv");
-    let found = gaze_file::read(path, &map(), 0.0).expect("an export");
-    assert_eq!((found.samples.len(), found.malformed), (3, 2));
+    let found = gaze_file::read(path, &map(), &from(0.0)).expect("an export");
+    assert_eq!((found.samples.len(), found.summary.malformed), (3, 2));
     let (at_s, sample) = found.samples[1];
     assert!((at_s - 0.004_124_045).abs() < 1e-8, "{at_s}");
     assert!((sample.x - 0.3).abs() < 1e-9 && (sample.y - 0.1).abs() < 1e-9, "{sample:?}");
     assert_eq!((sample.device_ns, sample.confidence), (Some(5_117_922_610), 0.91));
-    let error = gaze_file::read(Path::new("layouts/sushi.toml"), &map(), 0.0).expect_err("no export");
+    let error = gaze_file::read(Path::new("layouts/sushi.toml"), &map(), &from(0.0)).expect_err("no export");
     assert!(error.to_string().contains("no column gaze_timestamp"), "{error}");
     let recording = std::fs::read_dir("tests/golden").expect("recordings").map(|entry| entry.expect("an entry").path());
     let recording = recording.filter(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
-    let read = |path: PathBuf| gaze_file::read(&path, &map(), 0.0).expect("gaze").samples.len();
+    // A recording may have no gaze, which is said.
+    let read = |path: PathBuf| gaze_file::read(&path, &map(), &from(0.0)).map_or(0, |found| found.samples.len());
     let counts: Vec<usize> = recording.map(read).collect();
     assert!(counts.iter().any(|count| *count > 1000), "{counts:?}");
 }
@@ -173,13 +185,13 @@ fn exports_of_pupil_player_and_own_recordings_are_replayed() {
 #[test]
 fn a_trial_starts_anywhere_in_a_gaze_file() {
     let path = Path::new("tests/pupil/gaze_positions_on_surface_wall.csv");
-    let starting = |start_s: f64| gaze_file::read(path, &map(), start_s).expect("an export").samples;
+    let starting = |start_s: f64| gaze_file::read(path, &map(), &from(start_s)).expect("an export").samples;
     let whole = starting(0.0);
     let (later, earlier) = (starting(0.005), starting(-2.0));
     assert_eq!((later.len(), earlier.len()), (1, 3));
     assert!((later[0].0 - (whole[2].0 - 0.005)).abs() < 1e-12 && later[0].1 == whole[2].1);
     assert!((earlier[0].0 - 2.0).abs() < 1e-12);
-    let error = gaze_file::read(path, &map(), 60.0).expect_err("nothing is left").to_string();
+    let error = gaze_file::read(path, &map(), &from(60.0)).expect_err("nothing is left").to_string();
     assert!(error.contains("its last sample at 0.0 s, before the start at 60.0 s"), "{error}");
 }
 
@@ -200,7 +212,12 @@ fn the_command_line_names_file_and_start() {
 fn read_table(text: &str) -> Result<gaze_file::GazeFile, String> {
     let path = folder("table").join("table.csv");
     std::fs::write(&path, text).expect("written");
-    gaze_file::read(&path, &map(), 0.0).map_err(|error| error.to_string())
+    gaze_file::read(&path, &map(), &from(0.0)).map_err(|error| error.to_string())
+}
+
+/// Settings of a tracker whose file is read from this time on.
+fn from(file_start_s: f64) -> TrackerSpec {
+    TrackerSpec { file_start_s, ..TrackerSpec::default() }
 }
 
 /// A folder of this test.
@@ -224,7 +241,11 @@ fn tables_of_marker_mapper_and_neon_player_are_replayed() {
          s1,r1,soon,True,0.5,0.5,,\r\n"
     );
     let found = read_table(&cloud).expect("a table");
-    assert_eq!((found.samples.len(), found.malformed), (3, 1), "where the surface is not found there is no sample");
+    assert_eq!(
+        (found.samples.len(), found.summary.malformed),
+        (3, 1),
+        "where the surface is not found there is no sample"
+    );
     let (at_s, sample) = found.samples[0];
     assert_eq!((at_s, sample.confidence, sample.device_ns), (0.0, 1.0, Some(1_764_057_600_000_000_001)));
     // The origin is the top left corner of the surface.
@@ -301,12 +322,14 @@ fn recordings_and_downloads_of_the_trackers_are_told_from_gaze_on_the_display() 
         (mapper.clone(), "a folder with a table of gaze on the display", &table),
         (archive, "an archive", "unpack the archive"),
     ] {
-        let error = gaze_file::read(&path, &map(), 0.0).expect_err("no gaze on the display");
+        let error = gaze_file::read(&path, &map(), &from(0.0)).expect_err("no gaze on the display");
         let FileError::Unfit { remedy: told, .. } = &error else { panic!("{error}") };
         assert!(error.to_string().contains(found) && told.contains(remedy), "{error}; {told}");
     }
     // The table is taken, and gaze in the picture is not.
-    assert!(gaze_file::read(&mapper.join("gaze.csv"), &map(), 0.0).is_ok());
-    let error = gaze_file::read(&series.join("gaze.csv"), &map(), 0.0).expect_err("not on the display").to_string();
+    let error = gaze_file::read(&mapper.join("gaze.csv"), &map(), &from(0.0)).expect_err("no gaze").to_string();
+    assert!(error.contains("a table without a line below its header"), "{error}");
+    let error =
+        gaze_file::read(&series.join("gaze.csv"), &map(), &from(0.0)).expect_err("not on the display").to_string();
     assert!(error.contains("gaze in the scene camera's picture"), "{error}");
 }

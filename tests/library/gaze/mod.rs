@@ -2,10 +2,12 @@
 
 mod calibration;
 mod capture;
+mod clocks;
 mod formats;
 mod last_seen;
 mod quality;
 mod rate;
+mod tables;
 mod tags;
 
 use std::path::Path;

@@ -1,9 +1,8 @@
-//! Streams of samples: faults, delays, the device's clock, and floods.
+//! Streams of samples: faults, delays, sampling rates, and floods.
 
 use tomcom::base::time::SessionTime;
 use tomcom::gaze::GazeSample;
-use tomcom::gaze::device_clock::DeviceClock;
-use tomcom::gaze::quality::{GazeFault, GazeFaultDetector, GazeRateLimiter};
+use tomcom::gaze::quality::{GazeFault, GazeRateLimiter};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
@@ -18,8 +17,11 @@ fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
     let at = |ms: u64| SessionTime(ms * 1_000_000);
     assert_eq!(engine.input(at(0), Event::TrialStarted).refused, None);
     let send = |engine: &mut SessionEngine, arrived: u64, taken: u64, x: f64| {
-        let sample =
-            GazeSample { device_ns: Some(taken + 5), taken_ns: Some(at(taken)), ..GazeSample::new(x, 0.35, 0.9) };
+        let sample = GazeSample {
+            device_ns: Some(taken as i64 + 5),
+            taken_ns: Some(at(taken)),
+            ..GazeSample::new(x, 0.35, 0.9)
+        };
         let before = engine.belief().clone();
         assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
         (*engine.belief() != before, engine.session().gaze.fault)
@@ -71,72 +73,6 @@ fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
 }
 
 #[test]
-fn device_time_is_told_from_the_samples_that_took_the_shortest_way() {
-    let mut clock = DeviceClock::default();
-    let ms = |ms: u64| SessionTime(ms * 1_000_000);
-    // The device's clock is 5 s behind; samples take 3 ms at least, some of them longer.
-    for step in 0..200u64 {
-        let late = 3 + [0, 9, 4, 30][step as usize % 4];
-        let taken = clock.session_time(ms(1000 + 10 * step).0, ms(6000 + 10 * step + late));
-        assert_eq!(taken, (ms(6000 + 10 * step + 3), None), "step {step}");
-    }
-}
-
-/// A stream at 100 Hz with delays of 3 to 12 ms, whose clock does what it says. Gives the samples that are not read, the largest error
-/// of the time of those that are, in ms, in the last second, and by how much the clock was set, in s.
-fn stream(device_ms: impl Fn(u64) -> u64) -> (u64, f64, Vec<f64>) {
-    let (mut clock, mut checker) = (DeviceClock::default(), GazeFaultDetector::default());
-    let (mut unread, mut most_off, mut steps) = (0, 0.0f64, Vec::new());
-    for sample in 0..2000u64 {
-        let taken_ms = 20_000 + 10 * sample;
-        let arrived = SessionTime((taken_ms + 3 + [0, 9, 4, 2, 7][sample as usize % 5]) * 1_000_000);
-        let device_ns = 1_000_000 * device_ms(taken_ms);
-        let (taken, step) = clock.session_time(device_ns, arrived);
-        steps.extend(step.map(|step| step.by_ns as f64 / 1e9));
-        let seen = GazeSample { device_ns: Some(device_ns), taken_ns: Some(taken), ..GazeSample::new(0.5, 0.5, 0.9) };
-        unread += u64::from(checker.judge(&seen, arrived).is_some());
-        if sample >= 1900 {
-            most_off = most_off.max((taken.0 as f64 / 1e6 - taken_ms as f64).abs());
-        }
-    }
-    (unread, most_off, steps)
-}
-
-#[test]
-fn a_clock_that_was_set_costs_less_than_a_second_of_gaze_and_is_told() {
-    for by_ms in [-5000i64, -700, -300, -200, 200, 300, 700, 5000] {
-        let set = |ms: u64| if ms < 25_000 { ms } else { ms.saturating_add_signed(by_ms) };
-        let (unread, most_off, steps) = stream(set);
-        println!("{by_ms} ms: {unread} samples unread, {most_off:.1} ms off afterwards");
-        assert!(unread <= 100 && most_off <= 5.0, "{by_ms} ms: {unread} samples unread, {most_off} ms off");
-        assert_eq!(steps.len(), 1, "{by_ms} ms");
-        assert!((steps[0] - by_ms as f64 / 1e3).abs() <= 0.005, "{by_ms} ms: {steps:?}");
-    }
-}
-
-#[test]
-fn a_single_wrong_time_stamp_costs_that_sample_at_most() {
-    for by_ms in [-800i64, 800, 5000, 3_600_000] {
-        let (unread, most_off, steps) = stream(|ms| if ms == 25_000 { ms.saturating_add_signed(by_ms) } else { ms });
-        assert!(unread <= 1 && most_off <= 5.0 && steps.is_empty(), "{by_ms}: {unread}, {most_off}, {steps:?}");
-    }
-}
-
-#[test]
-fn samples_that_were_held_up_together_set_no_clock() {
-    let mut clock = DeviceClock::default();
-    let ms = |ms: u64| SessionTime(ms * 1_000_000);
-    for sample in 0..1000u64 {
-        let taken_ms = 5000 + 10 * sample;
-        // Once a second the network holds everything up for 0.3 s.
-        let arrived_ms = (taken_ms + 3).max(taken_ms / 1000 * 1000 + 303);
-        let (taken, step) = clock.session_time(ms(taken_ms).0, ms(arrived_ms));
-        assert_eq!(step, None, "sample {sample}");
-        assert!(sample < 30 || taken.0.abs_diff(ms(taken_ms).0) <= 5_000_000, "sample {sample}: {taken}");
-    }
-}
-
-#[test]
 fn a_flood_is_let_through_at_the_rate_of_the_fastest_tracker() {
     let mut limit = GazeRateLimiter::default();
     let passed = |limit: &mut GazeRateLimiter, hz: u64, from_s: u64, seconds: u64| {
@@ -144,6 +80,56 @@ fn a_flood_is_let_through_at_the_rate_of_the_fastest_tracker() {
         times.filter(|&time| limit.admits(time)).count() as u64
     };
     assert_eq!(passed(&mut limit, 1000, 0, 20), 20_000, "a fast tracker loses nothing");
-    let flood = passed(&mut limit, 50_000, 20, 10);
-    assert!((20_000..=21_001).contains(&flood), "{flood} of a flood");
+    let flood = passed(&mut limit, 50_000, 20, 20);
+    assert!((59_000..=60_001).contains(&flood), "{flood} of a flood");
+}
+
+#[test]
+fn what_waited_while_the_program_stood_still_is_no_flood() {
+    for (hz, seconds) in [(200, 6), (1000, 10), (2000, 10)] {
+        let mut limit = GazeRateLimiter::default();
+        let steady = (0..hz).filter(|n| limit.admits(SessionTime(n * 1_000_000_000 / hz))).count() as u64;
+        // The program stands still; then all samples of that time arrive at once.
+        let at_once = (0..hz * seconds).filter(|_| limit.admits(SessionTime((1 + seconds) * 1_000_000_000))).count();
+        assert_eq!((steady, at_once as u64), (hz, hz * seconds), "{hz} Hz");
+    }
+}
+
+/// The sampling rates that are shown after samples that arrive and were taken at these times, in ms.
+fn rates(samples: impl IntoIterator<Item = (u64, Option<u64>)>) -> Vec<f64> {
+    let mut engine = engine(|spec| {
+        (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+    });
+    let at = |ms: u64| SessionTime(ms * 1_000_000);
+    let mut shown = Vec::new();
+    for (index, (arrived, taken)) in samples.into_iter().enumerate() {
+        let x = 0.4 + index as f64 * 1e-5;
+        let sample = GazeSample { taken_ns: taken.map(at), ..GazeSample::new(x, 0.35, 0.9) };
+        assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
+        shown.extend(engine.session().gaze_hz(at(arrived)));
+    }
+    shown
+}
+
+#[test]
+fn the_rate_of_samples_that_arrive_together_is_the_trackers() {
+    let most = |rates: &[f64]| rates.iter().copied().fold(0.0, f64::max);
+    let last = |rates: &[f64]| rates.last().copied().unwrap_or(f64::NAN);
+    // 880 samples of a tracker with 120 Hz in one datagram, without and with their times.
+    let at_once = rates((0..880).map(|_| (10_000, None)));
+    assert!(most(&at_once) <= 880.0, "{} Hz", most(&at_once));
+    let with_times = rates((0..880).map(|sample| (10_000, Some(2_000 + sample * 25 / 3))));
+    assert!((last(&with_times) - 120.0).abs() < 2.0 && most(&with_times) < 130.0, "{} Hz", most(&with_times));
+    // Packets of 24 samples, five times a second.
+    let packets = rates((0..1200).map(|sample| (1000 + sample / 24 * 200, None)));
+    assert!(
+        (last(&packets) - 120.0).abs() < 15.0 && most(&packets) < 250.0,
+        "{} to {} Hz",
+        last(&packets),
+        most(&packets)
+    );
+    // One at a time: the rate is known soon, and stays.
+    let steady = rates((0..480).map(|sample| (1000 + sample * 25 / 3, None)));
+    assert!(steady[8..].iter().all(|hz| (hz - 120.0).abs() < 15.0), "{steady:?}");
+    assert!(steady[120..].iter().all(|hz| (hz - 120.0).abs() < 3.0), "{steady:?}");
 }

@@ -100,7 +100,7 @@ impl World {
             _ => {
                 self.press_at[1] = now + self.between(PRESS_S);
                 let recipes = self.kitchen.true_recipes();
-                let choices = policy::choices(&self.kitchen, &mut self.cost, Fidelity::Exact, self.state, &recipes);
+                let choices = policy::choices(&self.kitchen, &mut self.cost, Fidelity::Searched, self.state, &recipes);
                 match choices.is_empty() {
                     true => self.next(choose),
                     false => {

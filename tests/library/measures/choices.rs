@@ -172,7 +172,7 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     let of_trial: TrialBeliefs = (0..20).map(|index| press(if index % 10 == 0 { trash } else { put }, -0.1)).collect();
     let trials = vec![of_trial; 5];
     let model = ChoiceParameters::default();
-    let found = PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &trials, 1);
+    let found = PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &trials, &[0, 1, 2, 3, 4], 1);
     let informed = found.informed.expect("presses");
     let best = 0.9 * 0.9_f64.ln() + 0.1 * 0.1_f64.ln();
     assert!(informed < 0.0 && informed <= best + 1e-9, "no better than knowing the shares: {found:?}");
@@ -186,5 +186,8 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     // Trials that are all alike leave no doubt.
     let [from, to] = found.gain_interval.expect("an interval");
     assert!((from - gain).abs() < 1e-9 && (to - gain).abs() < 1e-9);
-    assert_eq!(PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &[], 1), PressLogLikelihood::default());
+    assert_eq!(
+        PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &[], &[], 1),
+        PressLogLikelihood::default()
+    );
 }

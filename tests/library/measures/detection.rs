@@ -2,9 +2,11 @@
 
 use tomcom::base::incomplete_beta::regularized_incomplete_beta;
 use tomcom::kitchen::{AspectId, ButtonId, Kitchen};
-use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs};
+use tomcom::measures::belief_detection::{
+    BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups,
+};
 use tomcom::measures::detection::{Calibration, auc};
-use tomcom::measures::flags::{FlagThresholds, ThresholdSource};
+use tomcom::measures::flags::{FlagThresholds, ThresholdChoice, ThresholdSource, chosen_thresholds};
 use tomcom::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
 
 use super::{aspect, kitchen};
@@ -67,6 +69,13 @@ fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) 
     (0..letters[0].len()).map(press).collect()
 }
 
+/// A trial judged with the thresholds that are best on this trial.
+fn judged_on_itself(kitchen: &Kitchen, trial: TrialBeliefs) -> FalseBeliefDetection {
+    let trials = [trial];
+    let best = chosen_thresholds(&trials, &aspect_groups(kitchen)).map(ThresholdChoice::Given);
+    FalseBeliefDetection::from_trials(kitchen, &trials, best)
+}
+
 #[test]
 fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
     let kitchen = kitchen("sushi");
@@ -74,7 +83,8 @@ fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
     let check = |text: [&str; 4], episodes: u64, caught: Option<f64>, false_flags: f64| {
         let trials = [trial(&kitchen, place, recipe, text)];
         let thresholds = FlagThresholds { locations: 0.5, recipes: 0.3 };
-        let flags = FalseBeliefDetection::from_trials(&kitchen, &trials, Some(thresholds)).flags;
+        let flags =
+            FalseBeliefDetection::from_trials(&kitchen, &trials, Some(ThresholdChoice::Given(thresholds))).flags;
         assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(episodes), caught), "{text:?}");
         let rate = 20.0 * false_flags / text[0].len() as f64;
         assert!((flags.false_flags_per_20_actions.expect("a rate") - rate).abs() < 1e-12, "{text:?}: {flags:?}");
@@ -99,8 +109,7 @@ fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
     let quiet = ".".repeat(60);
     let zero = "0".repeat(60);
     let text = [&format!("{quiet}EEw."), &format!("{quiet}...."), &format!("{zero}0702"), &format!("{zero}0000")];
-    let found =
-        FalseBeliefDetection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None);
+    let found = judged_on_itself(&kitchen, trial(&kitchen, place, recipe, text.map(String::as_str)));
     let flags = &found.flags;
     assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(1), Some(1.0)), "{flags:?}");
     assert_eq!(
@@ -129,42 +138,52 @@ fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() 
         let (right, known) = (".".repeat(64), "0".repeat(66));
         let estimates = format!("{}{}33", "0".repeat(64 - doubted), "3".repeat(doubted));
         let text = [&format!("{right}.."), &format!("{right}EE"), &known, &estimates];
-        FalseBeliefDetection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None)
-            .flags
+        judged_on_itself(&kitchen, trial(&kitchen, place, recipe, text.map(String::as_str))).flags
     };
     // 66 presses and 16 aspects: 1,056 pairs, of which 52 may be flagged wrongly; of the recipes' alone 5 % were 19.
     assert_eq!(of(40).flagged_before_third_error, Some(1.0));
     assert_eq!(of(60).flagged_before_third_error, Some(0.0));
 }
 
+/// Two participants with two trials each: a participant's trials are in one half, whatever their order.
 #[test]
-fn thresholds_are_judged_on_the_other_half_of_the_trials() {
+fn thresholds_are_judged_on_the_other_half_of_the_participants() {
     let kitchen = kitchen("sushi");
     let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let zero = "0".repeat(64);
-    let one = |estimates: &str| {
+    let one = |doubted: &str, estimates: &str| {
         let quiet = ".".repeat(60);
-        let text = [&format!("{quiet}EEw."), &".".repeat(64), &format!("{}{estimates}", "0".repeat(60)), &zero];
+        let text = [&format!("{quiet}EEw."), &".".repeat(64), &format!("{doubted:0<60}{estimates}"), &zero];
         trial(&kitchen, place, recipe, text.map(String::as_str))
     };
-    // The first trial's episode is found from 0.7 on, the second's from 0.2 on; each is judged with the other's threshold.
-    let (high, low) = (one("0700"), one("0200"));
-    let flags = |trials: &[TrialBeliefs], given| FalseBeliefDetection::from_trials(&kitchen, trials, given).flags;
-    let found = flags(&[high.clone(), low.clone()], None);
-    assert_eq!(found.thresholds_from, Some(ThresholdSource::OtherHalf));
-    let given = |locations| Some(FlagThresholds { locations, recipes: 1.0 });
-    let single = |trial: &TrialBeliefs| {
-        let found = flags(std::slice::from_ref(trial), None);
-        assert_eq!(found.thresholds_from, Some(ThresholdSource::SameTrial));
-        assert_eq!(found.flagged_before_third_error, Some(1.0), "chosen on itself");
-        found.thresholds.expect("thresholds").locations
+    // The first participant's episodes are found from 0.7 on, and right beliefs are doubted with 0.3; the second's from 0.2 on.
+    let (high, low) = (one("0333", "0700"), one("", "0200"));
+    let flags = |trials: &[TrialBeliefs], choice: ThresholdChoice| {
+        FalseBeliefDetection::from_trials(&kitchen, trials, Some(choice)).flags
     };
-    let (of_high, of_low) = (single(&high), single(&low));
-    let apart = [flags(&[high], given(of_low)), flags(&[low], given(of_high))];
-    assert!(apart.iter().all(|one| one.thresholds_from == Some(ThresholdSource::OtherRecordings)));
-    let caught: f64 = apart.iter().filter_map(|one| one.flagged_before_third_error).sum();
-    assert_eq!(found.flagged_before_third_error, Some(caught / 2.0), "{of_high}, {of_low}");
-    assert_eq!((found.episodes, caught), (Some(2), if of_high > 0.2 { 1.0 } else { 2.0 }));
+    let judge = |judged: &TrialBeliefs, chosen_on: &TrialBeliefs| {
+        let best = chosen_thresholds(&[chosen_on.clone(), chosen_on.clone()], &aspect_groups(&kitchen));
+        let found = flags(&[judged.clone(), judged.clone()], ThresholdChoice::Given(best.expect("known")));
+        assert_eq!(found.thresholds_from, Some(ThresholdSource::OtherRecordings));
+        found.flagged_before_third_error.expect("episodes")
+    };
+    let wanted = (judge(&high, &low) + judge(&low, &high)) / 2.0;
+    assert_eq!((judge(&low, &low), judge(&low, &high)), (1.0, 0.0), "a threshold that suits the one misses the other");
+    for (trials, participants) in [
+        ([high.clone(), high.clone(), low.clone(), low.clone()], [0, 0, 1, 1]),
+        ([high.clone(), low.clone(), high.clone(), low.clone()], [0, 1, 0, 1]),
+        ([low.clone(), high.clone(), high.clone(), low.clone()], [7, 3, 3, 7]),
+    ] {
+        let found = flags(&trials, ThresholdChoice::CrossFitted(&participants));
+        assert_eq!(found.thresholds_from, Some(ThresholdSource::OtherHalf));
+        assert_eq!((found.episodes, found.flagged_before_third_error), (Some(4), Some(wanted)), "{participants:?}");
+    }
+    // One participant with two trials: what is chosen on the one is not judged on the other.
+    let found = flags(&[high, low], ThresholdChoice::CrossFitted(&[0, 0]));
+    assert_eq!(found.thresholds_from, Some(ThresholdSource::OneParticipant));
+    assert_eq!((found.episodes, found.flagged_before_third_error), (Some(2), None));
+    assert_eq!((found.false_flags_per_20_actions, found.wrongly_flagged), (None, None));
+    assert!(found.thresholds.is_some());
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn presses(text: &str) -> Vec<JudgedPress> {
             }
         };
         let (race, error) = (letter == 'r', cause.is_some());
-        let verdict = PressVerdict { regret: i32::from(error), excess: i32::from(error), race, error };
+        let verdict = PressVerdict { regret: i32::from(error), excess: i32::from(error), race, error, is_proven: true };
         let before = kitchen("sushi").empty_state();
         JudgedPress { seq: index as u64, time: at(index as f64), before, verdict, belief_known: true, cause }
     };

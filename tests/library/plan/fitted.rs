@@ -87,14 +87,14 @@ fn preflight_says_whose_parameters_are_in_force() {
     let told = |participant: usize| {
         let (spec, trial) = study.simulated(participant, 1);
         let session = Session::new(kitchen.clone(), spec, trial);
-        let checks = preflight_checks::participant(&session, SessionTime::ZERO, "c");
+        let checks = preflight_checks::participant(&session, SessionTime::ZERO, "c", None);
         checks.into_iter().find(|check| check.name == "human model").map(|check| check.found)
     };
     assert_eq!(told(1).as_deref(), Some("parameters of the person P02, from human.toml"));
     assert_eq!(told(0).as_deref(), Some("parameters of the population: human.toml has none of P01"));
     let (_, without) = study_with("fitted-preflight-2", "[decision]\ntau = 4.0\n");
     let session = Session::new(kitchen.clone(), without.simulated(0, 1).0, 1);
-    let checks = preflight_checks::participant(&session, SessionTime::ZERO, "c");
+    let checks = preflight_checks::participant(&session, SessionTime::ZERO, "c", None);
     assert!(checks.iter().all(|check| check.name != "human model"), "{checks:?}");
 }
 

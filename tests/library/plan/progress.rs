@@ -14,6 +14,7 @@ fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> 
     PlanRecording {
         recording,
         code: spec.participant.code,
+        recorded_as: None,
         step,
         consent: true,
         instructed: true,

@@ -303,7 +303,12 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     run.next_phase();
     assert_eq!(run.input(Event::TrialStarted), None);
     let outcome = || recordings::of_plan(&out, "study").expect("readable")[0].outcome.clone();
-    assert_eq!(outcome(), RecordingOutcome::Open);
+    assert_eq!(outcome(), RecordingOutcome::Running, "while it is written");
+    let cut = folder("left-cut");
+    let name = run.log.folder().file_name().expect("a name").to_owned();
+    fs::create_dir_all(cut.join(&name)).expect("a folder");
+    fs::copy(run.log.folder().join(LOG_NAME), cut.join(&name).join(LOG_NAME)).expect("copied");
+    assert_eq!(recordings::of_plan(&cut, "study").expect("readable")[0].outcome, RecordingOutcome::Open);
     assert!(!run.engine.session().is_step_done(), "left now, it can be continued");
     assert_eq!(run.input(Event::TrialEnded { reason: TrialEndReason::Wizard }), None);
     run.go_through();

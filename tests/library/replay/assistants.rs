@@ -119,6 +119,32 @@ fn an_advisor_that_works_ahead_computes_less_in_its_answers_and_answers_the_same
     }
 }
 
+/// With gaze and without, a replay asks at the events after which the running session asked.
+#[test]
+fn a_replay_asks_what_the_running_session_asked() {
+    for name in SESSIONS {
+        for gaze in [GazeSource::Simulated, GazeSource::None] {
+            let out = with_assistant(name, &format!("asks-{gaze:?}"), (1, 60.0), |spec| spec.participant.gaze = gaze);
+            let log = out.join("seed1-S001");
+            let mut reader = LogReader::open(&log).expect("a recording");
+            let mut asked = Vec::new();
+            while let Some(line) = reader.next_line().expect("a line") {
+                if let Event::Advised(advice) = line.stamped.event {
+                    asked.push((advice.for_seq, advice));
+                }
+            }
+            let mut replay = RecordingReplay::open(&log).expect("a recording");
+            let mut advisor = Advisor::new(replay.session(), CostToGo::new(replay.session().kitchen.clone()));
+            let mut again = Vec::new();
+            while let Some(question) = replay.next_question().expect("a line") {
+                again.push((question.seq, advisor.answer(&question)));
+            }
+            assert!(asked.len() > 10, "{name}, {gaze:?}: {} requests", asked.len());
+            assert_eq!(again, asked, "{name}, {gaze:?}");
+        }
+    }
+}
+
 #[test]
 fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
     for name in SESSIONS {

@@ -11,6 +11,7 @@ use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
+use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::replay::RecordingReplay;
 use tomcom::run::resume::resume;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
@@ -54,7 +55,8 @@ fn a_recording_with_offers_verifies_whole_and_cut_at_every_offer() {
 #[test]
 fn the_measured_hand_reads_offers_and_every_offer_is_counted() {
     let recordings = shadowed("offers-measured");
-    let found = measure(&recordings, || ()).expect("recordings");
+    let gathered = GatheredRecordings::find(&recordings).expect("recordings");
+    let found = measure(&gathered, || ()).expect("recordings");
     let (mut offers, mut visible) = (0, 0);
     for recording in &recordings {
         let mut replay = RecordingReplay::open(recording).expect("a recording");
@@ -65,7 +67,7 @@ fn the_measured_hand_reads_offers_and_every_offer_is_counted() {
     assert_eq!((found.offers.all.n, visible), (offers, 0), "nobody could see them");
     let hand = found.hand;
     assert!(hand.readings > 0 && hand.readings == hand.as_read + hand.something_else + hand.nothing, "{hand:?}");
-    assert_eq!(measure(&recordings, || ()).expect("recordings"), found, "the hand is seeded");
+    assert_eq!(measure(&gathered, || ()).expect("recordings"), found, "the hand is seeded");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
-use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::replay::RecordingReplay;
@@ -38,6 +38,26 @@ fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
         fs::write(&path, &text[..cut]).expect("the folder can be written");
         let found = verify(&path).expect("a cut recording");
         assert!(found.verified && found.cut, "cut at {cut}: {found:?}");
+    }
+}
+
+#[test]
+fn empty_lines_at_the_end_of_a_recording_are_no_damage() {
+    let (log, _) = by_hand("default.toml", ArmKind::Timed, "blank", 5);
+    let text = fs::read_to_string(&log).expect("a recording");
+    let path = log.with_file_name("blank.jsonl");
+    for end in ["\n", "\n\n\n", "\r\n", " \t\n", "  "] {
+        fs::write(&path, format!("{text}{end}")).expect("the folder can be written");
+        let mut log = LogReader::open(&path).expect("a recording");
+        let last = log.last_event().expect("it can be read");
+        assert_eq!(last.map(|last| last.event), Some(Event::SessionEnded), "{end:?}");
+        while log.next_line().unwrap_or_else(|error| panic!("{end:?}: {error}")).is_some() {}
+        assert!(!log.is_cut() && log.events() == text.lines().count() as u64 - 1, "{end:?}");
+    }
+    for empty in ["\n\n", "\n \n\n"] {
+        refused(&path, 3, &["an empty line before another event"], |_| {
+            text.replacen("\n{\"seq\":1,", &format!("{empty}{{\"seq\":1,"), 1)
+        });
     }
 }
 

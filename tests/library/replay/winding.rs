@@ -66,6 +66,11 @@ fn a_recording_that_is_read_bit_by_bit_is_the_same_as_one_that_is_read_at_once()
         let left = Cell::new(1000);
         slow.read_while(|| left.replace(left.get() - 1) > 0).expect("events");
         slices += 1;
+        // As somebody who follows a running session sees it: always its latest state.
+        let (read, read_to) = (slow.read_events(), slow.read_to());
+        assert_eq!(slow.until(read_to), read, "after {slices} slices");
+        slow.wind(read);
+        assert_eq!(slow.time(), read_to);
     }
     assert!(slices > 4, "{slices}");
     assert_eq!((slow.length(), slow.is_cut(), &slow.errors), (whole.length(), whole.is_cut(), &whole.errors));
@@ -85,7 +90,8 @@ fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
     let mut slow = SeekableReplay::begin(recording).expect("it opens");
     slow.read_to_trial().expect("events");
     assert!(!slow.is_read(), "the rest is read later");
-    slow.wind(slow.trial_start());
+    let start = slow.trial_start();
+    slow.wind(start);
     assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, SessionTime::from_secs_f64(0.5)));
     assert!(slow.trial_length() > SessionTime::ZERO);
     whole.wind(whole.length().1);

@@ -47,7 +47,7 @@ fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVer
 fn errors_are_presses_that_lose_more_than_the_best_one() {
     use Agent::{Human, Robot};
     let good = verdict(&["crab maki"], &[(Human, "take crab")], 1.0);
-    assert_eq!(good, PressVerdict { regret: 0, excess: 0, race: false, error: false });
+    assert_eq!(good, PressVerdict { regret: 0, excess: 0, race: false, error: false, is_proven: true });
     // The wrong shellfish has to be thrown away.
     let wrong = verdict(&["crab maki"], &[(Human, "take shrimp")], 1.0);
     assert_eq!((wrong.excess, wrong.error), (2, true));

@@ -7,6 +7,7 @@ use tomcom::session::plan::StudyAims;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::arm_comparison::{compare_arms, holm};
+use tomcom::study::effect::LeftOutParticipant;
 use tomcom::study::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
 use tomcom::study::negative_binomial_model::{CountObservation, NegativeBinomialModel};
 use tomcom::study::trial_statistics::TrialStatistics;
@@ -184,6 +185,7 @@ fn simulated(arms: &[StudyArm], ratios: &[f64], participants: usize, seed: u64) 
                 participant: format!("P{participant:02}"),
                 period: Some(period as u32 + 1),
                 study_arm: arms[index],
+                planned_arm: arms[index],
                 condition: arms[index].condition(),
                 human_presses: presses,
                 errors,
@@ -205,7 +207,7 @@ fn the_rates_that_were_put_in_come_out() {
     let (mut linear, mut counted, mut covered) = (vec![Vec::new(); 5], vec![Vec::new(); 5], 0);
     for seed in 0..STUDIES as u64 {
         let trials = simulated(&FOUR, &[1.0, 0.6, 0.6, 0.8], 40, seed);
-        let found = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison");
+        let found = compare_arms(&trials).expect("a comparison");
         assert_eq!((found.participants, found.trials, found.with_carry_over.len()), (40, 160, 5));
         assert!(found.contrasts.iter().map(|one| (one.arm, one.against)).eq(pairs));
         let counts = found.negative_binomial.expect("a model of counts");
@@ -233,7 +235,7 @@ fn the_rates_that_were_put_in_come_out() {
 #[test]
 fn an_assistant_is_not_worse_only_if_its_interval_says_so() {
     let trials = simulated(&FOUR, &[1.0, 0.6, 0.55, 0.8], 200, 77);
-    let found = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison");
+    let found = compare_arms(&trials).expect("a comparison");
     let holds: Vec<(StudyArm, bool)> = found.non_inferiority.iter().map(|one| (one.arm, one.holds)).collect();
     assert_eq!(holds, [(StudyArm::TomCom, true), (StudyArm::Tom, false)]);
     for one in &found.non_inferiority {
@@ -243,7 +245,7 @@ fn an_assistant_is_not_worse_only_if_its_interval_says_so() {
         .into_iter()
         .map(|trial| TrialStatistics { aims: Some(StudyAims { margin: 1.01, ..StudyAims::default() }), ..trial })
         .collect();
-    let strict = compare_arms(&strict.iter().collect::<Vec<_>>()).expect("a comparison");
+    let strict = compare_arms(&strict).expect("a comparison");
     assert_eq!(strict.non_inferiority[0].margin, 1.01, "the plan says what is not worse");
 }
 
@@ -253,7 +255,7 @@ fn without_an_effect_the_primary_test_finds_one_in_twenty() {
     let [mut primary, mut counts] = [0, 0];
     for seed in 0..500 {
         let trials = simulated(&FOUR[..2], &[1.0, 1.0], 14, 1000 + seed);
-        let Some(found) = compare_arms(&trials.iter().collect::<Vec<_>>()) else { continue };
+        let Some(found) = compare_arms(&trials) else { continue };
         primary += usize::from(found.contrasts[0].contrast.p < 0.05);
         counts += usize::from(found.negative_binomial.is_some_and(|model| model.contrasts[0].contrast.p < 0.05));
     }
@@ -264,13 +266,27 @@ fn without_an_effect_the_primary_test_finds_one_in_twenty() {
 #[test]
 fn a_repeated_trial_counts_once_and_one_arm_is_no_comparison() {
     let mut trials = simulated(&FOUR[..2], &[1.0, 0.5], 6, 3);
-    let all = |trials: &[TrialStatistics]| compare_arms(&trials.iter().collect::<Vec<_>>());
-    let before = all(&trials).expect("a comparison");
+    let before = compare_arms(&trials).expect("a comparison");
     let spoilt = TrialStatistics { errors: 90, ..trials[0].clone() };
     trials.insert(0, spoilt);
-    assert_eq!(all(&trials), Some(before), "the last attempt at a trial counts");
+    assert_eq!(compare_arms(&trials), Some(before), "the last attempt at a trial counts");
     let alone = simulated(&FOUR[..1], &[1.0], 6, 3);
-    assert_eq!(all(&alone), None);
+    assert_eq!(compare_arms(&alone), None);
+}
+
+/// Of nine participants one has no trial that counts; of another one, only one counts, which the model uses.
+#[test]
+fn participants_whom_the_comparison_leaves_out_are_named() {
+    let mut trials = simulated(&FOUR[..2], &[1.0, 0.5], 9, 5);
+    let name = trials[4].participant.clone();
+    for trial in &mut trials[4..7] {
+        trial.recording = format!("{}-{}", trial.participant, trial.period.expect("a number"));
+        trial.left_out = Some("excluded: ill".to_string());
+    }
+    let found = compare_arms(&trials).expect("a comparison");
+    assert_eq!((found.participants, found.trials), (8, 15));
+    let reason = format!("{name}-1: does not count (excluded: ill); {name}-2: does not count (excluded: ill)");
+    assert_eq!(found.left_out, [LeftOutParticipant { participant: name, reason }]);
 }
 
 #[test]
@@ -279,11 +295,11 @@ fn the_letters_of_groups_are_told() {
     for trial in &mut trials {
         let period = trial.period.expect("a trial");
         // A stands for the plan's first condition.
-        let index = FOUR.iter().position(|arm| *arm == trial.study_arm).expect("an arm") as u32;
+        let index = FOUR.iter().position(|arm| *arm == trial.planned_arm).expect("an arm") as u32;
         let first = (index + 4 - period) % 3;
         trial.group = Some((0..3).map(|place| ["A", "B", "C"][((first + place) % 3) as usize]).collect());
     }
-    let found = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison").groups;
+    let found = compare_arms(&trials).expect("a comparison").groups;
     assert_eq!(found.iter().map(|one| one.participants).sum::<usize>(), 12);
     for one in &found {
         let arm = |letter: char| FOUR[letter as usize - 'A' as usize];

@@ -1,26 +1,36 @@
 //! The effect of assistance, against values of other programs.
 
+use tomcom::run::study::describe;
 use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
 use tomcom::study::detail_totals::DetailTotals;
-use tomcom::study::effect::{effect, pairs};
+use tomcom::study::effect::{effect, left_out_in_words, pairs};
 use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
-use tomcom::study::statistics::{hodges_lehmann, mixed_anova, permutation_p};
+use tomcom::study::report;
+use tomcom::study::statistics::{hodges_lehmann, permutation_p};
 use tomcom::study::tables::trials::HEADLINE;
-use tomcom::study::trial_statistics::arrange;
+use tomcom::study::trial_statistics::{TrialStatistics, arrange};
 
 use super::{near, trial, trials};
 
-/// Unequal groups, with ties; the figures are those of pingouin 0.7.0 and SciPy 1.17.1.
+/// Unequal groups, with ties; the figures are those of afex 1.2-1 (type III), pingouin 0.7.0 and SciPy 1.17.1.
 #[test]
 fn the_assistance_effect_is_that_of_other_programs() {
     let trials = trials(&[[24, 12], [30, 16], [18, 16], [40, 22], [22, 10]], &[[20, 18], [16, 16], [28, 20], [24, 24]]);
-    let found = effect(HEADLINE, &pairs(&trials, HEADLINE), 1);
-    assert_eq!(found.groups, [5, 4]);
+    let found = effect(HEADLINE, pairs(&trials, HEADLINE), 1);
+    assert_eq!((found.groups, &found.left_out[..]), ([5, 4], &[][..]));
     let test = found.assistance().expect("a test");
     near(test.f, 7.070008537626539);
     near((test.p * 1e6).round(), 32517.0);
-    near((found.by_period.within.expect("a test").f * 1e6).round(), 19738993.0);
+    // With the weights of the groups' sizes it would be 19.739: that mixes assistance into the period.
+    let period = found.by_period.within.expect("a test");
+    near((period.f * 1e6).round(), 16_973_655.0);
+    near((period.p * 1e6).round(), 4460.0);
+    near((period.partial_eta_sq * 1e6).round(), 708_013.0);
+    assert_eq!((period.n, period.df), (9, [1.0, 7.0]));
+    let between = found.by_period.between.expect("a test");
+    near((between.f * 1e6).round(), 4843.0);
     let pearson = found.pearson.expect("a correlation");
     near(pearson.r, 0.7088637838665972);
     near(pearson.p, 0.03251668103330254);
@@ -28,19 +38,85 @@ fn the_assistance_effect_is_that_of_other_programs() {
     near(found.hedges_g.expect("an effect"), 1.5854907169007093);
     // Half the shift.
     near(found.reduction.expect("an estimate").estimate, 0.0275);
-    // Of groups of equal size the paper's coding tests the same.
-    let equal: Vec<(usize, [f64; 2])> =
-        pairs(&trials, HEADLINE)[1..].iter().map(|p| (usize::from(p.assisted_second), p.values)).collect();
-    let turned: Vec<(usize, [f64; 2])> =
-        equal.iter().map(|&(group, [a, b])| (group, if group == 1 { [a, b] } else { [b, a] })).collect();
-    near(mixed_anova(&turned).within.expect("a test").f, mixed_anova(&equal).interaction.expect("a test").f);
+    // The paper's coding tests the same, also of groups of unequal size.
+    near(found.by_condition.within.expect("a test").f, test.f);
+    near(found.by_condition.interaction.expect("a test").f, period.f);
+}
+
+/// Values that differ by the group alone, 10 and 3 of 20: the period has no effect, however unequal the groups are.
+#[test]
+fn the_period_does_not_contain_the_assistance_where_groups_are_unequal() {
+    let noise = |index: u64| (index * 7 + 3) % 5;
+    let second: Vec<[u64; 2]> = (0..10).map(|index| [30 + noise(index), 20 + noise(index + 1)]).collect();
+    let first: Vec<[u64; 2]> = (0..10).map(|index| [20 + noise(index), 30 + noise(index + 1)]).collect();
+    let mut trials = trials(&second, &first);
+    // With ten each, the period's effect is that of the noise; dropping seven of one group must not make one.
+    let period = |trials: &[TrialStatistics]| {
+        let found = effect(HEADLINE, pairs(trials, HEADLINE), 1);
+        (found.by_period.within.expect("a test").p, found)
+    };
+    assert!(period(&trials).0 > 0.5);
+    for trial in trials.iter_mut().filter(|trial| trial.participant.starts_with('B') && trial.period == Some(2)) {
+        if trial.participant.as_str() >= "B3" {
+            trial.left_out = Some("excluded: the tracker slipped".to_string());
+        }
+    }
+    let (p, found) = period(&trials);
+    assert!(p > 0.05, "p of the period {p}");
+    assert_eq!((found.groups, found.assistance().expect("a test").n), ([10, 3], 13));
+    let codes: Vec<&str> = found.left_out.iter().map(|one| one.participant.as_str()).collect();
+    assert_eq!(codes, ["B3", "B4", "B5", "B6", "B7", "B8", "B9"]);
+    let words = "B3, B4, B5, B6, B7, B8, B9 (trial 2 does not count (excluded: the tracker slipped))";
+    assert_eq!(left_out_in_words(&found.left_out).as_deref(), Some(words));
+    // In the printed summary and in the report, too.
+    let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let text = describe(&summary);
+    assert!(text.contains("13 participants: 10 assisted in the second trial, 3 in the first; left out: B3"), "{text}");
+    let page = report::page(&summary, &trials, &RecordingFacts::default(), &[]);
+    assert!(page.contains("Left out of the tests of errors per press of the human") && page.contains(words), "{page}");
+    assert!(page.contains("In 13 participants, assistance"), "{page}");
+}
+
+/// A crossover of 14 in which the wizard of one trial was shown what the assistants would send.
+#[test]
+fn an_unblinded_trial_counts_in_the_planned_arm_and_is_listed() {
+    let second: Vec<[u64; 2]> = (0..7).map(|index| [24 + index, 12 + index % 3]).collect();
+    let mut trials = trials(&second, &second);
+    let planned = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    assert!(planned.deviations.is_empty() && planned.as_carried_out.is_none());
+    let unblinded = trials.iter_mut().find(|trial| trial.planned_arm == StudyArm::Wizard).expect("a trial");
+    (unblinded.study_arm, unblinded.wizard_saw_advice) = (StudyArm::WizardWithAdvice, true);
+    let recording = unblinded.recording.clone();
+    let found = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    assert!(found.anova.is_some() && found.pearson.is_some() && found.permutation_p.is_some());
+    assert_eq!((&found.anova, &found.pearson, &found.effects), (&planned.anova, &planned.pearson, &planned.effects));
+    assert_eq!((&found.arms, &found.conditions), (&planned.arms, &planned.conditions));
+    let [deviation] = &found.deviations[..] else { panic!("{:?}", found.deviations) };
+    assert_eq!((&deviation.recording, deviation.unblinded), (&recording, true));
+    assert_eq!((deviation.planned, deviation.carried_out), (StudyArm::Wizard, StudyArm::WizardWithAdvice));
+    // Beside it, by what was done: three arms, for which there is no paired test.
+    let carried_out = found.as_carried_out.as_ref().expect("a deviation");
+    assert_eq!(carried_out.conditions.iter().map(|one| one.trials).collect::<Vec<_>>(), [14, 13, 1]);
+    assert!(carried_out.effects.iter().all(|effect| !effect.has_pairs()));
+    assert_eq!(carried_out.arms.as_ref().expect("a comparison").arms.len(), 3);
+    let words = format!(
+        "{recording}: planned wizard, carried out wizard with advice, since the wizard was shown what the assistants would send"
+    );
+    let text = describe(&found);
+    assert!(text.contains(&format!("counted in the planned condition: {words}\n")), "{text}");
+    assert!(text.contains("by the conditions as carried out:\n"), "{text}");
+    let page = report::page(&found, &trials, &RecordingFacts::default(), &[]);
+    assert!(page.contains("Does assistance help?") && page.contains("Deviations from the plan"), "{page}");
+    assert!(page.contains(&words), "{page}");
 }
 
 #[test]
 fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invented() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     trials[0].left_out = Some("excluded: the tracker slipped".to_string());
-    assert_eq!(pairs(&trials, HEADLINE).len(), 3);
+    let paired = pairs(&trials, HEADLINE);
+    assert_eq!((paired.pairs.len(), paired.left_out.len()), (3, 1));
+    assert_eq!(paired.left_out[0].reason, "trial 1 does not count (excluded: the tracker slipped)");
     let figures = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
     assert_eq!((figures.trials, figures.participants, figures.left_out.len()), (7, 4, 1));
     // A second trial that was done again counts as it was done the last time.
@@ -48,7 +124,7 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     again.recording = "A1-2-again".to_string();
     trials.push(again);
     arrange(&mut trials);
-    let pair = pairs(&trials, HEADLINE).into_iter().find(|pair| pair.participant == "A1").expect("a pair");
+    let pair = pairs(&trials, HEADLINE).pairs.into_iter().find(|pair| pair.participant == "A1").expect("a pair");
     near(pair.values[1], 0.01);
     let nobody = StudySummary::from_trials(&[], DetailTotals::default(), &RecordingFacts::default(), 0);
     assert!(nobody.anova.is_none() && nobody.pearson.is_none() && nobody.permutation_p.is_none());

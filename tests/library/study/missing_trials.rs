@@ -8,7 +8,7 @@ fn recording(plan: &str, participant: u32, period: Option<u32>, periods: u32) ->
     RecordedPlan {
         participant: format!("P{:02}", participant + 1),
         plan: Some((plan.to_string(), format!("digest of {plan}"))),
-        place: Some(PlaceInPlan { participant, period, periods }),
+        place: Some(PlaceInPlan { participant: Some(participant), period, periods }),
     }
 }
 
@@ -24,7 +24,7 @@ fn a_whole_study_misses_nothing_and_a_lost_recording_is_named() {
     let missing = missing_trials(&all);
     let second = |trials: &[u32]| MissingTrials {
         plan: "short".to_string(),
-        participant: 2,
+        participant: Some(2),
         code: Some("P02".to_string()),
         trials: trials.to_vec(),
     };
@@ -55,4 +55,22 @@ fn participants_without_a_recording_are_found_before_the_last_and_plans_are_told
     let words = in_words(&missing_trials(&trials(20..21))).expect("missing");
     assert!(words.starts_with("40 trials of the plan have no recording: participant 1 trials 1, 2; "), "{words}");
     assert!(words.ends_with("participant 8 trials 1, 2; and of 12 more participants"), "{words}");
+}
+
+#[test]
+fn a_recording_whose_code_was_corrected_is_of_the_participant_who_has_the_code() {
+    // The second participant's first trial was that of the third one, whose second trial is there, too.
+    let corrected = |code: &str, period: u32| RecordedPlan {
+        participant: code.to_string(),
+        place: Some(PlaceInPlan { participant: None, period: Some(period), periods: 2 }),
+        ..recording("short", 1, Some(period), 2)
+    };
+    let mut all = trials(0..1);
+    all.extend([corrected("P03", 1), recording("short", 1, Some(2), 2), recording("short", 2, Some(2), 2)]);
+    let missing = missing_trials(&all);
+    assert_eq!(in_words(&missing).as_deref(), Some("1 trial of the plan has no recording: P02 trial 1"));
+    all.push(corrected("P09", 2));
+    let missing = missing_trials(&all);
+    assert_eq!(in_words(&missing).as_deref(), Some("2 trials of the plan have no recording: P02 trial 1; P09 trial 1"));
+    assert_eq!(missing[1].participant, None, "its number in the plan is not known");
 }

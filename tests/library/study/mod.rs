@@ -14,15 +14,10 @@ mod report;
 mod tables;
 mod tutorials;
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
-use tomcom::edge::log::LOG_NAME;
 use tomcom::measures::belief_basis::BeliefSource;
 use tomcom::measures::cause_kinds::BeliefErrorCounts;
-use tomcom::run::study::NamedRecordings;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use tomcom::session::study_arm::StudyArm;
@@ -53,7 +48,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         is_planned: true,
         condition,
         study_arm: StudyArm::from_settings(condition, ConceptName::TomCom, false),
-        planned_arm: None,
+        planned_arm: StudyArm::from_settings(condition, ConceptName::TomCom, false),
         aims: None,
         wizard_sees: WizardVisibility::State,
         acting: SignalSenderWithParameter::from_settings(
@@ -68,6 +63,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         robot_presses: 100,
         errors,
         races: 0,
+        unproven: 0,
         beliefs: Some(FalseBeliefErrors {
             basis: BeliefSource::Recorded,
             errors: related,
@@ -115,25 +111,4 @@ fn trials(assisted_second: &[[u64; 2]], assisted_first: &[[u64; 2]]) -> Vec<Tria
     }
     arrange(&mut trials);
     trials
-}
-
-#[test]
-fn a_recording_that_several_paths_lead_to_counts_once() {
-    let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-paths");
-    let _ = fs::remove_dir_all(&root);
-    let (all, other) = (root.join("recordings"), root.join("other"));
-    for folder in [all.join("P01-1"), all.join("P01-2"), other.join("P01-1")] {
-        fs::create_dir_all(&folder).expect("a folder");
-        fs::write(folder.join(LOG_NAME), "{}\n").expect("written");
-    }
-    let found = |paths: &[PathBuf]| NamedRecordings::find(paths).expect("recordings").number();
-    assert_eq!(found(std::slice::from_ref(&all)), 2);
-    assert_eq!(found(&[all.clone(), other.join("../recordings"), all.join("P01-2")]), 2);
-    assert_eq!(found(&[all.clone(), other]), 3, "recordings of one name in two folders are two");
-    #[cfg(unix)]
-    {
-        std::os::unix::fs::symlink(&all, root.join("link")).expect("a link");
-        std::os::unix::fs::symlink(all.join("P01-1"), all.join("again")).expect("a link");
-        assert_eq!(found(&[all, root.join("link")]), 2);
-    }
 }

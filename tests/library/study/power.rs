@@ -131,6 +131,7 @@ fn tests_of_a_drawn_study_are_those_of_the_analysis() {
             participant: format!("P{:02}", one.participant),
             period: Some(one.period),
             study_arm: one.arm,
+            planned_arm: one.arm,
             condition: one.arm.condition(),
             human_presses: one.presses,
             errors: one.events,
@@ -138,8 +139,8 @@ fn tests_of_a_drawn_study_are_those_of_the_analysis() {
         })
         .collect();
     let found = results(&tests(&TWO), &study);
-    let papers = effect(HEADLINE, &pairs(&trials, HEADLINE), 1).assistance().expect("a test").p;
-    let contrast = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison").contrasts[0];
+    let papers = effect(HEADLINE, pairs(&trials, HEADLINE), 1).assistance().expect("a test").p;
+    let contrast = compare_arms(&trials).expect("a comparison").contrasts[0];
     assert_eq!(found[0].expect("a test").p, papers);
     assert_eq!(found[1].expect("a contrast").p, contrast.p_holm);
     let methods: Vec<SignificanceTestMethod> = tests(&THREE).iter().map(|test| test.method).collect();

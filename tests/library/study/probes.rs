@@ -104,8 +104,8 @@ fn question(kind: ProbeQuestionKind) -> ProbedQuestion {
 }
 
 fn probed(condition: Condition, questions: Vec<ProbedQuestion>) -> ProbedTrial {
-    let study_arm = StudyArm::from_settings(condition, ConceptName::TomCom, false);
-    ProbedTrial { study_arm, begun: 1, dropped: 0, skipped: 0, questions }
+    let planned_arm = StudyArm::from_settings(condition, ConceptName::TomCom, false);
+    ProbedTrial { planned_arm, begun: 1, dropped: 0, skipped: 0, questions }
 }
 
 /// A trial with one question, rightly answered.

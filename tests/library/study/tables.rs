@@ -11,6 +11,8 @@ use tomcom::kitchen::LocationId;
 use tomcom::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
+use tomcom::session::answer_value::AnswerValue;
+use tomcom::session::plan::QuestionnaireItemKind;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
@@ -20,9 +22,10 @@ use tomcom::study::preregistration::RecordedPlan;
 use tomcom::study::prevention::PreventionCounts;
 use tomcom::study::study_part::AnalysedRecording;
 use tomcom::study::tables::participants::participants;
+use tomcom::study::tables::questionnaires::{AnswerRow, answers as answers_of};
 use tomcom::study::tables::trials::{HEADLINE, measures};
 use tomcom::study::trial_details::TrialDetails;
-use tomcom::study::trial_statistics::TrialStatistics;
+use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::probes::one_right_answer;
 
@@ -92,6 +95,7 @@ fn pair() -> [TrialStatistics; 2] {
         period: Some(2),
         condition: Condition::Wizard,
         study_arm: StudyArm::Wizard,
+        planned_arm: StudyArm::Wizard,
         left_out: None,
         order_s: Some(20.0),
         presses_per_order: Some(16.5),
@@ -103,6 +107,7 @@ fn pair() -> [TrialStatistics; 2] {
         period: Some(1),
         condition: Condition::None,
         study_arm: StudyArm::None,
+        planned_arm: StudyArm::None,
         errors: second.errors * 2,
         order_s: Some(31.25),
         ..second.clone()
@@ -173,6 +178,36 @@ fn fields(folder: &Path, table: CsvTable, column: &str) -> Vec<String> {
     file.records().map(|row| row.expect("as many fields as the first line")[index].to_string()).collect()
 }
 
+/// No spreadsheet computes what a participant typed, and numbers stay numbers.
+fn check_guarded_texts(folder: &Path, export: &AnalysisFolder) {
+    let answer = |answer: AnswerValue| QuestionnaireAnswer {
+        questionnaire: "sheet".to_string(),
+        item: "words".to_string(),
+        text: "What did you think?".to_string(),
+        about: None,
+        reversed: false,
+        kind: QuestionnaireItemKind::Text,
+        answer: Some(answer),
+        points: None,
+        options: Vec::new(),
+        share: None,
+        before: false,
+        score: None,
+    };
+    let typed = ["=HYPERLINK(\"http://lab\")", "+1 point", "-", "@all", "\tx", "= is fine inside =", "-0.5"];
+    let mut answers: Vec<_> = typed.iter().map(|text| answer(AnswerValue::Text((*text).to_string()))).collect();
+    answers.push(answer(AnswerValue::Number(-5)));
+    let [first, _] = pair();
+    let trial = TrialStatistics { answers, ..first };
+    export.table::<AnswerRow>(answers_of(&trial)).expect("a table");
+    let written = fields(folder, CsvTable::Questionnaires, "answer");
+    let guarded =
+        ["'=HYPERLINK(\"http://lab\")", "'+1 point", "'-", "'@all", "'\tx", "'= is fine inside =", "-0.5", "-5"];
+    assert_eq!(written, guarded);
+    let meanings = fields(folder, CsvTable::Dictionary, "meaning");
+    assert!(meanings.iter().filter(|meaning| meaning.contains("a ' stands before words")).count() >= 3);
+}
+
 #[test]
 fn tables_are_written_as_they_are_declared() {
     let folder = folder("written");
@@ -193,6 +228,7 @@ fn tables_are_written_as_they_are_declared() {
     // What a timed arm would have felt is unknown, and not nought.
     assert_eq!([trial("contacts"), trial("given_up_fault")], [["", ""], ["", ""]]);
     assert!(trial("given_up_stopped").iter().all(|count| count.parse::<u64>().is_ok()));
+    check_guarded_texts(&folder, &export);
     let described = fields(&folder, CsvTable::Dictionary, "column");
     let of_trials: Vec<String> = fields(&folder, CsvTable::Dictionary, "table");
     let of_trials = of_trials.iter().zip(described).filter(|(table, _)| *table == "trials").map(|(_, column)| column);
@@ -216,8 +252,15 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         probes: Some(one_right_answer(Condition::None)),
     };
     let plan = RecordedPlan { participant: trial.participant.clone(), plan: None, place: None };
-    let practice =
-        AnalysedRecording { recording: "practice".to_string(), plan, consent: None, tutorial: Vec::new(), trial: None };
+    let practice = AnalysedRecording {
+        recording: "practice".to_string(),
+        digest: String::new(),
+        plan,
+        correction: None,
+        consent: None,
+        tutorial: Vec::new(),
+        trial: None,
+    };
     let recording = AnalysedRecording {
         recording: trial.recording.clone(),
         trial: Some((trial, details, facts)),

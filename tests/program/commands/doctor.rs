@@ -57,10 +57,34 @@ fn doctor_looks_at_what_a_session_names() {
     let (found, words) = verdict(nobody, "eye tracker");
     assert_eq!((found.as_str(), words.contains("127.0.0.1:1")), ("failed", true), "{words}");
     let surface = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pupil/gaze_positions_on_surface_wall.csv");
-    for (file, expected) in [(surface.as_path(), "ok"), (Path::new("nowhere.csv"), "failed")] {
+    // Two lines of it are malformed.
+    for (file, expected) in [(surface.as_path(), "warning"), (Path::new("nowhere.csv"), "failed")] {
         let settings = format!("[participant]\ngaze = \"file\"\n[tracker]\nfile = \"{}\"\n", file.display());
         let (found, words) = verdict(&settings, "gaze");
         assert_eq!(found, expected, "{words}");
+    }
+    let table = session.with_file_name("gaze.csv");
+    let settings = format!("[participant]\ngaze = \"file\"\n[tracker]\nfile = \"{}\"\n", table.display());
+    let row = |time: f64| format!("{time:.3},0.5,0.5,0.9\n");
+    let rows: String = (0..80).map(|nth| row(f64::from(nth % 40) / 200.0 - 3.0)).collect();
+    for (rows, name, expected, told) in [
+        (rows.clone(), "gaze", "ok", "80 samples in 0.4 s; no gap of more than 1 s"),
+        (
+            rows,
+            "gaze file",
+            "warning",
+            "line 42: the clock was set from -2.805 s to -3 s; joined in the order of lines",
+        ),
+        (
+            "soon,0.5,0.5,0.9\n".to_string(),
+            "gaze",
+            "failed",
+            "gaze.csv:2: found no line with gaze: gaze_timestamp = \"soon\"",
+        ),
+    ] {
+        fs::write(&table, format!("gaze_timestamp,x_norm,y_norm,confidence\n{rows}")).expect("a table");
+        let (found, words) = verdict(&settings, name);
+        assert!(found == expected && words.contains(told), "{found}: {words}");
     }
     assert!(complaint(&["doctor", "sessions/nowhere.toml"]).contains("sessions/nowhere.toml"));
 }

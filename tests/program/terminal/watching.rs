@@ -111,8 +111,8 @@ fn rows(terminal: &Terminal, file: &str) -> Vec<String> {
 /// The other rater codes the first error alike and the second otherwise; both settle the second.
 fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     let (recording, log) = (terminal.recording(), terminal.log());
-    let presses: Vec<&str> = kept.iter().filter_map(|row| row.split(',').next()).collect();
-    let codes = format!("press,cause,aspect\n{},slip,\n{},race,\n", presses[0], presses[1]);
+    let presses: Vec<&str> = kept.iter().filter_map(|row| row.split(',').nth(1)).collect();
+    let codes = format!("rater,press,cause,aspect\nR2,{},slip,\nR2,{},race,\n", presses[0], presses[1]);
     fs::write(recording.join("codes-R2.csv"), codes).expect("written");
     terminal.run(&format!("{TOMCOM} replay {name} --settle R2 R1"));
     terminal.see("error 2 is the first without a code");

@@ -2,12 +2,14 @@
 /** A questionnaire item, answered by touch, keys, or typed text. */
 const Questions = (() => {
   const SLIDER_END = 100;
-  // Answer to the present item that is typed or dragged but not sent yet.
-  let draft = { item: null, value: null };
+  // Longest entry of a number that is kept, in signs, and most digits of a number: beyond them it is refused, not cut.
+  const LONGEST_ENTRY = 24, MOST_DIGITS = 15;
+  // Answer to the present item that is typed or dragged but not sent yet; `isRefused`: somebody tried to go on with it.
+  let draft = { item: null, value: null, isRefused: false };
   let redraw = () => {}, tell = () => {};
 
   const pending = (question) => (draft.item === question.item ? draft.value : null);
-  const keep = (question, value) => { draft = { item: question.item, value }; };
+  const keep = (question, value) => { draft = { item: question.item, value, isRefused: false }; };
   const give = (question, answer) => tell({ kind: "answer", item: question.item, answer });
 
   function draw(sheet, question, words, kit) {
@@ -85,15 +87,23 @@ const Questions = (() => {
         if (key) made.dataset.typed = key;
         pad.append(made);
       }
-      const isWrong = value && !isNumber(form, value) && value.length >= String(form.max).length;
-      return [entry, text("p", isWrong ? "hint wrong" : "hint", `${form.min} – ${form.max} ${form.unit}`), pad];
+      // Signs that belong to no whole number stay in the field, since without them "7,5" would be another number: 75.
+      const isOther = value && !isWhole(value) && value !== "-", isEntered = draft.isRefused || value.length >= String(form.max).length;
+      const range = `${form.min} – ${form.max} ${form.unit}`, isWrong = isOther || (value && isEntered && !isNumber(form, value));
+      return [entry, text("p", isWrong ? "hint wrong" : "hint", isOther ? `${words["whole number"]} ${range}` : range), pad];
     },
-    text(question, words, { element }) {
-      const field = element("textarea", "");
-      Object.assign(field, { rows: 3, maxLength: question.form.length, value: pending(question) ?? question.answer ?? "" });
+    text(question, words, { element, text }) {
+      const field = element("textarea", ""), hint = text("p", "hint wrong", ""), { length } = question.form;
+      // A text that is too long is not cut, but refused.
+      const count = () => {
+        const given = lengthOf(field.value);
+        hint.textContent = given > length ? words["too long"].replace("#", given).replace("#", length) : "";
+      };
+      Object.assign(field, { rows: 3, value: pending(question) ?? question.answer ?? "" });
       field.setAttribute("aria-label", question.text);
-      field.addEventListener("input", () => keep(question, field.value));
-      return [field];
+      field.addEventListener("input", () => { keep(question, field.value); count(); });
+      count();
+      return [field, hint];
     },
     consent({ text: agreed, form }, words, { element, text }) {
       const reading = element("div", "reading");
@@ -132,16 +142,23 @@ const Questions = (() => {
 
   const position = (question) => pending(question) ?? question.answer;
   const onStep = ({ step }, value) => Math.min(SLIDER_END, Math.max(0, Math.round(value / step) * step));
-  const isNumber = ({ min, max }, typed) => /^-?[0-9]{1,7}$/.test(typed) && Number(typed) >= min && Number(typed) <= max;
+  const isWhole = (typed) => /^\s*-?[0-9]+\s*$/.test(typed);
+  const isNumber = ({ min, max }, typed) => isWhole(typed) && typed.length <= MOST_DIGITS && Number(typed) >= min && Number(typed) <= max;
+  /** A typed text in one line, without control characters, which no answer may have. */
+  const inOneLine = (typed) => typed.replace(/[\s\p{Cc}]+/gu, " ").trim();
+  /** Number of characters, as the program counts them: a sign of two code units is one. */
+  const lengthOf = (typed) => [...inOneLine(typed)].length;
 
   /** Goes on to the next item, with the typed answer or with the answer that was given before. */
   function next(question) {
     const typed = isTyped(question) ? pending(question) : null;
     if (typed === null) return question.answer !== null && tell({ kind: "next" });
-    const words = typed.replace(/\s+/g, " ").trim();
-    if (question.form.kind === "text" && words) give(question, words);
-    if (question.form.kind === "number" && isNumber(question.form, words)) give(question, Number(words));
-    return undefined;
+    const words = inOneLine(typed);
+    const { kind, length } = question.form;
+    if (kind === "text" && words && lengthOf(words) <= length) return give(question, words);
+    if (kind === "number" && isNumber(question.form, words)) return give(question, Number(words));
+    draft.isRefused = true;
+    return redraw();
   }
 
   const skip = (question) => { keep(question, null); give(question, null); };
@@ -154,11 +171,11 @@ const Questions = (() => {
     return give(question, question.form.options.map((option) => option.id).filter(isChosen));
   }
 
-  /** A digit, a minus sign or the delete key was typed or touched. */
+  /** A sign or the delete key was typed or touched. */
   function type(question, key) {
     const typed = pending(question) ?? String(question.answer ?? "");
     const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null ? key : typed + key;
-    if (next.length <= 7) keep(question, next);
+    if (next.length <= LONGEST_ENTRY) keep(question, next);
     redraw();
   }
 
@@ -172,12 +189,13 @@ const Questions = (() => {
 
   /**
    * The consent button is pressed or released, by touch, a key or a gamepad. Only an uninterrupted hold of the whole
-   * time gives consent.
+   * time gives consent; the program is told of the hold, and measures its time, too.
    */
   function hold(by, isDown, seconds) {
     if (isDown === (holds !== null) || (holds !== null && holds !== by)) return;
     holds = isDown ? by : null;
     clearTimeout(agrees);
+    tell({ kind: "hold", held: isDown });
     if (isDown) agrees = setTimeout(() => tell({ kind: "consent" }), 1000 * seconds);
     document.querySelectorAll(".hold").forEach((button) => button.classList.toggle("held", isDown));
   }
@@ -198,7 +216,7 @@ const Questions = (() => {
     if (isHeld) return undefined;
     if (kind === "slider" && digit !== null) return slide(question, 10 * digit);
     if (kind === "slider" && ["Home", "End"].includes(name)) return slide(question, name === "End" ? SLIDER_END : 0);
-    if (kind === "number" && (digit !== null || (name === "-" && form.min < 0))) return type(question, name);
+    if (kind === "number" && [...name].length === 1) return type(question, name);
     if (kind === "number" && name === "Backspace" && (pending(question) ?? question.answer ?? "") !== "") return type(question, "⌫");
     if (question.item && (name === "Delete" || (digit === 0 && ["scale", "choice"].includes(kind)))) return skip(question);
     if (kind === "scale" && digit !== null && digit <= form.points) return give(question, digit);

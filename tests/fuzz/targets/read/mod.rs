@@ -1,10 +1,12 @@
 //! Everything that reads what people or other programs wrote: session, layout, recipe, key, language and parameter files,
-//! questionnaires, logs and the files beside them; and everything that eye trackers and the participant's page send. Whatever
-//! it is, the answer is a value or an error that can be shown; never a panic, a hang or memory without bound.
+//! questionnaires, logs and the files beside them; and everything that eye trackers, the participant's page and the terminal send.
+//! Whatever it is, the answer is a value or an error that can be shown; never a panic, a hang or memory without bound.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
+use tomcom::console::ConsoleMessage;
 use tomcom::edge::display::message as page_message;
 use tomcom::edge::file_error::FileResult;
 use tomcom::edge::files::compile_kitchen;
@@ -14,6 +16,7 @@ use tomcom::edge::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, 
 use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message as pupil_message;
 use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
+use tomcom::edge::terminal_bytes::TerminalParser;
 use tomcom::edge::{gaze_file, gaze_line, stream_head, training, written_tables};
 use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::kitchen::cost_to_go::CostToGo;
@@ -23,6 +26,7 @@ use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
 use tomcom::session::header::RecordedFile;
 use tomcom::session::plan::{Questionnaire, Study};
+use tomcom::session::tracker::TrackerSpec;
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
@@ -32,7 +36,7 @@ const RECORDING: &str = include_str!("../../../golden/format-1-hand.jsonl");
 pub type Reader = fn(&[u8]);
 
 /// The readers with the names that `tests/fuzz/run` takes.
-pub const READERS: [(&str, Reader); 20] = [
+pub const READERS: [(&str, Reader); 21] = [
     ("layout", layout),
     ("recipes", recipes),
     ("session", session),
@@ -53,6 +57,7 @@ pub const READERS: [(&str, Reader); 20] = [
     ("pupil_message", pupil),
     ("pupil_frames", frames),
     ("page_message", page),
+    ("terminal", terminal),
 ];
 
 fn text(bytes: &[u8]) -> String {
@@ -126,7 +131,7 @@ fn exclusion(bytes: &[u8]) {
 /// Codes of one rater beside a log, and of several in an export.
 fn codes(bytes: &[u8]) {
     let path = file("codes-R1.csv", bytes);
-    shown(rater_codes::read(&folder(), "R1", &codable()).map(drop));
+    shown(rater_codes::read_all(&folder(), &codable()).map(drop));
     shown(rater_codes::read_export(&path).map(drop));
 }
 
@@ -153,7 +158,7 @@ fn table(bytes: &[u8]) {
 fn gaze_export(bytes: &[u8]) {
     let map =
         SurfaceHomography::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("the corners of a square");
-    shown(gaze_file::read(&file("gaze.csv", bytes), &map, 0.0).map(drop));
+    shown(gaze_file::read(&file("gaze.csv", bytes), &map, &TrackerSpec::default()).map(drop));
 }
 
 fn rerun_head(bytes: &[u8]) {
@@ -162,7 +167,7 @@ fn rerun_head(bytes: &[u8]) {
 }
 
 fn gaze_line(bytes: &[u8]) {
-    drop(gaze_line::parse(bytes, std::time::Instant::now()));
+    drop(gaze_line::parse(bytes, Instant::now()));
     drop(gaze_line::code_in(bytes));
 }
 
@@ -190,6 +195,19 @@ fn frames(bytes: &[u8]) {
 
 fn page(bytes: &[u8]) {
     drop(page_message::read(&text(bytes)));
+}
+
+/// What a terminal may send, in pieces, with silence between some of them. After a second of silence a space is the space bar.
+fn terminal(bytes: &[u8]) {
+    let (mut parser, mut now) = (TerminalParser::default(), Instant::now());
+    let second = Duration::from_secs(1);
+    for piece in bytes.chunks(5) {
+        now += if piece[0] % 3 == 0 { second / 20 } else { Duration::ZERO };
+        drop((parser.expire(now), parser.read(piece, now)));
+    }
+    parser.expire(now + second);
+    let read = parser.read(b" ", now + second);
+    assert!(matches!(&read[..], [ConsoleMessage::Key(_)]) && parser.deadline().is_none(), "{read:?}");
 }
 
 /// Errors are told, with their place in the text.

@@ -1,0 +1,29 @@
+//! Makes text from outside safe for tables that people open with a spreadsheet program.
+
+use std::borrow::Cow;
+
+/// What a table's description says about [`without_formula`].
+pub const GUARDED: &str =
+    "a ' stands before words that begin with = + - @ or a tab, so that no spreadsheet computes them";
+
+/// The text of a table's cell, which no spreadsheet program takes for a formula: text that begins like one gets a `'` in
+/// front (as OWASP advises against CSV injection). Numbers stay as they are.
+pub fn without_formula(text: &str) -> Cow<'_, str> {
+    let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();
+    if is_formula { Cow::Owned(format!("'{text}")) } else { Cow::Borrowed(text) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_become_text_and_numbers_stay_numbers() {
+        for text in ["=1+1", "=HYPERLINK(\"http://x\")", "+49 170", "-P07", "@SUM(A1)", "\t=1", "\r=1", "-"] {
+            assert_eq!(without_formula(text), format!("'{text}"), "{text:?}");
+        }
+        for text in ["", "-0.5", "+3", "-1e-9", "a = b", "'=1", "P07-1"] {
+            assert_eq!(without_formula(text), text);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Files beside a closed log with later decisions about the recording. The log of a closed recording is never changed.
+//! All decisions of a file are kept, and the last one holds.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::RecordingWriteError;
+use crate::edge::file_error::{FileError, FileResult, read_regular};
+use crate::edge::replace_file;
+
+/// Why a decision about a recording cannot be recorded.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum DecisionError {
+    /// The recording, or an earlier decision, cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    /// The decision about the recording cannot be written to its folder.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] RecordingWriteError),
+    /// The reason of a decision does not have 1 to 200 characters; the number is its length.
+    #[error("found a reason of {0} characters")]
+    #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
+    Reason(usize),
+    /// The participant's code cannot be corrected to this.
+    #[error("found {found}")]
+    #[diagnostic(help("{remedy}"))]
+    Code {
+        /// What is wrong with the code, in words.
+        found: String,
+        /// What would be right instead.
+        remedy: String,
+    },
+}
+
+impl From<FileError> for DecisionError {
+    fn from(error: FileError) -> DecisionError {
+        DecisionError::File(Box::new(error))
+    }
+}
+
+/// Checks the reason that somebody gave for a decision; an empty one only where it `may_be_empty`.
+pub(super) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), DecisionError> {
+    let length = reason.chars().count();
+    match length > 200 || (!may_be_empty && reason.trim().is_empty()) || reason.chars().any(char::is_control) {
+        true => Err(DecisionError::Reason(length)),
+        false => Ok(()),
+    }
+}
+
+/// Reads a file with decisions; empty decisions if there is no such file. `remedy`: what the file should contain.
+pub(super) fn read<Decisions: DeserializeOwned + Default>(path: &Path, remedy: &str) -> FileResult<Decisions> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    check_single(path.parent().unwrap_or(Path::new("")), &name)?;
+    let text = match read_regular(path) {
+        Ok(text) => text,
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Ok(Decisions::default());
+        }
+        Err(reason) => return Err(FileError::unreadable(path, reason, "a readable text file (UTF-8)")),
+    };
+    toml::from_str(&text)
+        .map_err(|error| FileError::at(path, &text, error.span(), error.message().to_string(), remedy.to_string()))
+}
+
+/// Checks that the folder of a recording has no copy of the file with this name, such as those that file managers and
+/// sync programs make: it could have another content, and what it says would be lost.
+///
+/// # Errors
+/// There is such a copy.
+pub(super) fn check_single(folder: &Path, name: &str) -> FileResult<()> {
+    // A folder that cannot be read is reported by the reader of the file.
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    for entry in entries.flatten() {
+        let other = entry.file_name().to_string_lossy().to_ascii_lowercase();
+        if other != name && other.contains(stem) && other.ends_with(&format!(".{extension}")) {
+            let remedy =
+                format!("{name} alone: compare the two, keep the one that holds, and move the other elsewhere");
+            let found = format!("what looks like a copy of {name}, which is not read");
+            return Err(FileError::from_finding(&entry.path(), found, remedy));
+        }
+    }
+    Ok(())
+}
+
+/// Writes a file with decisions, completely or not at all.
+pub(super) fn write(path: &Path, decisions: &impl Serialize) -> Result<(), RecordingWriteError> {
+    let failed = |reason| RecordingWriteError::unwritable(path, reason);
+    let text = toml::to_string(decisions).map_err(|error| failed(std::io::Error::other(error)))?;
+    replace_file::replace(path, text.as_bytes()).map_err(failed)
+}

@@ -1,0 +1,157 @@
+//! A participant's code that was typed wrong when the session began is corrected for every reader.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use tomcom::edge::files::read_session;
+use tomcom::edge::forget;
+use tomcom::edge::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct};
+use tomcom::edge::recordings;
+use tomcom::run::bids_export;
+use tomcom::run::fit::FitTrials;
+use tomcom::run::gathered::GatheredRecordings;
+use tomcom::run::kept_cost::KeptCost;
+use tomcom::run::recording_list::{RecordingListDetail, list};
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::study::reading::{self, AnalysisScope};
+use tomcom::run::study::{self, AnalysisRequest, NamedRecordings, describe};
+use tomcom::session::plan::{ParticipantProgress, Study};
+
+/// An empty folder for the test of this name.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("corrections").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// A plan of two participants with short trials, and a recording of each trial, as if people had taken part.
+fn recorded(out: &Path) -> Study {
+    let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
+    files.spec.trial.presses = 6;
+    let study = files.study().expect("a plan");
+    let simulated = out.join("simulated");
+    let request = SimulationRequest { files, trials: 4, shard: SimulationShard::WHOLE, out: simulated.clone() };
+    for recording in simulate(&request, || ()).expect("a folder").recordings {
+        let log = fs::read_to_string(Path::new(&recording).join(LOG_NAME)).expect("a log");
+        let (head, events) = log.split_once('\n').expect("a header");
+        let mut header: Value = serde_json::from_str(head).expect("a header");
+        header["started"] = json!("2026-03-14T10:00:00Z");
+        let name = Path::new(&recording).file_name().expect("a name").to_string_lossy().replace("seed1-", "");
+        fs::create_dir_all(out.join(&name)).expect("a folder");
+        fs::write(out.join(name).join(LOG_NAME), format!("{header}\n{events}")).expect("written");
+    }
+    fs::remove_dir_all(simulated).expect("removed");
+    study
+}
+
+fn code(recording: &Path) -> String {
+    LogReader::open(recording).expect("a recording").header.session.participant.code
+}
+
+/// The codes that the list of a folder shows, by recording.
+fn listed(folder: &Path) -> Vec<(String, String)> {
+    let (list, _) = list(folder, RecordingListDetail::WithErrors, |_| (), || ()).expect("a folder");
+    let mut rows: Vec<(String, String)> =
+        list.recordings.into_iter().map(|row| (row.recording, row.code.unwrap_or_default())).collect();
+    rows.sort();
+    rows
+}
+
+#[test]
+fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
+    let out = folder("readers");
+    let plan = recorded(&out);
+    let recording = out.join("P02-1");
+    let log = fs::read(recording.join(LOG_NAME)).expect("a log");
+    let before = listed(&out);
+    let correction = correct(&recording, Some("P03"), "the code of the day before").expect("corrected");
+    assert_eq!((correction.before.as_str(), correction.after.as_str()), ("P02", "P03"));
+    assert!(fs::read(recording.join(LOG_NAME)).expect("a log") == log, "the log stays as it is");
+    let kept = fs::read_to_string(recording.join(CORRECTION_NAME)).expect("a file");
+    assert!(kept.contains("before = \"P02\"") && kept.contains("why = \"the code of the day before\""), "{kept}");
+
+    assert_eq!(code(&recording), "P03");
+    let rows = listed(&out);
+    assert_eq!(rows[2], ("P02-1".to_string(), "P03".to_string()), "{rows:?}");
+    // The second list comes from the numbers that the first one kept.
+    assert_eq!(listed(&out), rows);
+    let extent = AnalysisScope { concepts: false, events: false };
+    let read = reading::read(&recording, "one", extent, None, &mut KeptCost::default()).expect("readable");
+    assert_eq!(read.expect("a trial").1.trial.participant, "P03");
+    let all = GatheredRecordings::find(std::slice::from_ref(&out)).expect("recordings");
+    let people = FitTrials::read(&all, false).expect("recordings").people;
+    let codes: Vec<&str> = people.iter().map(|(code, _)| code.as_str()).collect();
+    assert_eq!(codes, ["P01", "P01", "P03", "P02"]);
+    let bids = folder("bids");
+    let summary = bids_export::export(&all.paths, &bids.join("data"), false, || ()).expect("exported");
+    let place = summary.recordings.iter().find(|one| one.recording == recording.clone().into()).expect("exported");
+    assert!(place.place.starts_with("sub-P03/"), "{}", place.place);
+    // The plan: P03 has the trial, and P02 does it again.
+    let made = recordings::of_plan(&out, "paper").expect("recordings");
+    let done = |participant: usize| {
+        let progress = ParticipantProgress::from_recordings(&plan, participant, &made).expect("recordings of the plan");
+        progress.steps.iter().map(|step| step.is_done).collect::<Vec<bool>>()
+    };
+    assert_eq!([done(0), done(1), done(2)], [vec![true, true], vec![false, true], vec![true, false]]);
+    // What belongs to P02 goes without the recording.
+    let found = |code: &str| forget::find(&out, &out.join("nothing"), code).expect("a folder").recordings;
+    assert_eq!([found("P02"), found("P03")], [vec![out.join("P02-2")], vec![recording.clone()]]);
+
+    let request =
+        AnalysisRequest { paths: vec![out.clone()], out: folder("results"), extent, raters: None, frozen: None };
+    let (figures, report) =
+        study::study(&request, &NamedRecordings::find(&request.paths).expect("recordings"), || ()).expect("analysed");
+    let words = "code of the participant corrected: P02-1: P02 is P03 (the code of the day before; ";
+    assert!(describe(&figures).contains(words), "{}", describe(&figures));
+    assert!(describe(&figures).contains("2 trials of the plan have no recording: P02 trial 1; P03 trial 2"));
+    assert!(fs::read_to_string(report).expect("a report").contains(words));
+
+    assert!(correct(&recording, Some("P03"), "again").expect_err("refused").to_string().contains("has already"));
+    assert!(correct(&recording, Some("NA"), "why").expect_err("refused").to_string().contains("the code \"NA\""));
+    assert!(
+        correct(&recording, Some("P04"), " ").expect_err("refused").to_string().contains("a reason of 1 characters")
+    );
+    assert_eq!(code(&recording), "P03");
+    correct(&recording, None, "").expect("taken back");
+    assert_eq!(code(&recording), "P02");
+    assert_eq!(listed(&out), before);
+    let told = correct(&recording, None, "").expect_err("refused").to_string();
+    assert!(told.contains("no correction of the code P02"), "{told}");
+    fs::write(recording.join(CORRECTION_NAME), "[[correction]]\nbefore = 1\n").expect("written");
+    let told = LogReader::open(&recording).expect_err("refused").to_string();
+    assert!(told.contains("correction.toml:2"), "{told}");
+}
+
+#[test]
+fn all_parts_of_a_recording_are_corrected() {
+    let out = folder("parts");
+    recorded(&out);
+    let whole = out.join("P02-1");
+    let log = fs::read_to_string(whole.join(LOG_NAME)).expect("a log");
+    let lines: Vec<&str> = log.lines().collect();
+    let half = lines.len() / 2;
+    let part = out.join("P02-1-part2");
+    fs::create_dir_all(&part).expect("a folder");
+    let event: Value = serde_json::from_str(lines[half]).expect("an event");
+    let mut header: Value = serde_json::from_str(lines[0]).expect("a header");
+    header["continues"] = json!({ "recording": "P02-1", "events": event["seq"], "t_ns": event["t_ns"] });
+    fs::write(part.join(LOG_NAME), format!("{header}\n{}\n", lines[half..].join("\n"))).expect("written");
+    fs::write(whole.join(LOG_NAME), lines[..half].join("\n") + "\n").expect("written");
+    let told = correct(&whole, Some("P03"), "why").expect_err("a later part continues it").to_string();
+    assert!(told.contains("was continued already"), "{told}");
+    correct(&part, Some("P03"), "why").expect("corrected");
+    assert_eq!([code(&whole), code(&part)], ["P03", "P03"]);
+    let found = |code: &str| forget::find(&out, &out.join("nothing"), code).expect("a folder").recordings;
+    assert_eq!(found("P03"), [whole.clone(), part.clone()], "nothing of the participant is left");
+    let mut reader = LogReader::open(&part).expect("a recording");
+    while reader.next_line().expect("all parts can be read").is_some() {}
+    // A part that continues a corrected recording has the right code in its log; the first code comes back all the same.
+    let text = fs::read_to_string(part.join(LOG_NAME)).expect("a log");
+    fs::write(part.join(LOG_NAME), text.replacen("\"code\":\"P02\"", "\"code\":\"P03\"", 1)).expect("written");
+    fs::remove_file(part.join(CORRECTION_NAME)).expect("removed");
+    assert_eq!(code(&part), "P03");
+    correct(&part, None, "").expect("taken back");
+    assert_eq!([code(&whole), code(&part)], ["P02", "P02"]);
+}

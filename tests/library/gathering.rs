@@ -1,0 +1,207 @@
+//! Recordings that are read together: each trial counts once, whatever leads to it and however often it was copied.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use tomcom::edge::files::read_session;
+use tomcom::edge::log::{LOG_NAME, rule};
+use tomcom::edge::recordings;
+use tomcom::run::gathered::GatheredRecordings;
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::study::NamedRecordings;
+use tomcom::session::plan::RecordingOutcome;
+
+/// An empty folder for the test of this name.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gathering").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// The log of a short trial in a plan.
+fn log(root: &Path) -> String {
+    let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
+    files.spec.trial.presses = 6;
+    let out = root.join("simulated");
+    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out };
+    let made = simulate(&request, || ()).expect("a folder").recordings;
+    let log = fs::read_to_string(Path::new(&made[0]).join(LOG_NAME)).expect("a log");
+    fs::remove_dir_all(root.join("simulated")).expect("removed");
+    log
+}
+
+/// Records this log in a folder, as a trial of a person, with changes of its header.
+fn record(folder: &Path, log: &str, change: impl FnOnce(&mut Value)) -> PathBuf {
+    let (head, events) = log.split_once('\n').expect("a header");
+    let mut header: Value = serde_json::from_str(head).expect("a header");
+    header["started"] = json!("2026-03-14T10:00:00Z");
+    change(&mut header);
+    fs::create_dir_all(folder).expect("a folder");
+    fs::write(folder.join(LOG_NAME), format!("{header}\n{events}")).expect("written");
+    folder.to_path_buf()
+}
+
+/// Copies the files of a recording into another folder.
+fn copy(recording: &Path, to: &Path) -> PathBuf {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(recording).expect("a recording") {
+        let path = entry.expect("an entry").path();
+        fs::copy(&path, to.join(path.file_name().expect("a name"))).expect("copied");
+    }
+    to.to_path_buf()
+}
+
+fn number(paths: &[PathBuf]) -> usize {
+    NamedRecordings::find(paths).expect("recordings").number()
+}
+
+fn refusal(paths: &[PathBuf]) -> String {
+    GatheredRecordings::find(paths).expect_err("refused").to_string()
+}
+
+#[test]
+fn a_recording_that_several_paths_lead_to_counts_once() {
+    let root = folder("paths");
+    let (log, all, other) = (log(&root), root.join("recordings"), root.join("other"));
+    let code = |code: &str| {
+        let code = code.to_string();
+        move |header: &mut Value| header["session"]["participant"]["code"] = json!(code)
+    };
+    record(&all.join("P01-1"), &log, code("P01"));
+    record(&all.join("P02-1"), &log, code("P02"));
+    record(&other.join("P01-1"), &log, code("P03"));
+    assert_eq!(number(std::slice::from_ref(&all)), 2);
+    assert_eq!(
+        number(&[all.clone(), other.join("../recordings"), all.join("P02-1"), all.join("P02-1/events.jsonl")]),
+        2
+    );
+    assert_eq!(number(&[all.clone(), other]), 3, "recordings of one name in two folders are two");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&all, root.join("link")).expect("a link");
+        std::os::unix::fs::symlink(all.join("P01-1"), all.join("again")).expect("a link");
+        assert_eq!(number(&[all, root.join("link")]), 2);
+    }
+}
+
+#[test]
+fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
+    let root = folder("twice");
+    let log = log(&root);
+    let at = |time: &str| {
+        let time = time.to_string();
+        move |header: &mut Value| header["started"] = json!(time)
+    };
+    let first = record(&root.join("a/P01-1"), &log, at("2026-03-14T10:00:00Z"));
+    let second = record(&root.join("b/P01-1"), &log, at("2026-03-14T12:00:00Z"));
+    let both = [root.join("b"), root.join("a")];
+    let told = refusal(&both);
+    assert!(told.contains(&second.display().to_string()), "{told}");
+    assert!(told.contains("a second recording of trial 1 of P01 in the plan \"paper\""), "{told}");
+    assert!(told.contains(&format!("which {} is a recording of", first.display())), "{told}");
+    assert!(NamedRecordings::find(&both).is_err());
+    // What does not count is no second recording: excluded, cut, another trial, practice, another plan, no plan.
+    rule(&second, false, "").expect("included, as it is anyway");
+    assert!(refusal(&both).contains("a second recording"));
+    rule(&second, true, "the first one is right").expect("excluded");
+    assert_eq!(number(&both), 2);
+    fs::remove_dir_all(&second).expect("removed");
+    let lines: Vec<&str> = log.lines().collect();
+    record(&second, &(lines[..lines.len() / 2].join("\n") + "\n"), at("2026-03-14T12:00:00Z"));
+    assert_eq!(number(&both), 2);
+    type Change = fn(&mut Value);
+    let others: [Change; 5] = [
+        |header| header["session"]["step"]["period"] = json!(2),
+        |header| header["session"]["step"]["period"] = Value::Null,
+        |header| header["session"]["step"]["plan"] = json!("another"),
+        |header| header["session"]["participant"]["code"] = json!("P02"),
+        |header| header["session"]["step"] = Value::Null,
+    ];
+    for change in others {
+        record(&second, &log, |header| {
+            change(header);
+            let header = header.as_object_mut().expect("a header");
+            let session = header["session"].as_object_mut().expect("settings");
+            session.retain(|_, value| !value.is_null());
+            if let Some(step) = session.get_mut("step").and_then(Value::as_object_mut) {
+                step.retain(|_, value| !value.is_null());
+            }
+        });
+        assert_eq!(number(&both), 2);
+    }
+    record(&second, &log, |header| header["session"]["participant"]["code"] = json!("p01"));
+    let told = refusal(&both);
+    assert!(told.contains("a recording of P01, beside") && told.contains("which is one of p01"), "{told}");
+    // Another version of the plan is the same plan; simulated people of another seed are others.
+    record(&second, &log, |header| header["session"]["step"]["digest"] = json!("another"));
+    assert!(refusal(&both).contains("a second recording"));
+    let simulated = |folder: &Path, seed: u64| {
+        record(folder, &log, |header| {
+            header.as_object_mut().expect("a header").remove("started");
+            header["program"] = json!(format!("0.9.{seed}"));
+            header["session"]["seed"] = json!(seed / 2);
+        })
+    };
+    simulated(&first, 2);
+    simulated(&second, 4);
+    assert_eq!(number(&both), 2);
+    simulated(&second, 3);
+    assert!(refusal(&both).contains("a second recording of trial 1 of seed1-P01"));
+}
+
+#[test]
+fn copies_count_once_and_are_told() {
+    let root = folder("copies");
+    let log = log(&root);
+    let first = record(&root.join("P01-1"), &log, |_| ());
+    let copied = copy(&first, &root.join("P01-1 - Copy"));
+    let elsewhere = copy(&first, &root.join("backup/0"));
+    let found = GatheredRecordings::find(&[elsewhere.clone(), root.clone()]).expect("recordings");
+    assert_eq!(found.paths, std::slice::from_ref(&elsewhere), "the first by the name of its folder");
+    let copies: Vec<(&str, &str)> =
+        found.copies.iter().map(|one| (one.recording.as_str(), one.copy_of.as_str())).collect();
+    let [first_name, copied_name, elsewhere_name] =
+        [&first, &copied, &elsewhere].map(|path| path.display().to_string());
+    assert_eq!(copies, [(first_name.as_str(), elsewhere_name.as_str()), (&copied_name, &elsewhere_name)]);
+    assert_eq!(number(&[root.clone(), root.join("backup")]), 1);
+    // A plan goes on where it was, and does not offer the copy of a recording.
+    let made = recordings::of_plan(&root, "paper").expect("recordings");
+    let made: Vec<(&str, &RecordingOutcome)> = made.iter().map(|one| (one.recording.as_str(), &one.outcome)).collect();
+    assert_eq!(made.len(), 1, "{made:?}");
+    assert_eq!(made[0].0, "P01-1");
+    // It is not known which of two decisions holds.
+    rule(&first, true, "interrupted").expect("excluded");
+    let told = refusal(std::slice::from_ref(&root));
+    assert!(
+        told.contains(&copied_name) && told.contains(&format!("a copy of {first_name} with another exclusion")),
+        "{told}"
+    );
+    fs::copy(first.join("exclusion.toml"), copied.join("exclusion.toml")).expect("copied");
+    assert_eq!(number(std::slice::from_ref(&root)), 1);
+}
+
+#[test]
+fn a_copy_of_an_earlier_part_is_no_recording_of_its_own() {
+    let root = folder("parts");
+    let log = log(&root);
+    let lines: Vec<&str> = log.lines().collect();
+    let half = lines.len() / 2;
+    let first = record(&root.join("P01-1"), &(lines[..half].join("\n") + "\n"), |_| ());
+    let rest = lines[..1].iter().chain(&lines[half..]).copied().collect::<Vec<&str>>().join("\n") + "\n";
+    let event: Value = serde_json::from_str(lines[half]).expect("an event");
+    record(&root.join("P01-1-part2"), &rest, |header| {
+        header["continues"] = json!({ "recording": "P01-1", "events": event["seq"], "t_ns": event["t_ns"] });
+    });
+    assert_eq!(number(std::slice::from_ref(&root)), 1);
+    assert_eq!(number(&[root.join("P01-1"), root.join("P01-1-part2")]), 1, "a part is read with the last one");
+    copy(&first, &root.join("P01-1 - Copy"));
+    let found = GatheredRecordings::find(std::slice::from_ref(&root)).expect("recordings");
+    assert_eq!(found.paths, [root.join("P01-1-part2")]);
+    assert_eq!(found.copies[0].recording, root.join("P01-1 - Copy").display().to_string());
+    assert_eq!(found.copies[0].copy_of, root.join("P01-1-part2").display().to_string());
+    // No recording is judged by thresholds that were chosen on itself.
+    let both = found.beside(&GatheredRecordings::find(&[root.join("P01-1 - Copy")]).expect("a recording"));
+    assert!(both.expect_err("refused").to_string().contains("named for two purposes"));
+}

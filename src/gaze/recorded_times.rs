@@ -53,17 +53,25 @@ impl RecordedTimeline {
         let mut timeline = RecordedTimeline { times: vec![None; times.len()], ..RecordedTimeline::default() };
         let runs = kept_runs(times, limits);
         let interval = median_interval(times).unwrap_or(0).max(0);
+        // Distances of the clocks so far, as they were set one after the other, from the axis.
+        let mut offsets: Vec<i128> = Vec::new();
         let mut offset = 0;
         for (nth, run) in runs.iter().enumerate() {
             let first = times[run.start];
             match nth.checked_sub(1).map(|before| runs[before].end - 1) {
                 None => offset = -first,
-                Some(last) if !limits.follows(times[last], first) => {
-                    timeline.steps.push(RecordedClockStep { at: run.start, from: times[last], to: first });
-                    offset += times[last] + interval - first;
+                Some(last) => {
+                    let gap = |offset: i128, before: i128| (first + offset - before).abs() >= limits.gap;
+                    let end = times[last] + offset;
+                    // A long gap of this clock that is none of an earlier one: the clock was set right again.
+                    let is_earlier = gap(offset, end) && offsets.iter().any(|&earlier| !gap(earlier, end));
+                    if is_earlier || !limits.follows(times[last], first) {
+                        timeline.steps.push(RecordedClockStep { at: run.start, from: times[last], to: first });
+                        offset = end + interval - first;
+                    }
                 }
-                Some(_) => {}
             }
+            offsets.push(offset);
             run.clone().for_each(|index| timeline.times[index] = Some(times[index] + offset));
         }
         timeline.odd = (0..times.len()).filter(|&index| timeline.times[index].is_none()).collect();
@@ -155,6 +163,9 @@ mod tests {
         check(&[every_5(0, 6), every_5(1_725_000_000_000, 6)].concat(), &every_5(0, 12), &[6], &[]);
         let twice = [every_5(50_000, 6), every_5(7000, 6), every_5(100, 6)].concat();
         check(&twice, &every_5(0, 18), &[6, 12], &[]);
+        // Test: the clock was set back by a minute, and right again.
+        let right_again = [every_5(100_000, 6), every_5(40_030, 6), every_5(100_060, 6)].concat();
+        check(&right_again, &every_5(0, 18), &[6, 12], &[]);
         // Test: the clock was set back, and went on with a gap after three samples.
         let with_gap = [every_5(50_000, 6), every_5(7000, 3), every_5(9000, 6)].concat();
         let joined = [every_5(0, 9), every_5(2030, 6)].concat();

@@ -93,6 +93,8 @@ struct Review {
     /// Instant at which the newest event of a running session's recording was read.
     read_at: Instant,
     grows: bool,
+    /// Whether a program on this machine was seen to write the recording. A log that is only copied here has no such.
+    was_written: bool,
     dirty: bool,
     /// Comparison of wizard and assistants, if it was asked for.
     comparison: Option<ComparisonThreadHandle>,
@@ -133,6 +135,7 @@ impl Review {
             at: now,
             read_at: now,
             grows: follow,
+            was_written: false,
             dirty: true,
             comparison,
         };
@@ -261,7 +264,23 @@ impl Review {
             self.grows = false;
             return Ok(());
         }
-        Ok(self.film.replay.log().check_there()?)
+        self.film.replay.log().check_there()?;
+        match self.film.replay.log().ending() {
+            LogEnding::Running => self.was_written = true,
+            // What the program wrote at its end can have come since the log was read.
+            LogEnding::Cut if self.was_written && !self.film.read()? => {
+                self.grows = false;
+                self.playback(|playback| (playback.follows, playback.playing) = (false, false));
+                let folder = self.film.replay.log().folder().display();
+                let text = format!(
+                    "the program that recorded this has ended without closing it; tomcom operate --continue {folder} goes on"
+                );
+                self.model.say(NoticeLevel::Alarm, text);
+                self.dirty = true;
+            }
+            LogEnding::Cut | LogEnding::Closed => {}
+        }
+        Ok(())
     }
 }
 

@@ -224,13 +224,13 @@ def lags(events, since_ns=0):
 def check_clocks(tomcom, scratch):
     """Clocks at other rates, and what is no clock: told within five seconds, and stamped by arrival from then on."""
     cases = {
-        "slow loop": (lambda s, n: n / 120, 120 / 1.03, r"t runs at 97 % of real time"),
-        "92 percent": (lambda s, n: 0.92 * s, 120, r"t runs at 92 % of real time"),
-        "half": (lambda s, n: 0.5 * s, 120, r"t runs at (49|50|51) % of real time"),
-        "fast": (lambda s, n: 1e6 + 1.03 * s, 120, r"t runs at 103 % of real time"),
-        "milliseconds": (lambda s, n: 1e3 * s, 120, r"t runs 1000 times as fast as real time, like milliseconds"),
-        "microseconds": (lambda s, n: 1e6 * s, 120, r"t runs 1000000 times as fast"),
-        "frames": (lambda s, n: n, 120, r"t runs (119|120|121) times as fast as real time, like counts"),
+        "slow loop": (lambda s, n: n / 120, 120 / 1.03, r"t runs at 9[678] % of real time"),
+        "92 percent": (lambda s, n: 0.92 * s, 120, r"t runs at 9[123] % of real time"),
+        "half": (lambda s, n: 0.5 * s, 120, r"t runs at (49|50|51|52) % of real time"),
+        "fast": (lambda s, n: 1e6 + 1.03 * s, 120, r"t runs at 10[234] % of real time"),
+        "milliseconds": (lambda s, n: 1e3 * s, 120, r"t runs (99\d|10[01]\d) times as fast as real time, like milliseconds"),
+        "microseconds": (lambda s, n: 1e6 * s, 120, r"t runs (99|100|101)\d{4} times as fast"),
+        "frames": (lambda s, n: n, 120, r"t runs (11[789]|12[0123]) times as fast as real time, like counts"),
         "constant": (lambda s, n: 7.5, 120, r"t stands still"),
         "falling": (lambda s, n: 500 - s, 120, r"t goes back from sample to sample"),
     }
@@ -239,16 +239,15 @@ def check_clocks(tomcom, scratch):
         with Console(tomcom, scratch / name.replace(" ", "-")) as console:
             with connect() as tracker:
                 after_s = send_by_schedule(tracker, t, hz, 12, 0.06, lambda: re.search(words, console.screen()))
-            assert after_s is not None and after_s < 6, (name, after_s, console.screen())
-            with connect() as tracker:
-                send_by_schedule(tracker, t, hz, 0.3, 0.0)
+                assert after_s is not None and after_s < 6, (name, after_s, console.screen())
                 console.checks("gaze times")
             recording = console.quit()
         events = recorded(recording)
         stamps = [event for event in events if event["kind"] == "tracker" and event["what"] == "stamps"]
         gaze = [event for event in events if event["kind"] == "gaze"]
         told_s = (stamps[0]["t_ns"] - gaze[0]["t_ns"]) / 1e9
-        assert len(stamps) == 1 and told_s < 5, (name, stamps, told_s)
+        # The second one ends it: nothing is known about the stamps of the next sender.
+        assert ["fault" in event for event in stamps] == [True, False] and told_s < 5, (name, stamps, told_s)
         late = sum(lag > 0.5 for lag in lags(events))
         assert late < hz and max(lags(events, stamps[0]["t_ns"] + 1)[: int(5 * hz)]) == 0, (name, late)
         verify(tomcom, recording)

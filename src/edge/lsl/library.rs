@@ -217,6 +217,13 @@ impl Drop for LslStreamWatch {
 }
 
 fn open(path: &Path) -> Result<Library, LslError> {
+    // The operating system would wait for whoever writes to a pipe. It looks for a bare name itself.
+    if path.components().count() > 1 && std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(LslError::Missing(format!(
+            "{}: it is no regular file, but a pipe, device or folder",
+            path.display()
+        )));
+    }
     // SAFETY: loading a library runs its initialisers; the session file, or the operating system, names this one as
     // liblsl.
     unsafe { Library::new(path) }.map_err(|error| {

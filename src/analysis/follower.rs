@@ -21,7 +21,6 @@ use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::gaze_awareness::UnawarenessDetector;
 use crate::session::probes::{ProbeEvent, ProbeSubject, StartedProbe};
-use crate::session::silence::USUAL_SHARE;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent, apply};
 
@@ -213,7 +212,7 @@ impl SessionFollower {
                     unavailable(kitchen, state, signal).is_none()
                         && aspects_told(kitchen, state, signal).contains(&aspect)
                 };
-                let signals = || self.repeats.allowed(kitchen, session.spec.signals.own_hand);
+                let signals = || self.repeats.allowed(kitchen, session.highlights());
                 self.awareness.looked(session, belief, sample, |aspect| signals().iter().any(|one| tells(one, aspect)));
             }
             event if leads_to_advice(session, event) => self.awareness.asked(session, belief),
@@ -297,9 +296,6 @@ impl SessionFollower {
                 let over = self.session.probes.over.last()?;
                 let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
                 Some(ObservedEvidence::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
-            }
-            Event::HumanWaits { .. } if self.session.spec.human.inference.waiting => {
-                Some(ObservedEvidence::Waited { longer: 1.0 - USUAL_SHARE })
             }
             Event::SignalShown { signal: Signal::Propose(presses), .. } => {
                 let button = |name: &String| self.session.kitchen.button_named(Agent::Human, name);

@@ -21,23 +21,15 @@ pub struct AssistantSpec {
     pub proposed_presses: usize,
     /// Whether the assistant is also asked for advice when the human has not pressed for unusually long (event
     /// `human_waits`).
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_in_silence: bool,
     /// Whether the assistant is also asked for advice when, judged by the gaze alone, the human seems to have a false
     /// belief (event `seems_unaware`).
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_by_gaze: bool,
     /// Whether the assistant of a live session works ahead between requests for advice, which makes the answers come
-    /// sooner, and changes nothing else. Recordings contain this setting only where it is off.
-    #[serde(skip_serializing_if = "is_on")]
+    /// sooner, and changes nothing else.
     pub works_ahead: bool,
     /// Settings of the planner's rollouts: how finely the planner computes.
     pub rollout: RolloutSettings,
-}
-
-// A setting that is on by default is not written to recordings.
-fn is_on(setting: &bool) -> bool {
-    *setting
 }
 
 /// Whether the assistant computes recommendations in conditions in which the assistant does not send signals.

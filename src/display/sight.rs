@@ -152,7 +152,7 @@ pub fn sight(session: &Session) -> DisplayContent {
         stage,
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
         contents: contents.filter(|_| probe.is_none()).collect(),
-        served: session.spec.display.shows_served().then_some(session.served.len()),
+        served: session.spec.display.served.then_some(session.served.len()),
         clock: clock(session, stage),
         presses: Agent::BOTH.map(|agent| match practised.is_some() {
             true => practised_press(session).filter(|_| agent == Agent::Human),
@@ -241,7 +241,7 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     });
     let (button, no_effect) = newest?;
     let at = spot(&session.kitchen, agent, session.kitchen.button(agent, button).action);
-    let is_told = agent == Agent::Human && session.spec.display.reasons == Some(true);
+    let is_told = agent == Agent::Human && session.spec.display.reasons;
     let effective = no_effect.is_none();
     let why =
         no_effect.filter(|_| is_told).map(|(reason, about)| DisplayedNoEffectReason { reason, about: about.index() });
@@ -253,7 +253,7 @@ fn practised_press(session: &Session) -> Option<DisplayedPress> {
     let (_, tutorial) = session.tutorial_step()?;
     let press = tutorial.last?;
     let at = spot(&session.kitchen, Agent::Human, session.kitchen.button(Agent::Human, press.button).action);
-    let is_told = session.spec.display.reasons == Some(true);
+    let is_told = session.spec.display.reasons;
     let why = press.no_effect.filter(|_| is_told);
     let why = why.map(|(reason, about)| DisplayedNoEffectReason { reason, about: about.index() });
     Some(DisplayedPress { number: press.number, at, effective: press.is_right, why })

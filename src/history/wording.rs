@@ -150,7 +150,7 @@ pub fn phase(phase: TrialPhase) -> &'static str {
 /// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
-        ProtocolEvent::ConsentGiven { on: Some(AnswerDevice::Display), .. } => {
+        ProtocolEvent::ConsentGiven { on: AnswerDevice::Display, .. } => {
             "the participant agrees to be recorded, on the display".to_string()
         }
         ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),

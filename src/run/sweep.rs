@@ -48,12 +48,10 @@ enum Knob {
     Gaze,
     /// The swept setting is when the assistant is asked for advice, besides after presses and changes of the task.
     Asks,
-    /// The swept setting is whether waiting without a press counts as evidence about the human's belief.
-    Waiting,
 }
 
 /// The settings that can be swept, by name.
-const KNOBS: [(&str, Knob); 9] = [
+const KNOBS: [(&str, Knob); 8] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),
     ("horizon", Knob::Horizon),
@@ -62,7 +60,6 @@ const KNOBS: [(&str, Knob); 9] = [
     ("radius", Knob::Radius),
     ("gaze", Knob::Gaze),
     ("asks", Knob::Asks),
-    ("waiting", Knob::Waiting),
 ];
 
 /// Values of the setting `asks`: name, whether the assistant is asked in unusual silence, whether it is asked by gaze.
@@ -88,7 +85,7 @@ impl FromStr for ParameterSweepAxis {
         let (name, knob) = *KNOBS.iter().find(|(known, _)| *known == name).ok_or_else(right)?;
         let values: Vec<String> = values.split(',').map(str::to_string).collect();
         let is_right = |value: &String| match knob {
-            Knob::Gaze | Knob::Waiting => value == "on" || value == "off",
+            Knob::Gaze => value == "on" || value == "off",
             Knob::Asks => MOMENTS.iter().any(|(name, _)| name == value),
             Knob::Horizon | Knob::Rollouts => value.parse::<usize>().is_ok(),
             _ => value.parse::<f64>().is_ok_and(f64::is_finite),
@@ -101,7 +98,7 @@ impl FromStr for ParameterSweepAxis {
             None => Ok(ParameterSweepAxis { name, knob, values }),
             Some(wrong) => {
                 let right = match knob {
-                    Knob::Gaze | Knob::Waiting => "on and off".to_string(),
+                    Knob::Gaze => "on and off".to_string(),
                     Knob::Asks => MOMENTS.map(|(name, _)| name).join(", "),
                     Knob::Horizon | Knob::Rollouts => "whole numbers".to_string(),
                     _ => "numbers".to_string(),
@@ -142,7 +139,6 @@ impl ParameterSweepAxis {
                 let AssistantSpec { asks_in_silence, asks_by_gaze, .. } = &mut spec.assistant;
                 [*asks_in_silence, *asks_by_gaze] = moments.unwrap_or_default();
             }
-            Knob::Waiting => spec.human.inference.waiting = value == "on",
         }
     }
 }
@@ -247,7 +243,7 @@ fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), Run
     let of = |knob: Knob| match knob {
         Knob::Cost | Knob::Horizon | Knob::Rollouts => Some(ConceptName::TomCom),
         Knob::Threshold => Some(ConceptName::Tom),
-        Knob::Tau | Knob::Radius | Knob::Gaze | Knob::Asks | Knob::Waiting => None,
+        Knob::Tau | Knob::Radius | Knob::Gaze | Knob::Asks => None,
     };
     for axis in axes {
         let Some(concept) = of(axis.knob).filter(|concept| decides != Some(*concept)) else { continue };

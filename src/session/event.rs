@@ -102,7 +102,7 @@ pub enum Event {
         order: String,
     },
     /// The human has not pressed for unusually long, compared with the human's own intervals between presses. Recorded
-    /// only where it has consequences: where the assistant is then asked for advice, or where waiting is evidence.
+    /// only where the assistant is then asked for advice.
     HumanWaits {
         /// Time since the human's last press, without pauses.
         silent_ns: SessionTime,
@@ -192,10 +192,6 @@ pub enum Event {
         by: Sender,
         /// The signal that is shown on the participant's display.
         signal: Signal,
-        /// The accepted recommendation, in logs of format 1, which has no offers: sequence number of the event whose
-        /// recommendation the wizard accepted, if any.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        accepted: Option<u64>,
         /// Sequence number of the `offer_opened` whose offer the wizard took, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         offer: Option<u64>,

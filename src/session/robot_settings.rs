@@ -22,18 +22,13 @@ impl ArmKind {
             ArmKind::Physics => "physics",
         }
     }
-
-    fn is_timed(&self) -> bool {
-        *self == ArmKind::Timed
-    }
 }
 
 /// Settings of the robot: its arm and the duration of its presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {
-    /// Kind of the arm; `timed` by default and in recordings made before the simulated arm existed.
-    #[serde(skip_serializing_if = "ArmKind::is_timed")]
+    /// Kind of the arm.
     pub arm: ArmKind,
     /// Timed arm: median duration of a press, in seconds.
     pub press_s: f64,

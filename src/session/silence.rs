@@ -11,7 +11,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::Agent;
 
 /// Share of the human's intervals between presses that are at most as long as the usual silence.
-pub const USUAL_SHARE: f64 = 0.8;
+const USUAL_SHARE: f64 = 0.8;
 /// Least number of intervals between presses from which the usual silence is computed; with fewer, no silence is
 /// unusual.
 const LEAST_INTERVALS: usize = 8;

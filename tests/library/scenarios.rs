@@ -16,7 +16,7 @@ use tomcom::communication::recommendation::{Recommendation, SignalOption};
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::{RobotIntent, Situation};
 use tomcom::communication::tom::TomConcept;
-use tomcom::communication::{Signal, signals};
+use tomcom::communication::{HighlightSet, Signal, signals};
 use tomcom::edge::files;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};
@@ -140,7 +140,8 @@ impl Scenario {
         let state = self.state(&kitchen);
         let belief = self.belief(&kitchen, state);
         let situation = Situation { robot: self.outlook(&kitchen), ..Situation::new(state, &belief) };
-        let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
+        let signals: Vec<Signal> =
+            signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
         concept.advise(&mut CostToGo::new(kitchen), &DecisionPoint { error, ..moment(situation, &signals) })
     }
 }
@@ -240,7 +241,8 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
     let spec = nobody_looks_around();
     let mut cost = CostToGo::new(kitchen.clone());
     let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
-    let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
+    let signals: Vec<Signal> =
+        signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
     for scenario in paths.iter().map(|path| Scenario::read(path)).filter(|other| other.layout == first.layout) {
         let state = scenario.state(&kitchen);
         let belief = scenario.belief(&kitchen, state);
@@ -263,7 +265,8 @@ fn benefits_of_signals_that_would_not_be_sent_take_fewer_rollouts_and_the_others
     let (kitchen, spec) = (scenario.kitchen(), AssistantSpec::default());
     let state = scenario.state(&kitchen);
     let belief = scenario.belief(&kitchen, state);
-    let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
+    let signals: Vec<Signal> =
+        signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
     let situation = Situation { robot: scenario.outlook(&kitchen), ..Situation::new(state, &belief) };
     let moment = moment(situation, &signals);
     let mut cost = CostToGo::new(kitchen.clone());
@@ -287,7 +290,8 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
     let state = scenario.state(&kitchen);
     let belief = scenario.belief(&kitchen, state);
     let pot = AspectId::of_location(kitchen.location_named("cooking_pot").expect("a pot"));
-    let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
+    let signals: Vec<Signal> =
+        signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
     let benefit = |other_looks_hz: f64, capture: f64, changed: &[AspectId]| {
         let mut spec = AssistantSpec::default();
         (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(other_looks_hz), Some(capture));

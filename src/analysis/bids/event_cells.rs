@@ -122,10 +122,10 @@ impl EventCells {
                 self.agent = "wizard".to_string();
                 (self.location, self.content) = (location.clone(), content.clone());
             }
-            Event::SignalShown { by, signal, accepted, offer } => {
+            Event::SignalShown { by, signal, offer } => {
                 self.agent = name(by);
                 self.take_signal(signal);
-                self.refers_to = offer.or(*accepted);
+                self.refers_to = *offer;
             }
             Event::SignalDrawn { signal } => self.refers_to = Some(*signal),
             Event::SignalEnded { reason } => self.reason = name(reason),
@@ -206,8 +206,7 @@ impl EventCells {
         self.what = tag(event, "what");
         match event {
             ProtocolEvent::ConsentGiven { on, digest, .. } => {
-                self.reason = on.as_ref().map(name).unwrap_or_default();
-                self.item = digest.clone().unwrap_or_default();
+                (self.reason, self.item) = (name(on), digest.clone());
             }
             ProtocolEvent::PhaseStarted { phase, number } => {
                 (self.item, self.value) = (phase.name().to_string(), Some(*number as f64));

@@ -15,7 +15,6 @@ use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State, WeightedWorlds};
 use crate::mind::choice::{ChoiceModel, HumanChoice};
-use crate::mind::filter::order_focus::{OrderFocus, RETURNING, is_on_changed};
 
 /// Number of robot presses between two decisions of the human that have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
@@ -29,8 +28,6 @@ pub struct DecisionDraws {
     choices: [f64; ROBOT_DRAWS],
     predictions: [f64; ROBOT_DRAWS],
     captures: [f64; ROBOT_DRAWS],
-    /// Whether the human may turn to another order after the decision, and to which.
-    turn: [f64; 2],
 }
 
 impl DecisionDraws {
@@ -42,11 +39,6 @@ impl DecisionDraws {
         draws.predictions.iter_mut().for_each(|draw| *draw = random.random());
         draws.captures.iter_mut().for_each(|draw| *draw = random.random());
         draws
-    }
-
-    /// Draws the random numbers of the order focus.
-    pub fn draw_focus(&mut self, random: &mut Stream) {
-        self.turn = [random.random(), random.random()];
     }
 
     /// Replaces three random numbers: of the decision, of the robot's first choice before the decision, and of whether
@@ -82,8 +74,6 @@ pub struct RolloutContext<'a> {
     pub capture: f64,
     /// Probability that the human infers the consequences of a robot press that the human did not see.
     pub foresight: f64,
-    /// Which orders a human considers who chooses anew.
-    pub focus: &'a OrderFocus,
 }
 
 /// State of a rollout before a decision of the human.
@@ -93,8 +83,6 @@ pub struct RolloutState {
     pub kitchen: State,
     /// The weighted worlds that represent the human's belief.
     pub worlds: WeightedWorlds<u32>,
-    /// Which orders the human considers.
-    focus: u8,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
     presses: i32,
@@ -126,17 +114,10 @@ pub struct RolloutOutcome {
 }
 
 impl RolloutState {
-    /// Starts a rollout of a human with these worlds as the belief, and with this order focus. `sees` says whether the
-    /// latest change attracts the human's gaze.
-    pub fn begin(
-        &mut self,
-        kitchen: &Kitchen,
-        situation: &Situation,
-        worlds: &WeightedWorlds<u32>,
-        focus: u8,
-        sees: bool,
-    ) {
-        (self.kitchen, self.focus) = (situation.state, focus);
+    /// Starts a rollout of a human with these worlds as the belief. `sees` says whether the latest change attracts the
+    /// human's gaze.
+    pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, worlds: &WeightedWorlds<u32>, sees: bool) {
+        self.kitchen = situation.state;
         self.worlds.copy_from(worlds);
         for &aspect in situation.changed.iter().filter(|_| sees) {
             self.worlds.learn(kitchen, aspect, self.kitchen);
@@ -160,7 +141,7 @@ impl RolloutState {
 
     fn copy_from(&mut self, other: &RolloutState) {
         self.worlds.copy_from(&other.worlds);
-        (self.kitchen, self.focus) = (other.kitchen, other.focus);
+        self.kitchen = other.kitchen;
         self.ongoing = other.ongoing;
         self.is_still = other.is_still;
         (self.presses, self.now_s) = (other.presses, other.now_s);
@@ -168,10 +149,7 @@ impl RolloutState {
 
     /// Whether this rollout continues exactly like another rollout that is in the state `other` at the same time.
     fn continues_like(&self, other: &RolloutState) -> bool {
-        self.kitchen == other.kitchen
-            && self.ongoing == other.ongoing
-            && self.focus == other.focus
-            && self.worlds == other.worlds
+        self.kitchen == other.kitchen && self.ongoing == other.ongoing && self.worlds == other.worlds
     }
 }
 
@@ -279,7 +257,6 @@ impl Rollout<'_> {
                 state.kitchen =
                     rollout_robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
                 state.presses += 1;
-                self.turn_from_changed(state, before, step);
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
                 if draw < self.context.foresight {
                     let draw = draw / self.context.foresight;
@@ -322,7 +299,7 @@ impl Rollout<'_> {
                 state.worlds.learn(context.kitchen, AspectId(index as u8), state.kitchen);
             }
         }
-        let weights = choice_weights(context.choice, context.kitchen, self.cost, &state.worlds, state.focus);
+        let weights = choice_weights(context.choice, self.cost, &state.worlds);
         let mut intended = context.choice.intended(&weights, draws.decision);
         if let HumanChoice::Press(button) = intended {
             let mut is_new = false;
@@ -332,7 +309,7 @@ impl Rollout<'_> {
                 }
             }
             if is_new {
-                let weights = choice_weights(context.choice, context.kitchen, self.cost, &state.worlds, state.focus);
+                let weights = choice_weights(context.choice, self.cost, &state.worlds);
                 intended = context.choice.intended(&weights, draws.decision);
             }
         }
@@ -343,20 +320,7 @@ impl Rollout<'_> {
             state.kitchen = after.unwrap_or(before);
             state.presses += 1;
             state.worlds.pressed(context.kitchen, button, &context.involved[button.index()], before, after);
-            let [turns, to] = draws.turn;
-            if turns < RETURNING {
-                state.focus = context.focus.chosen_anew(to);
-            }
-            self.turn_from_changed(state, before, step);
         }
         choice
-    }
-
-    /// Lets the human choose anew which orders to consider, if only one was considered, and that one has changed.
-    fn turn_from_changed(&self, state: &mut RolloutState, before: State, step: usize) {
-        let RolloutContext { kitchen, focus, .. } = self.context;
-        if is_on_changed(kitchen, state.focus, before, state.kitchen) {
-            state.focus = focus.chosen_anew(self.draws[step].turn[1]);
-        }
     }
 }

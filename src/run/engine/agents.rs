@@ -34,10 +34,10 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
 
 /// The scripted wizard of a trial, if it has one; the script reads offers where the session shows offers.
 pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
-    let (own_hand, seed) = (spec.signals.own_hand, spec.seed);
+    let (highlights, seed) = (spec.highlights(kitchen), spec.seed);
     let script = spec
         .scripts_wizard()
-        .then(|| ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), own_hand, seed, trial))?;
+        .then(|| ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), highlights, seed, trial))?;
     Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 

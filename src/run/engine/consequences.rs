@@ -60,7 +60,7 @@ impl SessionEngine {
             advice.proposal.as_ref().filter(|one| is_last(one.error) && !proposals::was_made(self.session()));
         let proposal = proposal.map(|one| Signal::Propose(one.presses.clone()));
         let signal = advice.best.clone().or(proposal)?;
-        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None, offer: None };
+        let event = Event::SignalShown { by: Sender::Assistant, signal, offer: None };
         admit(self.session(), &event).is_ok().then_some(event)
     }
 }

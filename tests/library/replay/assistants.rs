@@ -19,8 +19,7 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::ComparedContent;
-use tomcom::mind::model::AdaptationSettings;
-use tomcom::mind::signal_model::SignalModel;
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::run::replay::RecordingReplay;
@@ -150,7 +149,6 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
     for name in SESSIONS {
         let out = with_assistant(name, "other-moments", (2, 90.0), |spec| {
             (spec.assistant.asks_in_silence, spec.assistant.asks_by_gaze) = (true, true);
-            spec.human.inference.waiting = true;
         });
         let mut counts = [0; 3];
         for trial in ["seed1-S001", "seed1-S002"] {
@@ -171,27 +169,6 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
         }
         println!("{name}: silences, aspects unaware of, and advice after these: {counts:?}");
         assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
-    }
-}
-
-#[test]
-fn an_assistant_that_learns_lapse_and_attention_comes_out_the_same_again() {
-    for name in SESSIONS {
-        let out = ["adapting", "adapting-again"].map(|out| {
-            let out = with_assistant(name, out, (1, 60.0), |spec| {
-                (spec.assistant.asks_by_gaze, spec.human.inference.waiting) = (true, true);
-                spec.human.adapt = AdaptationSettings::ALL;
-            });
-            out.join("seed1-S001").join(LOG_NAME)
-        });
-        same(&out[0], &out[1]);
-        let found = verify(&out[0]).expect("a recording");
-        assert!(found.verified, "{name}: {:?}", found.difference);
-        let header = fs::read_to_string(&out[0]).expect("a recording");
-        assert!(
-            header.contains(r#""adapt":{"lapse":true,"attention":true}"#),
-            "{name}: the header says what is learned"
-        );
     }
 }
 
@@ -219,7 +196,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
     (files.spec.human.looking.looks_hz, files.spec.human.looking.other_looks_hz) = (0.0, 0.0);
     files.spec.human.looking.capture = 0.0;
     // A signal is believed at once: what is tried is from when on it counts.
-    files.spec.human.signal = SignalModel::default();
+    files.spec.human.signal = PAPER_2021.signal;
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
     let mut engine = SessionEngine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
     let mut random = stream(4, "presses", 0);
@@ -230,7 +207,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
         (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
-        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None })
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None })
     }));
     inputs.push((80.0, Event::TrialEnded { reason: TrialEndReason::Wizard }));
     inputs.push((81.0, Event::SessionEnded));

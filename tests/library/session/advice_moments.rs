@@ -72,17 +72,6 @@ fn a_pause_is_no_silence() {
     assert!(found.len() == 1 && (found[0] - last_s - 11.6).abs() < 1e-6, "{found:?} after {last_s}");
 }
 
-#[test]
-fn where_waiting_is_evidence_it_is_recorded_and_nobody_is_asked() {
-    let mut heeds = engine(|spec| spec.human.inference.waiting = true);
-    let (_, last_s) = pressed(&mut heeds, &INTERVALS_S);
-    let before = heeds.take_questions().len();
-    let InputResult { events, .. } = heeds.input(at(last_s + 1.7), Event::Marker { note: "later".to_string() });
-    let waited = events.iter().find(|stamped| matches!(stamped.event, Event::HumanWaits { .. })).expect("a silence");
-    assert_eq!(waited.event, Event::HumanWaits { silent_ns: at(1.6) });
-    assert!(before > 0 && heeds.take_questions().iter().all(|request| request.seq != waited.seq));
-}
-
 /// Looks at one point of the display, 30 times a second, until a time; the events.
 fn gazing(engine: &mut SessionEngine, point: [f64; 2], from_s: f64, until_s: f64) -> Vec<(f64, Event)> {
     let samples = ((until_s - from_s) * 30.0) as u32;

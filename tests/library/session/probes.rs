@@ -187,12 +187,8 @@ fn a_trial_that_ends_in_a_probe_closes_it() {
 
 #[test]
 fn no_probe_begins_soon_after_a_signal_or_a_probe_it_waits_and_is_dropped() {
-    let signal = || Event::SignalShown {
-        by: Sender::Wizard,
-        signal: Signal::Highlight("counter".to_string()),
-        accepted: None,
-        offer: None,
-    };
+    let signal =
+        || Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight("counter".to_string()), offer: None };
     let delayed = ProbeEvent::Delayed { probe: 1, reason: ProbeDelayReason::Signal };
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, signal())]);

@@ -50,7 +50,8 @@ struct Future {
     /// press in any case.
     robot_press: Option<(ButtonId, f64, bool)>,
     now_s: f64,
-    presses: u32,
+    /// Number of presses of both agents and of waits of the human so far.
+    spent: u32,
     /// The state aspects of the signal, and the time at which the human reads it; `None` once it is read.
     signal: Option<(Vec<AspectId>, f64)>,
 }
@@ -112,7 +113,7 @@ impl ReferencePlanner {
         stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
 
-    /// Number of presses of both agents in one rollout, plus the cost to go at its end.
+    /// Number of presses of both agents and waits of the human in one rollout, plus the cost to go at its end.
     fn roll_out(&self, cost: &mut CostToGo, moment: &DecisionPoint, signal: Option<&Signal>, rollout: u64) -> f64 {
         let DecisionPoint { situation, presses, .. } = *moment;
         let mut random = self.chance("plain belief", presses, rollout, 0);
@@ -128,7 +129,7 @@ impl ReferencePlanner {
             RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, signal };
+        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, spent: 0, signal };
         future.read_by(&self.kitchen, 0.0);
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
@@ -141,7 +142,7 @@ impl ReferencePlanner {
             let mut random = self.chance("plain decision", presses, rollout, step as u64);
             self.decide(cost, &mut future, &mut random);
         }
-        f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
+        f64::from(future.spent) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
     }
 
     /// Lets the robot act until the human's next decision.
@@ -165,7 +166,7 @@ impl ReferencePlanner {
             {
                 let before = future.state;
                 future.state = kitchen.press(before, &recipes, Agent::Robot, button).unwrap_or(before);
-                future.presses += 1;
+                future.spent += 1;
                 if random.random::<f64>() < self.human.transition.foresight {
                     future.person.robot_pressed(kitchen, cost, self.spec.rollout.states, random);
                 }
@@ -195,6 +196,7 @@ impl ReferencePlanner {
                 chosen = self.chosen_press(cost, &future.person, draw, random);
             }
         }
+        future.spent += 1;
         let Some(button) = chosen else { return };
         let before = future.state;
         let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
@@ -207,7 +209,6 @@ impl ReferencePlanner {
         let truth: Vec<Vec<f64>> = (0..kitchen.aspects.len()).map(truth).collect();
         future.person.pressed(kitchen, &truth, button, after.is_some());
         future.state = after.unwrap_or(before);
-        future.presses += 1;
     }
 
     /// The human's action for a uniform random number `draw`: `None` for waiting, or a press, slips included.

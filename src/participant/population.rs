@@ -136,6 +136,9 @@ pub struct Population {
     pub misremembers: TraitSpread,
     /// Probability that the participant guesses rightly what the robot did by a press that the participant did not see.
     pub guesses_robot: TraitSpread,
+    /// Probability that the participant, after an own press, does not know how to go on: the participant waits until
+    /// something changes in what the participant believes, or a signal is read.
+    pub gets_stuck: TraitSpread,
     /// Factor, per earlier trial, on the odds of knowing a recipe (1: no learning between trials).
     pub recipes_gained: f64,
     /// Share of the presses in earlier trials that count as practice (0: earlier trials give no practice).
@@ -210,6 +213,7 @@ impl Default for Population {
             keeps_own_recipe: NEVER,
             misremembers: NEVER,
             guesses_robot: NEVER,
+            gets_stuck: NEVER,
             recipes_gained: 1.0,
             practice_kept: 0.0,
             tracker_offset_m: 0.02,
@@ -295,6 +299,8 @@ pub struct ParticipantTraits {
     pub answer_s: f64,
     /// Probability of making proposed presses that the participant has read.
     pub follows_proposal: f64,
+    /// Probability of not knowing how to go on after an own press.
+    pub gets_stuck: f64,
 }
 
 /// Least and largest number of own presses that a participant thinks through (study, "Simulated participants").
@@ -352,6 +358,7 @@ impl Population {
             answers_wrong: self.answers_wrong.draw_chance(random),
             answer_s: self.answer_s.draw(random),
             follows_proposal: self.follows_proposal.draw_chance(random),
+            gets_stuck: self.gets_stuck.draw_chance(random),
         }
     }
 }

@@ -286,7 +286,6 @@ impl SessionEngine {
     /// Applies the immediate consequences of an event, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
-        self.note_unawareness(now);
         self.review_offer(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
             let request = AdviceRequest::from_follower(&mut self.follower, seq, time);

@@ -65,9 +65,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
             refuse_if(!is_open, "the event names an offer that is not open")
         }
-        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {
-            refuse_if(phase != TrialPhase::Running, "no trial runs")
-        }
+        Event::HumanWaits { .. } => refuse_if(phase != TrialPhase::Running, "no trial runs"),
         Event::Advised(_) => {
             refuse_if(phase != TrialPhase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
@@ -191,7 +189,6 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::OrderShown { .. }
         | Event::OrderCleared { .. }
         | Event::HumanWaits { .. }
-        | Event::SeemsUnaware { .. }
         | Event::RobotIntends { .. }
         | Event::RobotAborts { .. }
         | Event::RobotIdles { .. }

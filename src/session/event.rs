@@ -101,17 +101,11 @@ pub enum Event {
         /// Name of the order's location.
         order: String,
     },
-    /// The human has not pressed for unusually long, compared with the human's own intervals between presses. Recorded
-    /// only where the assistant is then asked for advice.
+    /// The human has not pressed for unusually long, compared with the human's own intervals between presses, and may be
+    /// stuck.
     HumanWaits {
         /// Time since the human's last press, without pauses.
         silent_ns: SessionTime,
-    },
-    /// Judged by the gaze, the human seems to have a false belief about an aspect. Recorded only where the assistant is
-    /// then asked for advice.
-    SeemsUnaware {
-        /// Name of the state aspect.
-        aspect: String,
     },
     /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
@@ -131,6 +125,9 @@ pub enum Event {
     RobotIdles {
         /// Why the robot is idle.
         reason: IdleReason,
+        /// Names of the human's buttons for a press of one of which the robot waits.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        waits_for: Vec<String>,
     },
     /// Recorded only (witness): a sample of the simulated arm's motion, about 12 per second while it moves.
     RobotMoves(ArmSample),
@@ -280,7 +277,6 @@ impl Event {
             Event::OrderShown { .. } => "order_shown",
             Event::OrderCleared { .. } => "order_cleared",
             Event::HumanWaits { .. } => "human_waits",
-            Event::SeemsUnaware { .. } => "seems_unaware",
             Event::RobotIntends { .. } => "robot_intends",
             Event::RobotAborts { .. } => "robot_aborts",
             Event::RobotIdles { .. } => "robot_idles",

@@ -24,7 +24,7 @@ impl ArmKind {
     }
 }
 
-/// Settings of the robot: its arm and the duration of its presses.
+/// Settings of the robot: its arm, the duration of its presses, and its initiative.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {
@@ -34,10 +34,12 @@ pub struct RobotSpec {
     pub press_s: f64,
     /// Timed arm: standard deviation of the logarithm of a press's duration.
     pub press_spread: f64,
+    /// Time without a press of the human after which the robot takes the initiative, in seconds.
+    pub initiative_s: f64,
 }
 
 impl Default for RobotSpec {
     fn default() -> Self {
-        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15 }
+        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15, initiative_s: 6.0 }
     }
 }

@@ -203,16 +203,6 @@ impl SessionSpec {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == ShadowMode::On
     }
 
-    /// Whether unusually long silence of the human is recorded, so that the assistant is then asked for advice.
-    pub fn notes_silence(&self) -> bool {
-        self.assistant.asks_in_silence && self.asks_assistant()
-    }
-
-    /// Whether false beliefs that the gaze alone suggests are recorded, so that the assistant is then asked for advice.
-    pub fn notes_unawareness(&self) -> bool {
-        self.assistant.asks_by_gaze && self.asks_assistant()
-    }
-
     /// Whether the signals come from a scripted wizard.
     pub fn scripts_wizard(&self) -> bool {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted

@@ -103,7 +103,7 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 }
 
 /// Fields of what the page is told.
-const FIELDS: [&str; 30] = [
+const FIELDS: [&str; 31] = [
     "clock",
     "probe",
     "tutorial",
@@ -116,6 +116,7 @@ const FIELDS: [&str; 30] = [
     "served",
     "presses",
     "intention",
+    "robot_waits",
     "signal",
     "cue",
     "question",
@@ -160,6 +161,7 @@ pub(super) fn check(session: &Session) {
             "stage" => true,
             "clock" => session.spec.display.clock && ["goes", "stands"].contains(&text.as_str()),
             "reason" => words.contains_key(&format!("why {text}")),
+            "robot_waits" => words.contains_key(&format!("robot waits {text}")),
             "contents" => ["empty", "served"].contains(&text.as_str()),
             "item" | "stack" | "dish" => on_display(text),
             "items" => value.pointer("/signal/recipe").is_some(),

@@ -2,10 +2,11 @@
 //!
 //! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
 //! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
-//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that
-//! changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped. Where signals take time, a
-//! rollout reads its signal after the mean delay, and its saving is multiplied by the probability that the signal is
-//! read: a human who misses the signal continues like the baseline.
+//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A wait of the
+//! human counts as a press: else a human who believes that nothing is worth doing would lose nothing by waiting for the
+//! horizon. A signal that changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped. Where
+//! signals take time, a rollout reads its signal after the mean delay, and its saving is multiplied by the probability
+//! that the signal is read: a human who misses the signal continues like the baseline.
 
 mod lattice;
 mod rollout;
@@ -31,6 +32,7 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, WeightedWorlds};
 use crate::mind::ChoiceModel;
+use crate::mind::choice::HumanChoice;
 use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::recorded_estimate::rounded;
 
@@ -223,10 +225,11 @@ impl Planner {
         let reason = candidates.first().filter(|candidate| candidate.tally.mean() > 0.0).and_then(|candidate| {
             let mut reason =
                 SignalReason::for_signal(&self.kitchen, situation.state, situation.belief, &candidate.signal)?;
-            if let Some((prevents, instead)) = candidate.tally.turning_point() {
-                let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
-                reason.prevents = Some(name(prevents));
-                reason.instead = instead.map(name);
+            if let Some(choices) = candidate.tally.turning_point() {
+                [reason.prevents, reason.instead] = choices.map(|choice| match choice {
+                    HumanChoice::Press(button) => Some(self.kitchen.button(Agent::Human, button).name.clone()),
+                    HumanChoice::Wait => None,
+                });
             }
             Some(reason)
         });

@@ -85,7 +85,8 @@ pub struct RolloutState {
     pub worlds: WeightedWorlds<u32>,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
-    presses: i32,
+    /// Number of presses of both agents since the start of the rollout, and of waits of the human, which count as presses.
+    spent: i32,
     now_s: f64,
 }
 
@@ -100,14 +101,14 @@ pub struct BaselineRollout {
     reading_before: usize,
     /// State of the rollout after the last decision that a signal cannot change.
     unread: RolloutState,
-    /// Number of presses of both agents up to the horizon, plus the cost to go from there.
+    /// Number of presses of both agents and waits of the human up to the horizon, plus the cost to go from there.
     pub value: i32,
 }
 
 /// Result of a rollout with a signal, paired with the baseline without one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
-    /// Number of presses of both agents in the rollout, plus the cost to go at its end.
+    /// Number of presses of both agents and waits of the human in the rollout, plus the cost to go at its end.
     pub value: i32,
     /// The first choice of the human that differs between the two rollouts: in the baseline, and with the signal.
     pub diverged: Option<(HumanChoice, HumanChoice)>,
@@ -129,7 +130,7 @@ impl RolloutState {
             }
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        (self.presses, self.now_s) = (0, 0.0);
+        (self.spent, self.now_s) = (0, 0.0);
     }
 
     /// The human looks at every location whose content has just changed.
@@ -144,7 +145,7 @@ impl RolloutState {
         self.kitchen = other.kitchen;
         self.ongoing = other.ongoing;
         self.is_still = other.is_still;
-        (self.presses, self.now_s) = (other.presses, other.now_s);
+        (self.spent, self.now_s) = (other.spent, other.now_s);
     }
 
     /// Whether this rollout continues exactly like another rollout that is in the state `other` at the same time.
@@ -207,7 +208,7 @@ impl Rollout<'_> {
             self.until_decision(state, step, &mut unread);
             let unsignalled = &baseline.states[step];
             if state.continues_like(unsignalled) {
-                return RolloutOutcome { value: baseline.value + state.presses - unsignalled.presses, diverged };
+                return RolloutOutcome { value: baseline.value + state.spent - unsignalled.spent, diverged };
             }
             let choice = self.decide(state, step);
             let unsignalled = baseline.choices[step];
@@ -219,7 +220,7 @@ impl Rollout<'_> {
     }
 
     fn value(&mut self, state: &RolloutState) -> i32 {
-        state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
+        state.spent + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
     /// Time of a decision of the human, in seconds since the start of the rollout.
@@ -256,7 +257,7 @@ impl Rollout<'_> {
                 let before = state.kitchen;
                 state.kitchen =
                     rollout_robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
-                state.presses += 1;
+                state.spent += 1;
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
                 if draw < self.context.foresight {
                     let draw = draw / self.context.foresight;
@@ -314,11 +315,11 @@ impl Rollout<'_> {
             }
         }
         let choice = context.choice.executed(intended, draws.slip);
+        state.spent += 1;
         if let HumanChoice::Press(button) = choice {
             let before = state.kitchen;
             let after = context.kitchen.press(before, &context.recipes, Agent::Human, button);
             state.kitchen = after.unwrap_or(before);
-            state.presses += 1;
             state.worlds.pressed(context.kitchen, button, &context.involved[button.index()], before, after);
         }
         choice

@@ -15,9 +15,9 @@ use crate::participant::SimulatedParticipant;
 use crate::participant::gaze_gaps::GazeDropoutSchedule;
 use crate::participant::population::Experience;
 use crate::session::SessionSpec;
-use crate::session::settings::ArmKind;
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
+use crate::session::settings::{ArmKind, RobotSpec};
 use crate::session::tracker::GazeGapSpec;
 use crate::wizard::ScriptedWizard;
 
@@ -52,7 +52,8 @@ pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeDropoutSch
 /// # Panics
 /// The settings ask for an arm with simulated physics, and this build has none.
 pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> RobotTaskExecutor {
-    let robot = RobotTaskExecutor::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+    let RobotSpec { press_s, press_spread, initiative_s, .. } = spec.robot;
+    let robot = RobotTaskExecutor::new(press_s, press_spread, initiative_s, spec.seed, trial);
     match spec.robot.arm {
         ArmKind::Timed => robot,
         ArmKind::Physics => with_physics(robot, kitchen, spec, trial),

@@ -43,15 +43,6 @@ impl SessionEngine {
         }
     }
 
-    /// Records of which aspect the human seems unaware, judged by gaze.
-    pub(super) fn note_unawareness(&mut self, now: SessionTime) {
-        let unaware = self.follower.unaware().filter(|_| self.session().is_running());
-        if let Some(aspect) = unaware {
-            let aspect = self.session().kitchen.aspects[aspect.index()].name.clone();
-            self.record_own(now, Event::SeemsUnaware { aspect });
-        }
-    }
-
     /// The signal that the assistant sends because of its recommendation, if the assistant may act. An error gets one
     /// proposal, as long as the error is the human's last press.
     pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {

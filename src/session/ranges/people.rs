@@ -22,7 +22,7 @@ const fn rare_chance(path: &'static str) -> NumberRange {
     )
 }
 
-pub(super) const RANGES: [NumberRange; 60] = [
+pub(super) const RANGES: [NumberRange; 61] = [
     chance("participant.population.slip.median"),
     chance("participant.population.look_alike_slip.median"),
     chance("participant.population.thoughtless.median"),
@@ -47,6 +47,7 @@ pub(super) const RANGES: [NumberRange; 60] = [
     rare_chance("participant.population.keeps_own_recipe.median"),
     rare_chance("participant.population.misremembers.median"),
     rare_chance("participant.population.guesses_robot.median"),
+    rare_chance("participant.population.gets_stuck.median"),
     rare_chance("participant.population.answers_wrong.median"),
     rare_chance("participant.population.follows_proposal.median"),
     NumberRange::real("participant.population.answers_from", [0.0, 1.0], "", CHANCE),

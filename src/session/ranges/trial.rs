@@ -13,7 +13,7 @@ const LONGEST: &str = "no trial is longer than a day";
 /// Largest number that 32 bits hold, which is practically no limit for a count.
 const COUNT: f64 = 4_294_967_295.0;
 
-pub(super) const RANGES: [NumberRange; 50] = [
+pub(super) const RANGES: [NumberRange; 51] = [
     NumberRange::whole(
         "seed",
         [0.0, 9_007_199_254_740_991.0],
@@ -30,6 +30,12 @@ pub(super) const RANGES: [NumberRange; 50] = [
         [0.0, 2.0],
         "",
         "with a larger spread, presses take anything from no time to minutes",
+    ),
+    NumberRange::real(
+        "robot.initiative_s",
+        [0.0, DAY_S],
+        SECONDS,
+        "after the longest time the robot never takes the initiative, since no trial is longer",
     ),
     NumberRange::real(
         "signals.shown_s",

@@ -106,7 +106,7 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
 #[test]
 fn the_battery_that_comes_with_the_program_has_its_cohorts() {
     let battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("a battery");
-    assert_eq!(battery.cohorts.len(), 17);
+    assert_eq!(battery.cohorts.len(), 18);
     let defaults = battery.cohorts.iter().filter(|cohort| cohort.population == Some(Population::default())).count();
     assert_eq!(defaults, 0, "a cohort names a population that is the default");
     let named = |cohort: &&CohortSpec| cohort.name.get_ref() == "as in sessions/paper.toml";

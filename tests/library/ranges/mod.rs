@@ -39,6 +39,7 @@ const SETTINGS: &str = r#"
         keeps_own_recipe = { median = 0.5, sigma = 0.4 }
         misremembers = { median = 0.5, sigma = 0.4 }
         guesses_robot = { median = 0.5, sigma = 0.4 }
+        gets_stuck = { median = 0.5, sigma = 0.4 }
         answers_wrong = { median = 0.5, sigma = 0.4 }
         answers_from = 0.4
         answer_s = { median = 2.0, sigma = 0.4 }

@@ -65,6 +65,12 @@ impl HighlightSet {
         HighlightSet(!(1 << own.index()))
     }
 
+    /// The paper's locations, where "coordination conflicts" are possible: the robot's hand and the assembly board (paper,
+    /// section "Design of communication signals").
+    pub fn of_paper(kitchen: &Kitchen) -> HighlightSet {
+        HighlightSet(1 << kitchen.hands[Agent::Robot.index()].index() | 1 << kitchen.board.index())
+    }
+
     /// The locations with these names; the kitchen need not have all of them.
     pub fn named<'a>(kitchen: &Kitchen, names: impl IntoIterator<Item = &'a str>) -> HighlightSet {
         let locations = names.into_iter().filter_map(|name| kitchen.location_named(name));

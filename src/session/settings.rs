@@ -93,10 +93,6 @@ pub struct SessionSpec {
     pub step: Option<PlanPosition>,
 }
 
-/// The locations that signals of the paper highlight, where "coordination conflicts" are possible (paper, section
-/// "Design of communication signals").
-const PAPER_HIGHLIGHTS: [&str; 2] = ["robot_hand", "assembly_board"];
-
 fn default_seed() -> u64 {
     1
 }
@@ -174,7 +170,7 @@ impl SessionSpec {
     pub fn highlights(&self, kitchen: &Kitchen) -> HighlightSet {
         match (&self.signals.highlights, self.human.model) {
             (Some(names), _) => HighlightSet::named(kitchen, names.iter().map(String::as_str)),
-            (None, HumanModelName::Paper2021) => HighlightSet::named(kitchen, PAPER_HIGHLIGHTS),
+            (None, HumanModelName::Paper2021) => HighlightSet::of_paper(kitchen),
             (None, HumanModelName::Plain) => HighlightSet::usual(kitchen),
         }
     }

@@ -162,6 +162,26 @@ fn outside_of_the_radius_and_without_gaze_nothing_is_perceived_and_nothing_is_fo
     }
 }
 
+/// Whoever looks at a place for long is certain of it, and no press and no change after that makes an infinite number.
+#[test]
+fn many_equal_samples_leave_likelihoods_finite() {
+    let mut bench = PaperBench::new(PAPER_2021);
+    for sample in 0..6000 {
+        bench.sample(1.0 + 0.005 * f64::from(sample), ["plate", "board", "robot_hand"][sample as usize / 2000]);
+    }
+    for (number, button) in bench.kitchen.clone().buttons[Agent::Human.index()].iter().enumerate() {
+        let press = bench.kitchen.try_press(bench.state, Agent::Human, ButtonId(number as u8));
+        bench.observe(40.0 + number as f64, ObservedEvidence::Pressed(press));
+        let log_p = bench.filter.evidence().expect("a press").log_p;
+        println!("{}: {log_p}", button.name);
+        assert!(log_p.is_finite(), "{}: {log_p}", button.name);
+    }
+    for (index, of) in bench.filter.belief().aspects.iter().enumerate() {
+        let is_proper = of.mean().iter().all(|m| m.is_finite() && *m > 0.0) && of.precision().is_finite();
+        assert!(is_proper, "aspect {index}: {of:?}");
+    }
+}
+
 #[test]
 fn a_signal_makes_its_aspects_certain_at_once() {
     let mut bench = PaperBench::new(PAPER_2021);

@@ -12,14 +12,7 @@ fn exactly(median: f64) -> TraitSpread {
 }
 
 #[test]
-fn people_without_a_trait_are_as_they_were_before_it_existed() {
-    let text = serde_json::to_string(&Population::default()).expect("JSON");
-    let answers = ["answers_wrong", "answers_from", "answer_s"];
-    for name in ["keeps_own_recipe", "misremembers", "guesses_robot", "gets_stuck"].into_iter().chain(answers) {
-        assert!(!text.contains(name), "{name} stands in every recording");
-    }
-    let read: Population = serde_json::from_str(&text).expect("a population");
-    assert_eq!(read, Population::default());
+fn a_trait_changes_no_other_trait_of_a_person() {
     // Traits are drawn one after the other from one stream: a new one does not change those before it.
     let plain = Bench::new(&Population::default(), 5);
     let stubborn = Bench::new(&Population { keeps_own_recipe: exactly(0.5), ..Population::default() }, 5);

@@ -50,7 +50,7 @@ struct Future {
     /// press in any case.
     robot_press: Option<(ButtonId, f64, bool)>,
     now_s: f64,
-    /// Number of presses of both agents and of waits of the human so far.
+    /// Number of presses of both agents so far, and of waits of the human while something was wanted.
     spent: u32,
     /// The state aspects of the signal, and the time at which the human reads it; `None` once it is read.
     signal: Option<(Vec<AspectId>, f64)>,
@@ -196,9 +196,12 @@ impl ReferencePlanner {
                 chosen = self.chosen_press(cost, &future.person, draw, random);
             }
         }
-        future.spent += 1;
-        let Some(button) = chosen else { return };
         let before = future.state;
+        // A wait counts as a press as long as something is wanted.
+        if chosen.is_some() || kitchen.wanted(before).next().is_some() {
+            future.spent += 1;
+        }
+        let Some(button) = chosen else { return };
         let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
         // A human whose belief is contradicted by the effect of the press looks at the locations involved.
         let truth = |index: usize| {

@@ -3,10 +3,10 @@
 //! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
 //! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
 //! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A wait of the
-//! human counts as a press: else a human who believes that nothing is worth doing would lose nothing by waiting for the
-//! horizon. A signal that changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped. Where
-//! signals take time, a rollout reads its signal after the mean delay, and its saving is multiplied by the probability
-//! that the signal is read: a human who misses the signal continues like the baseline.
+//! human counts as a press as long as something is wanted: else a human who believes that nothing is worth doing would lose
+//! nothing by waiting for the horizon. A signal that changes none of a sample's worlds saves exactly nothing in its
+//! rollout, which is skipped. Where signals take time, a rollout reads its signal after the mean delay, and its saving is
+//! multiplied by the probability that the signal is read: a human who misses the signal continues like the baseline.
 
 mod lattice;
 mod rollout;

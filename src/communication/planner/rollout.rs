@@ -85,7 +85,7 @@ pub struct RolloutState {
     pub worlds: WeightedWorlds<u32>,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
-    /// Number of presses of both agents since the start of the rollout, and of waits of the human, which count as presses.
+    /// Number of presses of both agents since the start of the rollout, and of waits of the human while something is wanted.
     spent: i32,
     now_s: f64,
 }
@@ -315,9 +315,12 @@ impl Rollout<'_> {
             }
         }
         let choice = context.choice.executed(intended, draws.slip);
-        state.spent += 1;
+        let before = state.kitchen;
+        // A wait counts as a press as long as something is wanted: after that there is nothing to lose by waiting.
+        if matches!(choice, HumanChoice::Press(_)) || context.kitchen.wanted(before).next().is_some() {
+            state.spent += 1;
+        }
         if let HumanChoice::Press(button) = choice {
-            let before = state.kitchen;
             let after = context.kitchen.press(before, &context.recipes, Agent::Human, button);
             state.kitchen = after.unwrap_or(before);
             state.worlds.pressed(context.kitchen, button, &context.involved[button.index()], before, after);

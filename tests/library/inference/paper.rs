@@ -338,7 +338,7 @@ fn the_benefit_of_a_signal_is_what_better_decisions_save() {
     let mut bench = PaperBench::new(model.clone());
     let costs = ExpectedCosts::new(&mut bench);
     let truth = vec![1.0, 0.0];
-    // The presses made, and the cost to go after them in truth; the human can also wait.
+    // The presses made, and the cost to go after them in truth; the human can also wait, which counts as a press.
     let value = |belief: &[f64]| {
         let ((after, here), tau) = (costs.expected(belief), model.decision.tau);
         let (truly, truly_here) = costs.expected(&truth);
@@ -346,7 +346,7 @@ fn the_benefit_of_a_signal_is_what_better_decisions_save() {
         let presses: Vec<f64> = after.iter().map(|after| (-tau * (1.0 + after)).exp()).collect();
         let total: f64 = wait + presses.iter().sum::<f64>();
         let pressed: f64 = presses.iter().zip(&truly).map(|(weight, after)| weight * (1.0 + after)).sum();
-        (wait * truly_here + pressed) / total
+        (wait * (1.0 + truly_here) + pressed) / total
     };
     let mut belief = DirichletBelief::prior(&bench.kitchen, &model.prior, bench.state);
     for (index, of) in belief.aspects.iter_mut().enumerate().take(bench.kitchen.locations.len()) {

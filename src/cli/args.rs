@@ -168,9 +168,9 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
     /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5,
-    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off, asks=presses,silence,gaze,silence+gaze,
-    /// waiting=on,off. Several settings make a grid. The assistant sends the signals unless --condition says otherwise.
-    /// With a plan, its settings apply, and every trial has another participant.
+    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several settings make a grid. The assistant sends
+    /// the signals unless --condition says otherwise. With a plan, its settings apply, and every trial has another
+    /// participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<ParameterSweepAxis>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
@@ -251,8 +251,6 @@ pub(super) enum FitParameter {
     Capture,
     /// Expected probability of a true recipe at the start of a trial.
     RecipeKnowledge,
-    /// Share of the people who, at a given time, consider only one order.
-    OneOrder,
 }
 
 impl FitParameter {
@@ -271,7 +269,6 @@ impl FitParameter {
             FitParameter::OtherLooks => HumanModelParameter::OtherLooksHz,
             FitParameter::Capture => HumanModelParameter::Capture,
             FitParameter::RecipeKnowledge => HumanModelParameter::RecipeTruth,
-            FitParameter::OneOrder => HumanModelParameter::OneOrder,
         }
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
-    let start = args.start.as_deref().map(files::read_human_model).transpose()?.map(|file| file.population());
+    let start = args.start.as_deref().map(files::read_human_model).transpose()?.map(|file| file.population);
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     parameters.sort_unstable();
     parameters.dedup();
@@ -72,7 +72,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let bar = progress(searches * plan.most_tries as u64, "tries of parameters at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
-    write(&HumanModelFile::new(found.model.clone(), None), &fitting::comment(&found))?;
+    write(&HumanModelFile { population: found.model.clone(), people: None }, &fitting::comment(&found))?;
     print(args.format, &found, || fitting::describe(&found))
 }
 

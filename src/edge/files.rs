@@ -23,7 +23,6 @@ use crate::session::person_code;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
 use crate::session::settings::SettingError;
-use crate::session::wall_display::RobotDepiction;
 use crate::wizard::settings::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
@@ -74,8 +73,8 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         *file = beside;
     }
     if let Some(file) = &spec.human_model {
-        if spec.human != HumanModel::default() {
-            let found = "human_model, beside parameters of the human model in the session file".to_string();
+        if text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("human")) {
+            let found = "human_model, beside a [human] table in the session file".to_string();
             let remedy = "one of the two: that file, or the [human] tables in here, which then have to go".to_string();
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
@@ -85,12 +84,9 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
             return Err(missing(path, &text, ("human_model", 0, file), reason, remedy));
         }
         let model = read_human_model(&model)?;
-        (spec.human, spec.people) = (model.population(), model.people);
+        (spec.human, spec.people) = (model.population, model.people);
     }
     read_words(path, &text, &mut spec)?;
-    spec.display.reasons.get_or_insert(true);
-    spec.display.served.get_or_insert(false);
-    spec.display.arm.get_or_insert(RobotDepiction::Hand);
     // In a study plan, the condition of a trial decides whether the wizard sees offers.
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
@@ -118,9 +114,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     let keys = read_keys(path, &text, &spec)?;
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
-    if let Some(probes) = &spec.probes {
-        probes.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
-    }
+    spec.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
     let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
     Ok(SessionSetup { spec, kitchen, keys, questionnaires, tutorial })
 }
@@ -194,14 +188,14 @@ fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
 pub fn read_human_model(path: &Path) -> FileResult<HumanModelFile> {
     let text = read_text(path)?;
     let file: HumanModelFile = parse(path, &text)?;
-    let model = file.population();
+    let model = &file.population;
     let rule = model.fault().map(|(path, found, remedy)| SettingError::new(path, found, remedy));
-    let wrong = ranges::check_human_model(&model).err().map(SettingError::from).or(rule);
+    let wrong = ranges::check_human_model(model).err().map(SettingError::from).or(rule);
     if let Some(error) = wrong {
         let inside = error.path.strip_prefix(ranges::HUMAN).unwrap_or(&error.path).trim_start_matches('.');
         return Err(FileError::at(path, &text, place_of(&text, inside, 0), error.found, error.remedy.into_owned()));
     }
-    check_people(path, &text, &model, file.people.as_ref())?;
+    check_people(path, &text, model, file.people.as_ref())?;
     Ok(file)
 }
 
@@ -283,7 +277,6 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileRes
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
-    layout_ranges::check(&layout_text).map_err(|error| wrong_layout(layout_path, &layout_text, error))?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
     #[cfg(feature = "physics")]
     check_reach(layout_path, &files.layout.text, &layout, &files.kitchen)?;
@@ -296,10 +289,10 @@ fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
     FileError::at(path, text, error.place, error.found, error.remedy)
 }
 
-/// Compiles a kitchen from texts without checking the ranges of its numbers, since it may be the kitchen of an old
-/// recording. The paths serve error messages only.
+/// Compiles a kitchen from the texts of its layout and recipe files. The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
+    layout_ranges::check(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {

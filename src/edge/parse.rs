@@ -49,7 +49,9 @@ impl FileKind {
             () if has(&["layout"]) => Some(FileKind::Session),
             () if has(&["step"]) => Some(FileKind::Tutorial),
             () if has(&["language"]) => Some(FileKind::Language),
-            () if has(&["prior", "perception", "transition", "decision", "people"]) => Some(FileKind::HumanModel),
+            () if has(&["model", "prior", "perception", "transition", "decision", "people"]) => {
+                Some(FileKind::HumanModel)
+            }
             () if has(&["console", "replay", "signals", "buttons"]) => Some(FileKind::Keys),
             () => None,
         }

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::choice_parameters::ChoiceParameters;
+use super::choice_parameters::GivenChoice;
 use super::fitting::HumanModelParameter;
 use super::model::{
-    AdaptationSettings, HumanModel, InferenceSettings, LookingModel, PerceptionModel, PriorModel, TransitionModel,
+    GivenHumanModel, GivenInference, GivenLooking, GivenPerception, GivenPrior, GivenTransition, HumanModel,
+    HumanModelName,
 };
-use super::signal_model::SignalModel;
+use super::signal_model::GivenSignal;
 
 /// Fitted parameters of persons by the persons' codes; parameters that a person's table leaves out are the
 /// population's.
@@ -34,35 +35,38 @@ impl FittedPeople {
     }
 }
 
-/// Content of a file with parameters of the human model.
+/// Content of a file with parameters of the human model: those of the population, and those of persons.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(from = "GivenHumanModelFile")]
 pub struct HumanModelFile {
-    prior: PriorModel,
-    perception: PerceptionModel,
-    looking: LookingModel,
-    transition: TransitionModel,
-    decision: ChoiceParameters,
-    signal: SignalModel,
-    #[serde(skip_serializing_if = "AdaptationSettings::is_off")]
-    adapt: AdaptationSettings,
-    inference: InferenceSettings,
+    /// The parameters of the population, which hold for everybody if the file has no persons.
+    #[serde(flatten)]
+    pub population: HumanModel,
     /// Parameters of single persons; `None` if the file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub people: Option<FittedPeople>,
 }
 
-impl HumanModelFile {
-    /// The content of a file with these parameters of the population and of persons.
-    pub fn new(population: HumanModel, people: Option<FittedPeople>) -> HumanModelFile {
-        let HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference } = population;
-        HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, people }
-    }
+/// What a file with parameters of the human model gives.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct GivenHumanModelFile {
+    model: HumanModelName,
+    prior: GivenPrior,
+    perception: GivenPerception,
+    looking: GivenLooking,
+    transition: GivenTransition,
+    decision: GivenChoice,
+    signal: GivenSignal,
+    inference: GivenInference,
+    people: Option<FittedPeople>,
+}
 
-    /// The parameters of the population, which hold for everybody if the file has no persons.
-    pub fn population(&self) -> HumanModel {
-        let HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, .. } =
-            self.clone();
-        HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference }
+impl From<GivenHumanModelFile> for HumanModelFile {
+    fn from(file: GivenHumanModelFile) -> HumanModelFile {
+        let GivenHumanModelFile { model, prior, perception, looking, transition, decision, signal, .. } = file;
+        let inference = file.inference;
+        let given = GivenHumanModel { model, prior, perception, looking, transition, decision, signal, inference };
+        HumanModelFile { population: given.into(), people: file.people }
     }
 }

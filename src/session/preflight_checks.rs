@@ -11,6 +11,7 @@ use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use crate::gaze::recorded_gaze::RecordedGazeSummary;
+use crate::mind::model::HumanModel;
 
 /// Sampling rate of the gaze below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;
@@ -56,11 +57,16 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Says whose parameters the human model has (the participant's or the population's), if its file has some of persons.
+/// Says which human model the session has, unless it is the default, and whose parameters (the participant's or the
+/// population's), if its file has some of persons.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let file = spec.human_model.as_deref().unwrap_or("its file");
-    let found = match spec.parameters_of? {
+    let Some(source) = spec.parameters_of else {
+        let told = [vec![spec.human.model.name().to_string()], spec.human.differences()].concat().join("; ");
+        return (spec.human != HumanModel::default()).then(|| PreflightCheck::ok("human model", told));
+    };
+    let found = match source {
         ParameterSource::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
         ParameterSource::Population => {
             format!("parameters of the population: {file} has none of {}", spec.participant.code)

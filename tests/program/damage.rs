@@ -431,7 +431,7 @@ fn who_follows_a_log_that_vanishes_is_told_and_does_not_wait_for_ever() {
     let out = folder("vanished");
     let recording = out.join("running");
     fs::create_dir_all(&recording).expect("a folder");
-    let text = fs::read_to_string("tests/golden/format-1-hand.jsonl").expect("a golden log");
+    let text = fs::read_to_string("tests/golden/format-3-hand.jsonl").expect("a golden log");
     let lines: Vec<&str> = text.lines().collect();
     fs::write(recording.join(LOG_NAME), lines[..lines.len() - 1].join("\n") + "\n").expect("written");
     let mut child = start(&["replay", &recording.display().to_string(), "--follow"]);

@@ -54,7 +54,7 @@ impl RecordingsFolder {
         fs::read_to_string(self.at(path)).expect(path)
     }
 
-    /// Makes a recording one of somebody with another code, as an earlier version would have written it.
+    /// Makes a recording one of somebody with another code.
     pub fn give(&self, recording: &str, code: &str) {
         let (log, settings) = (format!("{recording}/events.jsonl"), format!("{recording}/session.toml"));
         let old = if recording.contains("P01") { "P01" } else { "P02" };

@@ -11,27 +11,22 @@ use crate::forgetting::RecordingsFolder;
 
 #[test]
 #[serial]
-fn the_code_1_is_looked_for_where_a_participant_is_named_and_nowhere_else() {
+fn a_code_that_is_also_a_word_of_tables_is_looked_for_where_a_participant_is_named_and_nowhere_else() {
     let lab = RecordingsFolder::of_two_people("one");
-    lab.give("seed1-P01-1", "1");
-    lab.give("seed1-P01-2", "1");
+    lab.give("seed1-P01-1", "human");
+    lab.give("seed1-P01-2", "human");
     lab.study();
-    lab.put("old/participants.csv", "id,age\n1,31\n2,1\n");
-    lab.put("old/trials.csv", "1,2,3\n4,5,1\n");
-    lab.put("notes.txt", "1 apple for 1 participant\n");
-    lab.put("1.txt", "1");
-    lab.put("page.html", "<td>1</td>");
-    lab.put("figures.json", "{\"trials\": 1}");
     let before = lab.files();
-    assert!(String::from_utf8_lossy(&before["study/actions.csv"]).contains(",1,"), "of others there are ones, too");
-    let (code, told) = lab.forget(&["1", "--yes"]);
+    assert!(String::from_utf8_lossy(&before["study/actions.csv"]).contains(",human,"), "of others it says who pressed");
+    let (code, told) = lab.forget(&["human", "--yes"]);
     assert_eq!(code, Some(0), "{told}");
     let after = lab.files();
     for (path, bytes) in &before {
         let is_gone = path.starts_with("seed1-P01") || path == "study/report.html";
         assert_eq!(after.contains_key(path), !is_gone, "{path}");
-        let kept =
-            |line: &&[u8]| !path.starts_with("study/") || !line.starts_with(b"1,") && !line.starts_with(b"seed1-P01");
+        let kept = |line: &&[u8]| {
+            !path.starts_with("study/") || !line.starts_with(b"human,") && !line.starts_with(b"seed1-P01")
+        };
         let kept: Vec<&[u8]> = bytes.split_inclusive(|&byte| byte == b'\n').filter(kept).collect();
         assert!(is_gone || after[path] == kept.concat(), "{path}");
     }
@@ -42,39 +37,35 @@ fn the_code_1_is_looked_for_where_a_participant_is_named_and_nowhere_else() {
 
 #[test]
 #[serial]
-fn codes_that_new_sessions_refuse_are_forgotten_where_somebody_has_them_and_nothing_else_is() {
+fn codes_that_sessions_refuse_are_nobodys() {
     let lab = RecordingsFolder::of_two_people("words");
     lab.study();
     lab.put("none.txt", "none");
+    lab.put("notes.txt", "1 apple for 1 participant\n");
     let before = lab.files();
     assert_eq!(lab.forget(&["--yes", "P01,"]).0, Some(2), "no code");
-    for code in ["none", "human", "trials"] {
+    for code in ["none", "1", "human", "trials"] {
         let (exit, told) = lab.forget(&["--yes", code]);
         assert_eq!(exit, Some(1), "{code} is nobody's: {told}");
     }
     assert_eq!(lab.forget(&["--yes", "-7"]).0, Some(2), "an option that there is none of");
     assert_eq!(lab.files(), before);
-    // Recordings of whoever wrote them with another program.
-    for (recording, code) in [("seed1-P01-1", "none"), ("seed1-P01-2", "-7"), ("seed1-P02-1", "seed1-P03")] {
-        lab.give(recording, code);
-        let (exit, told) = lab.run(&["replay", lab.at(recording).to_str().expect("UTF-8"), "--verify"]);
-        assert_eq!(exit, Some(0), "it opens all the same: {told}");
-    }
+    lab.give("seed1-P01-1", "none");
+    let (exit, told) = lab.run(&["replay", lab.at("seed1-P01-1").to_str().expect("UTF-8"), "--verify"]);
+    assert!(exit == Some(2) && told.contains("code = \"none\": "), "{told}");
+}
+
+#[test]
+#[serial]
+fn a_code_like_the_name_of_another_simulated_participant_is_taken_for_one_person() {
+    let lab = RecordingsFolder::of_two_people("named");
+    lab.give("seed1-P02-1", "seed1-P03");
     lab.study();
-    for (recording, code) in [("seed1-P01-1", "none"), ("seed1-P01-2", "-7")] {
-        let (exit, told) = lab.forget(&["--yes", "--", code]);
-        assert!(exit == Some(0) && !lab.at(recording).exists(), "{told}");
-        assert!(
-            !lab.text("study/trials.csv").contains(recording) && !lab.text("study/actions.csv").contains(recording)
-        );
-        assert!(lab.text("study/trials.csv").contains("seed1-P02-1,seed1-P03,simulated"));
-        assert!(lab.text("study/trials.csv").contains(",none,false,true,"), "conditions stay");
-    }
     // That code is also what P03 of seed 1 would be called in a table.
     let (exit, told) = lab.forget(&["--yes", "seed1-P03"]);
     assert!(exit == Some(1) && told.contains("participants.csv: "), "{told}");
     assert!(!lab.at("seed1-P02-1").exists() && lab.text("study/participants.csv").contains("seed1-P03"));
-    assert!(lab.at("seed1-P02-2").exists() && lab.at("none.txt").exists());
+    assert!(lab.at("seed1-P02-2").exists());
 }
 
 #[test]

@@ -140,5 +140,5 @@ fn file(people: &[PersonRecordingCount], base: &HumanModel, plan: &FitSettings, 
     let values = |at: &Vec<f64>| plan.parameters.iter().zip(at).map(|(one, at)| (*one, one.from_scale(*at))).collect();
     let own: BTreeMap<_, _> =
         people.iter().zip(&found.modes).map(|(person, at)| (person.code.clone(), values(at))).collect();
-    HumanModelFile::new(model_at(base, &plan.parameters, &found.mean), Some(FittedPeople(own)))
+    HumanModelFile { population: model_at(base, &plan.parameters, &found.mean), people: Some(FittedPeople(own)) }
 }

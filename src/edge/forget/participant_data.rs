@@ -194,8 +194,8 @@ impl FolderLook<'_> {
         let Some(participants) = page_head::participants(&page) else {
             let is_report = name == REPORT_NAME && (self.tables.name_participant() || subject.is_named_in(&bytes));
             if is_report {
-                let reason = "a report that does not say who made it and whom it is about, such as those of earlier \
-                              versions; make it again with tomcom study, or delete it";
+                let reason = "a report that does not say who made it and whom it is about; make it again with tomcom study, \
+                              or delete it";
                 self.found.left.push(RetainedFile::new(path, reason));
             }
             return Ok(is_report);

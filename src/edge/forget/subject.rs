@@ -101,8 +101,8 @@ impl ForgetSubject {
         self.recordings.iter().any(own)
     }
 
-    /// Whether a text of unknown origin names the participant. Codes of earlier versions that are numbers, or words for
-    /// missing values, do not count, since in such a text they mean something else.
+    /// Whether a text of unknown origin names the participant. Codes that nobody can have, such as numbers, do not count,
+    /// since in such a text they mean something else.
     pub fn is_named_in(&self, text: &[u8]) -> bool {
         let is_distinct = person_code::fault(&self.code).is_none();
         words(text).any(|word| self.is_own_folder(&word) || (is_distinct && self.is_own_code(&word)))

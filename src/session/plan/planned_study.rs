@@ -88,7 +88,7 @@ impl Study {
     /// The event that the participant consented to the plan's text, at the display or at the console.
     pub fn consent_given(&self, on: AnswerDevice) -> ProtocolEvent {
         let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
-        ProtocolEvent::ConsentGiven { on: Some(on), text: Some(text), digest: Some(digest) }
+        ProtocolEvent::ConsentGiven { on, text, digest }
     }
 
     /// The planned trials of a participant, in order.

@@ -12,6 +12,7 @@ use tomcom::mind::fitting::{
     FitObservations, HumanModelParameter, ProbeAnswerObservation, TrialLikelihood, likelihood, p_answer,
 };
 use tomcom::mind::model::HumanModel;
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::run::fit::{FitTrials, fit};
 
@@ -58,6 +59,8 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
     (start.inference.beliefs, start.inference.states, start.inference.max_beliefs) = (256, 16, 256);
     start.prior.recipe_truth = 0.5;
     (start.decision.tau, start.decision.lapse) = (2.5, 0.08);
+    // Signals that take time, and are missed, tell less of how fast what they showed is forgotten.
+    start.signal = PAPER_2021.signal;
     let mut truth = start.clone();
     truth.transition.recipe_half_life_s = 60.0;
     let recipes = kitchen.aspects.iter().filter(|one| matches!(one.kind, AspectKind::Recipe(_))).count();

@@ -73,7 +73,7 @@ fn the_digest_covers_the_parameters_of_persons() {
     let nobody = HUMAN.split("[people").next().expect("a head");
     assert_ne!(first, digest("fitted-digest-4", nobody));
     // A file without persons is what it was before there were any.
-    let population = HumanModelFile::new(HumanModel::default(), None);
+    let population = HumanModelFile::default();
     let path = folder("fitted-digest-5").join("human.toml");
     write_human_model(&path, &population, "Parameters of the human model, fitted to 1 recording").expect("written");
     assert!(!fs::read_to_string(&path).expect("a file").contains("people"));
@@ -108,11 +108,11 @@ fn a_file_of_people_is_read_as_it_was_written() {
     ];
     people.0.insert("P07".to_string(), own.into_iter().collect());
     people.0.insert("seed9821-S001".to_string(), own[..1].iter().copied().collect());
-    let file = HumanModelFile::new(HumanModel::default(), Some(people));
+    let file = HumanModelFile { people: Some(people), ..HumanModelFile::default() };
     let path = folder("fitted-file").join("human.toml");
     write_human_model(&path, &file, "Parameters of the human model, fitted to 3 recordings").expect("written");
     assert_eq!(read_human_model(&path).expect("the file"), file);
-    let mut model = file.population();
+    let mut model = file.population.clone();
     assert!(file.people.as_ref().is_some_and(|people| people.apply("P07", &mut model)));
     assert_eq!((model.decision.tau, model.prior.recipe_truth), (1.25, 0.7));
     assert!(!file.people.as_ref().is_some_and(|people| people.apply("P08", &mut model)));

@@ -166,7 +166,7 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
 fn a_path_that_is_nearly_right_gets_a_suggestion() {
     let out = folder("nearly");
     fs::create_dir_all(out.join("seed7-S001")).expect("a folder");
-    fs::copy("tests/golden/format-1-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
+    fs::copy("tests/golden/format-3-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
     let out = out.display().to_string();
     let wrong = format!("{out}/seed7-S01");
     let wanted = format!("{wrong} does not exist; did you mean {out}/seed7-S001?");

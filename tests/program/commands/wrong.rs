@@ -30,7 +30,7 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
         ("dance", "'tomcom operate SESSION'"),
         ("sessions/default.toml", "'tomcom operate sessions/default.toml'"),
         ("nowhere.toml", "'tomcom operate nowhere.toml'"),
-        ("tests/golden/format-1-hand.jsonl", "'tomcom replay tests/golden/format-1-hand.jsonl'"),
+        ("tests/golden/format-3-hand.jsonl", "'tomcom replay tests/golden/format-3-hand.jsonl'"),
         ("tests", "'tomcom list tests'"),
         ("repaly", "'replay'"),
         ("operte", "'operate'"),
@@ -117,7 +117,7 @@ fn told_about(name: &str, bad: &Bad) -> String {
         ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
         ("sessions/tutorials/sushi.toml", read("sessions/tutorials/sushi.toml")),
         ("sessions/people/robustness.toml", read("sessions/people/robustness.toml")),
-        ("recording/events.jsonl", read("tests/golden/format-1-hand.jsonl")),
+        ("recording/events.jsonl", read("tests/golden/format-3-hand.jsonl")),
     ];
     let mut edited = String::new();
     for (path, text) in files {

@@ -144,7 +144,7 @@ fn a_recording_of_a_folder_is_chosen_from_a_list_by_typing() {
     let out = terminal.folder.join("recordings");
     for (name, golden) in [("P07-1", "hand"), ("S001", "simulated")] {
         fs::create_dir_all(out.join(name)).expect("a folder");
-        let golden = format!("tests/golden/format-1-{golden}.jsonl");
+        let golden = format!("tests/golden/format-3-{golden}.jsonl");
         fs::copy(golden, out.join(name).join("events.jsonl")).expect("a recording");
     }
     terminal.run(&format!("{TOMCOM} replay {}", out.display()));

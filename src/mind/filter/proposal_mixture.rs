@@ -1,4 +1,4 @@
-//! Actions of the human (a press, or waiting) as evidence of the human's belief.
+//! A press of the human as evidence of the human's belief, while the display may propose presses.
 
 use crate::kitchen::ButtonId;
 
@@ -32,17 +32,4 @@ impl ProposalMixture {
     pub fn likelihood(&self, choice: f64) -> f64 {
         self.proposed + self.chosen * choice
     }
-}
-
-/// An action of the human, as evidence of the human's belief b.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HumanAction {
-    /// The human presses a button. Likelihood: that of the mixture, times 1 - p(wait | b) where waiting is evidence.
-    Presses(ProposalMixture),
-    /// The human has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of
-    /// the human's intervals between presses that are longer: the human still thinks, or has decided to wait.
-    Waits {
-        /// Share of the human's intervals between presses that are longer than the present silence.
-        longer: f64,
-    },
 }

@@ -6,9 +6,6 @@
 //! elsewhere for all of the signal's time is evidence that the signal was missed. Reading the signal makes the signal's
 //! aspects certain; reading it once more changes nothing. A press of the human draws the readings in the unknown time
 //! since the last event anew, see [`super::unseen_looks`].
-//!
-//! From signals that were read or missed, the filter learns how often this person notices signals: the counts of a Beta
-//! distribution.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -18,12 +15,12 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::HumanModel;
 use crate::mind::signal_model::SignalReadingForecast;
 
-use super::ConditionalFilter;
-use crate::mind::filter::look_news::PossiblyReadSignal;
-use crate::mind::filter::perception::NEGLIGIBLE;
-use crate::mind::filter::signals_so_far::{EndedSignal, SignalOnDisplay};
+use super::BeliefFilter;
+use super::look_news::PossiblyReadSignal;
+use super::perception::NEGLIGIBLE;
+use super::signals_so_far::{EndedSignal, SignalOnDisplay};
 
-impl ConditionalFilter {
+impl BeliefFilter {
     /// The signal that has left the display since the last call of this function; `None` if none has.
     pub fn take_signal_over(&mut self) -> Option<EndedSignal> {
         self.signals.over.take()
@@ -35,14 +32,16 @@ impl ConditionalFilter {
         if !model.takes_time() {
             return SignalReadingForecast::default();
         }
-        let understood = |kind| (1.0 - model.misread) * self.signals.noticed(model, kind);
+        let understood = |kind| (1.0 - model.misread) * model.noticed_at(kind);
         let (recipe, highlight) = (understood(LocationKind::Order), understood(LocationKind::Place));
         SignalReadingForecast { recipe, highlight, delay_s: model.delay_s }
     }
 
-    /// An estimate in which the signal on the display has been read as far as is to be expected: the same advice must
-    /// not be given twice because the first signal has not been read yet.
-    pub fn foreseen(&self, now: SessionTime, mut belief: DirichletBelief) -> DirichletBelief {
+    /// The estimate at `now` in which the signal on the display has been read as far as is to be expected: the same
+    /// advice must not be given twice because the first signal has not been read yet. `is_current`: no time has passed
+    /// since the last observation.
+    pub fn foreseen(&self, now: SessionTime, is_current: bool, cost: &mut CostToGo) -> DirichletBelief {
+        let mut belief = if is_current { self.belief.clone() } else { self.at(now, cost) };
         if let Some(standing) = &self.signals.standing {
             let passed_s = now.secs_since(standing.since);
             let hazard = self.model.signal.reading_hazard(standing.noticed, passed_s, f64::INFINITY);
@@ -60,7 +59,7 @@ impl ConditionalFilter {
             aspects.push(self.kitchen.aspect_of_dish(dish));
         }
         self.signals.end();
-        let noticed = self.signals.noticed(&self.model.signal, kind);
+        let noticed = self.model.signal.noticed_at(kind);
         let standing = SignalOnDisplay { location, aspects, since: now, noticed, unread: 1.0 };
         if self.model.signal.takes_time() {
             self.signals.standing = Some(standing);

@@ -8,7 +8,7 @@ use super::file_error::{FileError, FileResult};
 use super::type_error::{in_words, message};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
-use crate::mind::fitted_people::HumanModelFile;
+use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::battery::BatterySpec;
 use crate::session::plan::{Questionnaire, Tutorial};
@@ -49,7 +49,7 @@ impl FileKind {
             () if has(&["layout"]) => Some(FileKind::Session),
             () if has(&["step"]) => Some(FileKind::Tutorial),
             () if has(&["language"]) => Some(FileKind::Language),
-            () if has(&["prior", "perception", "transition", "decision", "people"]) => Some(FileKind::HumanModel),
+            () if has(&["prior", "perception", "transition", "decision"]) => Some(FileKind::HumanModel),
             () if has(&["console", "replay", "signals", "buttons"]) => Some(FileKind::Keys),
             () => None,
         }
@@ -114,7 +114,7 @@ impl ParsedFile for BatterySpec {
     const KIND: FileKind = FileKind::Battery;
 }
 
-impl ParsedFile for HumanModelFile {
+impl ParsedFile for HumanModel {
     const KIND: FileKind = FileKind::HumanModel;
 }
 

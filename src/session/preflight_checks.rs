@@ -1,7 +1,6 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::condition::Condition;
-use super::fitted_parameters::ParameterSource;
 use super::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
@@ -56,19 +55,6 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Says whose parameters the human model has (the participant's or the population's), if its file has some of persons.
-fn human_model(session: &Session) -> Option<PreflightCheck> {
-    let spec = &session.spec;
-    let file = spec.human_model.as_deref().unwrap_or("its file");
-    let found = match spec.parameters_of? {
-        ParameterSource::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
-        ParameterSource::Population => {
-            format!("parameters of the population: {file} has none of {}", spec.participant.code)
-        }
-    };
-    Some(PreflightCheck::ok("human model", found))
-}
-
 /// A sender of gaze that was rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RejectedGaze {
@@ -78,7 +64,7 @@ pub struct RejectedGaze {
     pub remedy: String,
 }
 
-/// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a
+/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a
 /// gaze accuracy check, `rejected` the sender of gaze that was rejected since the last gaze sample arrived.
 pub fn participant(
     session: &Session,
@@ -94,7 +80,6 @@ pub fn participant(
     };
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
-    checks.extend(human_model(session));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),

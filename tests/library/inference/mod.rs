@@ -9,7 +9,6 @@ mod failed_serving;
 mod fitting;
 mod fitting_answers;
 mod fitting_intervals;
-mod fitting_people;
 mod freezes;
 mod grid;
 mod laws;

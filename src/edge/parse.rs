@@ -5,7 +5,6 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 use super::file_error::{FileError, FileResult};
-use super::type_error::{in_words, message};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
@@ -123,10 +122,42 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
         None => {
-            let (found, right) = in_words(&message::<T>(text, &error));
+            let (found, right) = told::<T>(text, &error);
             let kind = T::KIND.remedy();
             let remedy = right.map_or(kind.to_string(), |right| format!("{right}; in {kind}"));
             FileError::at(path, text, error.span(), found, remedy)
         }
     })
+}
+
+/// What the parser found, and what it expected instead, if it says so.
+fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Option<String>) {
+    let value = error.span().and_then(|span| text.get(span)).filter(|value| !value.contains('\n'));
+    if let Some((found, expected)) = error.message().split_once(", expected ") {
+        return (found.to_string(), Some(type_name(expected)));
+    }
+    // Which words are right the parser says only of a text.
+    if let (Some(span), Some(value), "wanted string or table") = (error.span(), value, error.message())
+        && let Err(error) = toml::from_str::<T>(&[&text[..span.start], "\"\"", &text[span.end..]].concat())
+        && let Some((_, words)) = error.message().split_once(", expected ")
+    {
+        return (value.to_string(), Some(words.to_string()));
+    }
+    (value.map_or(String::new(), |value| format!("{value}: ")) + error.message(), None)
+}
+
+/// A type of Rust by a name that people know who write settings.
+fn type_name(expected: &str) -> String {
+    let name = match expected {
+        "u8" => "a whole number from 0 to 255",
+        "u16" => "a whole number from 0 to 65535",
+        // Most settings have narrower bounds, which are checked and reported by other code.
+        "u32" | "u64" | "usize" => "a whole number, not below 0",
+        "i64" => "a whole number",
+        "f32" | "f64" => "a number",
+        "a sequence" => "a list, in [ ]",
+        _ if expected.starts_with("struct ") || expected == "a map" => "a table",
+        _ => expected,
+    };
+    name.to_string()
 }

@@ -9,7 +9,6 @@
 //! bound, or whose interval reaches one, is not identified; the interval of such a parameter is one-sided.
 
 pub mod ascent;
-pub mod downhill_simplex;
 pub mod fitted_answers;
 pub mod parameter_scale;
 pub mod response_surface;

@@ -132,32 +132,37 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
 
 /// What the parser found, and what it expected instead, if it says so.
 fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Option<String>) {
-    let value = error.span().and_then(|span| text.get(span)).filter(|value| !value.contains('\n'));
-    if let Some((found, expected)) = error.message().split_once(", expected ") {
-        return (found.to_string(), Some(type_name(expected)));
+    let message = error.message().replace('`', "\"");
+    if let Some((found, expected)) = message.split_once(", expected ") {
+        return (found.to_string(), Some(type_name(expected).to_string()));
     }
+    let Some((span, value)) = error.span().and_then(|span| Some((span.clone(), text.get(span)?))) else {
+        return (message, None);
+    };
     // Which words are right the parser says only of a text.
-    if let (Some(span), Some(value), "wanted string or table") = (error.span(), value, error.message())
+    if message == "wanted string or table"
         && let Err(error) = toml::from_str::<T>(&[&text[..span.start], "\"\"", &text[span.end..]].concat())
         && let Some((_, words)) = error.message().split_once(", expected ")
     {
-        return (value.to_string(), Some(words.to_string()));
+        return (value.to_string(), Some(words.replace('`', "\"")));
     }
-    (value.map_or(String::new(), |value| format!("{value}: ")) + error.message(), None)
+    (if value.contains('\n') { message } else { format!("{value}: {message}") }, None)
 }
 
 /// A type of Rust by a name that people know who write settings.
-fn type_name(expected: &str) -> String {
-    let name = match expected {
+fn type_name(expected: &str) -> &str {
+    match expected {
         "u8" => "a whole number from 0 to 255",
         "u16" => "a whole number from 0 to 65535",
         // Most settings have narrower bounds, which are checked and reported by other code.
         "u32" | "u64" | "usize" => "a whole number, not below 0",
         "i64" => "a whole number",
         "f32" | "f64" => "a number",
+        "a boolean" => "true or false",
+        "a string" => "a text in quotes",
         "a sequence" => "a list, in [ ]",
-        _ if expected.starts_with("struct ") || expected == "a map" => "a table",
+        "a map" => "a table of settings",
+        _ if expected.starts_with("struct ") => "a table of settings",
         _ => expected,
-    };
-    name.to_string()
+    }
 }

@@ -190,24 +190,17 @@ pub(super) struct SimulateArgs {
 
 /// Fits the human model to recordings.
 ///
-/// Maximum likelihood estimates of parameters from recorded presses, with standard errors; with --people a population
-/// whose persons differ.
+/// Maximum likelihood estimates of parameters from recorded presses, with standard errors.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nExample: tomcom fit recordings/* --people --out sessions/human-people.toml\nMore: docs/human-model.md"
+    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nMore: docs/human-model.md"
 )]
 pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Fit a population whose persons have parameters of their own: estimates for both, shrinkage, and how likely each
-    /// person's last trial is after a fit without it.
-    #[arg(long)]
-    pub(super) people: bool,
-    /// Parameters to fit, separated by commas. With --people by default tau, lapse, reading, half-life and
-    /// recipe-knowledge.
-    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL,
-          default_value_if("people", "true", FitParameter::OF_PERSONS))]
+    /// Parameters to fit, separated by commas.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL)]
     pub(super) parameters: Vec<FitParameter>,
     /// Parameter file to start from; parameters that are not fitted keep its values. By default the parameters in the
     /// recordings.
@@ -220,7 +213,7 @@ pub(super) struct FitArgs {
     /// Largest number of likelihood evaluations.
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     pub(super) tries: u64,
-    /// Write the fitted parameters to this file; with --people also those of each person, by code.
+    /// Write the fitted parameters to this file.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Output format.
@@ -255,7 +248,6 @@ pub(super) enum FitParameter {
 
 impl FitParameter {
     const USUAL: &str = "tau,lapse,radius,reading,half-life";
-    const OF_PERSONS: &str = "tau,lapse,reading,half-life,recipe-knowledge";
 
     pub(super) fn parameter(self) -> HumanModelParameter {
         match self {

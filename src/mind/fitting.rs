@@ -1,8 +1,6 @@
 //! Fitting the human model: the parameters that can be fitted, the scale on which each parameter is fitted, and the
 //! likelihood of a trial's presses and answers to freeze probes.
 
-use serde::{Deserialize, Serialize};
-
 use super::dirichlet::Dirichlet;
 use super::filter::BeliefFilter;
 use super::model::HumanModel;
@@ -16,8 +14,7 @@ use std::sync::Arc;
 const STRICT: f64 = 0.1;
 
 /// A parameter of the human model that can be fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum HumanModelParameter {
     /// Softmax rationality tau: how strictly fewer expected presses are preferred, per press.
     Tau,

@@ -6,7 +6,6 @@ pub mod choice;
 pub mod choice_parameters;
 pub mod dirichlet;
 pub mod filter;
-pub mod fitted_people;
 pub mod fitting;
 pub mod gaze_presence;
 pub mod model;

@@ -100,14 +100,6 @@ impl FromStr for ParameterSweepAxis {
     }
 }
 
-/// Gives everybody this parameter of the human model, also persons who have a fitted value of their own.
-fn set_for_all(spec: &mut SessionSpec, parameter: HumanModelParameter, value: f64) {
-    parameter.set(&mut spec.human, value);
-    if let Some(people) = &mut spec.people {
-        people.forget(parameter);
-    }
-}
-
 impl ParameterSweepAxis {
     /// Applies a value of the swept setting to the settings; the value was validated when it was parsed.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
@@ -121,8 +113,8 @@ impl ParameterSweepAxis {
                 spec.assistant.rollout.rollouts = whole;
                 spec.assistant.rollout.least_rollouts = spec.assistant.rollout.least_rollouts.min(whole);
             }
-            Knob::Tau => set_for_all(spec, HumanModelParameter::Tau, number),
-            Knob::Radius => set_for_all(spec, HumanModelParameter::RadiusDeg, number),
+            Knob::Tau => HumanModelParameter::Tau.set(&mut spec.human, number),
+            Knob::Radius => HumanModelParameter::RadiusDeg.set(&mut spec.human, number),
             Knob::Gaze if value == "off" => spec.participant.gaze = GazeSource::None,
             Knob::Gaze => {}
         }

@@ -27,7 +27,6 @@ pub mod code_correction;
 mod condition;
 mod console_settings;
 pub mod event;
-pub mod fitted_parameters;
 mod gaze_check;
 pub mod gaze_samples;
 mod gaze_status;

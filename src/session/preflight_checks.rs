@@ -1,7 +1,6 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::condition::Condition;
-use super::fitted_parameters::ParameterSource;
 use super::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
@@ -57,22 +56,11 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Says which human model the session has, unless it is the default, and whose parameters (the participant's or the
-/// population's), if its file has some of persons.
+/// Says which human model the session has, and what differs from the named model, unless it is the default.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
-    let spec = &session.spec;
-    let file = spec.human_model.as_deref().unwrap_or("its file");
-    let Some(source) = spec.parameters_of else {
-        let told = [vec![spec.human.model.name().to_string()], spec.human.differences()].concat().join("; ");
-        return (spec.human != HumanModel::default()).then(|| PreflightCheck::ok("human model", told));
-    };
-    let found = match source {
-        ParameterSource::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
-        ParameterSource::Population => {
-            format!("parameters of the population: {file} has none of {}", spec.participant.code)
-        }
-    };
-    Some(PreflightCheck::ok("human model", found))
+    let human = &session.spec.human;
+    let told = [vec![human.model.name().to_string()], human.differences()].concat().join("; ");
+    (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", told))
 }
 
 /// A sender of gaze that was rejected.
@@ -84,7 +72,7 @@ pub struct RejectedGaze {
     pub remedy: String,
 }
 
-/// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a
+/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a
 /// gaze accuracy check, `rejected` the sender of gaze that was rejected since the last gaze sample arrived.
 pub fn participant(
     session: &Session,
@@ -100,7 +88,6 @@ pub fn participant(
     };
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
-    checks.extend(human_model(session));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),

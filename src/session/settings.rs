@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
-use super::fitted_parameters::ParameterSource;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::person_code;
@@ -19,7 +18,6 @@ use super::wall_display::DisplaySpec;
 use crate::communication::HighlightSet;
 use crate::communication::settings::{AssistantSpec, ShadowMode};
 use crate::kitchen::{Kitchen, LocationKind};
-use crate::mind::fitted_people::FittedPeople;
 use crate::mind::model::{HumanModel, HumanModelName};
 use crate::participant::population::Population;
 use crate::wizard::settings::{WizardKind, WizardSpec};
@@ -77,14 +75,6 @@ pub struct SessionSpec {
     /// Parameters of the assistant's human model; in a recording, the parameters in use.
     #[serde(default)]
     pub human: HumanModel,
-    /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons. Written by the
-    /// program, not allowed in session files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parameters_of: Option<ParameterSource>,
-    /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never
-    /// recorded.
-    #[serde(skip)]
-    pub people: Option<FittedPeople>,
     /// Study plan with several participants and trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanSpec>,
@@ -149,14 +139,6 @@ impl SessionSpec {
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
         self.lsl.as_ref().map_or(Ok(()), LslSpec::check)
-    }
-
-    /// Gives the human model the fitted parameters of the participant of this recording, whose code is known now.
-    /// Without parameters of persons nothing changes.
-    pub fn adopt_person(&mut self) {
-        let Some(people) = self.people.take() else { return };
-        let is_known = people.apply(&self.participant.code, &mut self.human);
-        self.parameters_of = Some(if is_known { ParameterSource::Person } else { ParameterSource::Population });
     }
 
     /// Whether the session needs the library of the Lab Streaming Layer.

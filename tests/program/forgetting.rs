@@ -220,7 +220,7 @@ fn nothing_goes_while_a_recording_is_being_written() {
 fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
     let lab = RecordingsFolder::of_two_people("json");
     lab.study();
-    lab.put("seed1-P01-1.zip", "of another program");
+    lab.put("seed1-P01-1/notes.txt", "of another program");
     let listed = |arguments: &[&str]| {
         let root = lab.root.to_str().expect("UTF-8");
         let mut command = Command::new(TOMCOM);
@@ -242,6 +242,9 @@ fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
     assert_eq!(deleted["files"][0], path("study/report.html"));
     let tables = deleted["tables"].as_array().expect("a list");
     assert_eq!(tables.last(), Some(&serde_json::json!([path("study/trials.csv"), 2])));
-    assert_eq!(deleted["left"][0]["path"], path("seed1-P01-1.zip"));
-    assert!(deleted["left"][0]["reason"].as_str().is_some_and(|reason| reason.contains("name of one of")), "{deleted}");
+    assert_eq!(deleted["left"][0]["path"], path("seed1-P01-1/notes.txt"));
+    assert!(
+        deleted["left"][0]["reason"].as_str().is_some_and(|reason| reason.contains("tomcom did not write it")),
+        "{deleted}"
+    );
 }

@@ -94,8 +94,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
         observations.push(trial);
         cost = world.cost;
     }
-    let people = (0..people).map(|index| (format!("P{index}"), 0)).collect();
-    (FitTrials { kitchen, model: start, differ: false, observations, people }, truth)
+    (FitTrials { kitchen, model: start, differ: false, observations }, truth)
 }
 
 /// A belief over two values of which both are as likely, and over three of which one is: by the uniform density of the simplex, and its

@@ -7,7 +7,6 @@ mod exact;
 mod fitting;
 mod fitting_answers;
 mod fitting_intervals;
-mod fitting_people;
 mod freezes;
 mod grid;
 mod laws;

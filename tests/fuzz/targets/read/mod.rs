@@ -21,7 +21,7 @@ use tomcom::edge::{gaze_file, gaze_line, stream_head, training, written_tables};
 use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::measures::cause_codes::CodableErrors;
-use tomcom::mind::fitted_people::HumanModelFile;
+use tomcom::mind::model::HumanModel;
 use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
 use tomcom::session::header::RecordedFile;
@@ -90,7 +90,7 @@ fn questionnaire(bytes: &[u8]) {
 }
 
 fn parameters(bytes: &[u8]) {
-    shown(parse::<HumanModelFile>(Path::new("parameters"), &text(bytes)).map(|file| file.population.fault().is_none()));
+    shown(parse::<HumanModel>(Path::new("parameters"), &text(bytes)).map(|model| model.fault().is_none()));
 }
 
 fn keys(bytes: &[u8]) {

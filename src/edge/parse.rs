@@ -132,26 +132,27 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
 
 /// What the parser found, and what it expected instead, if it says so.
 fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Option<String>) {
-    let message = error.message().replace('`', "\"");
+    let message = error.message();
     if let Some((found, expected)) = message.split_once(", expected ") {
-        return (found.to_string(), Some(type_name(expected).to_string()));
+        return (found.to_string(), Some(type_name(expected)));
     }
-    let Some((span, value)) = error.span().and_then(|span| Some((span.clone(), text.get(span)?))) else {
-        return (message, None);
+    let (span, value) = match error.span().and_then(|span| Some((span.clone(), text.get(span)?))) {
+        Some((span, value)) if !value.is_empty() && !value.contains('\n') => (span, value),
+        _ => return (message.to_string(), None),
     };
     // Which words are right the parser says only of a text.
     if message == "wanted string or table"
         && let Err(error) = toml::from_str::<T>(&[&text[..span.start], "\"\"", &text[span.end..]].concat())
         && let Some((_, words)) = error.message().split_once(", expected ")
     {
-        return (value.to_string(), Some(words.replace('`', "\"")));
+        return (value.to_string(), Some(type_name(words)));
     }
-    (if value.contains('\n') { message } else { format!("{value}: {message}") }, None)
+    (format!("{value}: {message}"), None)
 }
 
-/// A type of Rust by a name that people know who write settings.
-fn type_name(expected: &str) -> &str {
-    match expected {
+/// What was expected, with types of Rust by names that people know who write settings, and words in quotes.
+fn type_name(expected: &str) -> String {
+    let name = match expected {
         "u8" => "a whole number from 0 to 255",
         "u16" => "a whole number from 0 to 65535",
         // Most settings have narrower bounds, which are checked and reported by other code.
@@ -163,6 +164,8 @@ fn type_name(expected: &str) -> &str {
         "a sequence" => "a list, in [ ]",
         "a map" => "a table of settings",
         _ if expected.starts_with("struct ") => "a table of settings",
-        _ => expected,
-    }
+        _ if expected.contains('"') => expected,
+        _ => return expected.replace('`', "\""),
+    };
+    name.to_string()
 }

@@ -2,12 +2,9 @@
 
 use std::fs;
 
-use serial_test::serial;
-
 use crate::forgetting::RecordingsFolder;
 
 #[test]
-#[serial]
 fn bytes_that_are_no_utf_8_stay_as_they_are() {
     let lab = RecordingsFolder::of_two_people("latin-1");
     lab.study();
@@ -25,7 +22,6 @@ fn bytes_that_are_no_utf_8_stay_as_they_are() {
 }
 
 #[test]
-#[serial]
 fn a_damaged_table_is_told_and_those_beside_it_stay_until_it_is_gone() {
     for (name, damage) in [
         ("header", (|text: &str| text.replacen("participant", "part", 1)) as fn(&str) -> String),
@@ -61,7 +57,6 @@ fn a_damaged_table_is_told_and_those_beside_it_stay_until_it_is_gone() {
 }
 
 #[test]
-#[serial]
 fn a_header_says_whose_a_recording_is_and_else_the_settings() {
     let lab = RecordingsFolder::of_two_people("headers");
     let damage = |recording: &str| {
@@ -99,7 +94,6 @@ fn a_header_says_whose_a_recording_is_and_else_the_settings() {
 }
 
 #[test]
-#[serial]
 fn a_link_leads_nowhere_and_a_pipe_is_not_waited_for() {
     let lab = RecordingsFolder::of_two_people("links");
     std::os::unix::fs::symlink(lab.at("seed1-P02-1"), lab.at("seed1-P01-1/linked")).expect("linked");

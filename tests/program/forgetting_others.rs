@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
 use tomcom::session::LogHeader;
@@ -10,7 +9,6 @@ use tomcom::session::LogHeader;
 use crate::forgetting::RecordingsFolder;
 
 #[test]
-#[serial]
 fn the_code_1_is_looked_for_where_a_participant_is_named_and_nowhere_else() {
     let lab = RecordingsFolder::of_two_people("one");
     lab.give("seed1-P01-1", "1");
@@ -41,7 +39,6 @@ fn the_code_1_is_looked_for_where_a_participant_is_named_and_nowhere_else() {
 }
 
 #[test]
-#[serial]
 fn codes_that_new_sessions_refuse_are_forgotten_where_somebody_has_them_and_nothing_else_is() {
     let lab = RecordingsFolder::of_two_people("words");
     lab.study();
@@ -78,7 +75,6 @@ fn codes_that_new_sessions_refuse_are_forgotten_where_somebody_has_them_and_noth
 }
 
 #[test]
-#[serial]
 fn such_codes_are_refused_for_new_sessions() {
     let lab = RecordingsFolder::of_two_people("new-sessions");
     for code in ["none", "-7", "007", "TRUE"] {
@@ -88,7 +84,6 @@ fn such_codes_are_refused_for_new_sessions() {
 }
 
 #[test]
-#[serial]
 fn tables_of_other_programs_stay_as_they_are_and_are_told_where_they_name_the_participant() {
     let lab = RecordingsFolder::of_two_people("foreign");
     lab.put("ages/participants.csv", "participant,age\nP01,31\nP02,32\n");
@@ -125,7 +120,6 @@ fn tables_of_other_programs_stay_as_they_are_and_are_told_where_they_name_the_pa
 }
 
 #[test]
-#[serial]
 fn files_of_others_in_a_recordings_folder_stay_with_the_settings_that_say_whose_it_is() {
     let lab = RecordingsFolder::of_two_people("strange");
     lab.put("seed1-P01-1/consent.pdf", "a scan");
@@ -156,7 +150,6 @@ fn files_of_others_in_a_recordings_folder_stay_with_the_settings_that_say_whose_
 }
 
 #[test]
-#[serial]
 fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
     let lab = RecordingsFolder::of_two_people("ambiguous");
     for (from, to) in [("seed1-P01-1", "a/trial-1"), ("seed1-P02-1", "b/trial-1"), ("seed1-P01-2", "a/trial-2")] {
@@ -199,7 +192,6 @@ fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
 }
 
 #[test]
-#[serial]
 fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
     let lab = RecordingsFolder::of_two_people("rescued");
     let rescue = |root: &str| {

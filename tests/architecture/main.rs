@@ -4,7 +4,6 @@
 mod documents;
 mod imports;
 mod outside;
-mod serial;
 mod sources;
 
 use std::path::Path;

@@ -5,12 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::RecordingLock;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 
-use crate::tmux::TOMCOM;
+use crate::program::TOMCOM;
 
 /// A folder with recordings, and the folder that the program takes for the system's one for temporary files.
 pub struct RecordingsFolder {
@@ -122,7 +121,6 @@ fn record(wizard: &str, recordings: &[&str]) -> String {
 }
 
 #[test]
-#[serial]
 fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     let lab = RecordingsFolder::of_two_people("asks");
     lab.put("training/W1-1.json", record("W1", &["seed1-P01-1", "seed9-S001"]));
@@ -145,7 +143,6 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
 }
 
 #[test]
-#[serial]
 fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     let lab = RecordingsFolder::of_two_people("everywhere");
     lab.study();
@@ -190,7 +187,6 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
 }
 
 #[test]
-#[serial]
 fn nothing_goes_while_a_recording_is_being_written() {
     let lab = RecordingsFolder::of_two_people("locked");
     lab.study();
@@ -216,7 +212,6 @@ fn nothing_goes_while_a_recording_is_being_written() {
 }
 
 #[test]
-#[serial]
 fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
     let lab = RecordingsFolder::of_two_people("json");
     lab.study();

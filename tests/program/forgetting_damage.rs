@@ -2,12 +2,9 @@
 
 use std::fs;
 
-use serial_test::serial;
-
 use crate::forgetting::RecordingsFolder;
 
 #[test]
-#[serial]
 fn bytes_that_are_no_utf_8_stay_as_they_are() {
     let lab = RecordingsFolder::of_two_people("latin-1");
     lab.study();
@@ -25,7 +22,6 @@ fn bytes_that_are_no_utf_8_stay_as_they_are() {
 }
 
 #[test]
-#[serial]
 fn a_damaged_table_stays_and_is_told_until_it_is_mended() {
     for (name, damage) in [
         ("header", (|text: &str| text.replacen("participant", "part", 1)) as fn(&str) -> String),
@@ -51,7 +47,6 @@ fn a_damaged_table_stays_and_is_told_until_it_is_mended() {
 }
 
 #[test]
-#[serial]
 fn the_table_of_trials_tells_whose_the_recordings_are_until_all_tables_beside_it_are_changed() {
     let lab = RecordingsFolder::of_two_people("trials-last");
     lab.study();
@@ -67,7 +62,6 @@ fn the_table_of_trials_tells_whose_the_recordings_are_until_all_tables_beside_it
 }
 
 #[test]
-#[serial]
 fn what_a_kill_in_the_middle_leaves_is_gone_on_with() {
     let lab = RecordingsFolder::of_two_people("killed");
     lab.study();
@@ -97,7 +91,6 @@ fn what_a_kill_in_the_middle_leaves_is_gone_on_with() {
 }
 
 #[test]
-#[serial]
 fn a_header_says_whose_a_recording_is_and_else_the_settings() {
     let lab = RecordingsFolder::of_two_people("headers");
     let damage = |recording: &str| {
@@ -135,7 +128,6 @@ fn a_header_says_whose_a_recording_is_and_else_the_settings() {
 }
 
 #[test]
-#[serial]
 fn a_link_leads_nowhere_and_a_pipe_is_not_waited_for() {
     let lab = RecordingsFolder::of_two_people("links");
     std::os::unix::fs::symlink(lab.at("seed1-P02-1"), lab.at("seed1-P01-1/linked")).expect("linked");

@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
 use tomcom::session::LogHeader;
@@ -10,7 +9,6 @@ use tomcom::session::LogHeader;
 use crate::forgetting::RecordingsFolder;
 
 #[test]
-#[serial]
 fn files_of_other_programs_stay_as_they_are_whatever_stands_in_them() {
     let lab = RecordingsFolder::of_two_people("foreign");
     lab.put("ages/participants.csv", "participant,age\nP01,31\nP02,32\n");
@@ -31,7 +29,6 @@ fn files_of_other_programs_stay_as_they_are_whatever_stands_in_them() {
 }
 
 #[test]
-#[serial]
 fn a_code_that_looks_like_one_with_a_seed_is_another_person() {
     let lab = RecordingsFolder::of_two_people("seeds");
     lab.give("seed1-P02-1", "seed1-P01");
@@ -44,7 +41,6 @@ fn a_code_that_looks_like_one_with_a_seed_is_another_person() {
 }
 
 #[test]
-#[serial]
 fn files_of_others_in_a_recordings_folder_stay_and_are_told() {
     let lab = RecordingsFolder::of_two_people("strange");
     lab.put("seed1-P01-1/consent.pdf", "a scan");
@@ -67,7 +63,6 @@ fn files_of_others_in_a_recordings_folder_stay_and_are_told() {
 }
 
 #[test]
-#[serial]
 fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
     let lab = RecordingsFolder::of_two_people("ambiguous");
     for (from, to) in [("seed1-P01-1", "a/trial-1"), ("seed1-P02-1", "b/trial-1"), ("seed1-P01-2", "a/trial-2")] {
@@ -110,7 +105,6 @@ fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
 }
 
 #[test]
-#[serial]
 fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
     let lab = RecordingsFolder::of_two_people("rescued");
     let rescue = |root: &str| {

@@ -4,12 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use serial_test::serial;
 
-use super::{check, complaint, figures, folder};
+use super::{check, complaint, figures};
+use crate::program::folder;
 
 #[test]
-#[serial]
 fn kitchen_prints_the_state_space_and_the_plans() {
     let sushi = figures(&["kitchen", "layouts/sushi.toml", "--format", "json"], 0);
     assert_eq!(sushi["states"], "83878450387200000");
@@ -29,7 +28,6 @@ fn kitchen_prints_the_state_space_and_the_plans() {
 }
 
 #[test]
-#[serial]
 fn simulate_records_what_replay_verifies() {
     let out = folder("simulate");
     let out = out.to_str().expect("a path in UTF-8");
@@ -74,7 +72,6 @@ fn simulate_records_what_replay_verifies() {
 }
 
 #[test]
-#[serial]
 fn a_simulation_replaces_itself_and_no_other_recording() {
     let out = folder("replaced");
     let out = out.to_str().expect("a path in UTF-8");
@@ -103,7 +100,6 @@ least_rollouts = 2
 
 /// A wizard who is a person is not there: of a plan, the conditions are named that have no signals.
 #[test]
-#[serial]
 fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
     let folder = folder("absent");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
@@ -125,7 +121,6 @@ fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
 }
 
 #[test]
-#[serial]
 fn simulate_tells_what_holds_at_the_console_alone() {
     let folder = folder("unused");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
@@ -146,7 +141,6 @@ fn simulate_tells_what_holds_at_the_console_alone() {
 }
 
 #[test]
-#[serial]
 fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     let folder = folder("fit");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();

@@ -5,13 +5,11 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use serde::Deserialize;
-use serial_test::serial;
 
-use super::{complaint, folder};
-use crate::tmux::TOMCOM;
+use super::complaint;
+use crate::program::{TOMCOM, folder};
 
 #[test]
-#[serial]
 fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     let session = folder("wrong").join("keyboard.toml");
     let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
@@ -60,7 +58,6 @@ struct Bad {
 }
 
 #[test]
-#[serial]
 fn each_bad_file_has_its_own_message_with_file_line_and_remedy() {
     let mut paths: Vec<PathBuf> =
         fs::read_dir("tests/bad").expect("tests/bad").map(|entry| entry.expect("an entry").path()).collect();
@@ -75,14 +72,6 @@ fn each_bad_file_has_its_own_message_with_file_line_and_remedy() {
         assert!(!messages.contains(&message), "{name}: said before: {message}");
         messages.push(message);
     }
-    let of_kind = |kind: &str| {
-        let names = paths.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
-        names.filter(|name| name.starts_with(kind)).count()
-    };
-    let kinds = ["layout", "recipes", "session", "plan", "keys", "parameters", "questionnaire", "battery", "log"];
-    let counts: Vec<String> = kinds.iter().map(|kind| format!("{} {kind}", of_kind(kind))).collect();
-    assert!(kinds.iter().all(|kind| of_kind(kind) >= 5), "{counts:?}");
-    println!("{} bad files, each with its own message: {}", messages.len(), counts.join(", "));
 }
 
 /// The message of the program about such a file among others that are right: what was found, and what would be right.

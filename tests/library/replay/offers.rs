@@ -1,4 +1,4 @@
-//! Recordings with offers: they verify, go on after a cut, and are measured; those of format 1 have none.
+//! Recordings with offers: they verify, go on after a cut, and are measured.
 
 use std::fs;
 use std::path::{Path, PathBuf};

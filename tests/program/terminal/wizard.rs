@@ -17,10 +17,7 @@ fn check_wizard(session: &str) {
         let Some(key) = location.signal_key.filter(|_| location.name != "human_hand") else { continue };
         // An order that was served has no recipe to show until the next one comes.
         let shown = format!("\":\"{}\"}}}}", location.name);
-        terminal.wait(&shown, || {
-            terminal.key(&key.to_string());
-            terminal.count(&shown) > 0
-        });
+        terminal.insist(&key.to_string(), &shown, || terminal.count(&shown) > 0);
     }
     let shown = terminal.count("signal_shown");
     terminal.key_logs("Backspace", "taken_back");
@@ -157,12 +154,10 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         terminal.see("the recording plays");
         // The orders come with the trial's first moment.
         terminal.see("0:01");
-        for key in ["q", "c", "p"] {
-            terminal.key(key);
-            terminal.wait("feedback", || {
-                let screen = terminal.screen();
-                ["hit:", "already", "wrong,", "late:", "wrong:"].iter().any(|word| screen.contains(word))
-            });
+        let told = ["hit: the", "already told", "but leads to no error", "late: the", "wrong place:", "wrong: no"];
+        for (nth, key) in (1..).zip(["q", "c", "p"]) {
+            let feedback = || told.iter().map(|words| terminal.screen().matches(words).count()).sum::<usize>();
+            terminal.insist(key, "feedback", || feedback() >= nth);
         }
         terminal.see("The training is over");
         terminal.key("Enter");

@@ -154,10 +154,10 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         terminal.see("the recording plays");
         // The orders come with the trial's first moment.
         terminal.see("0:01");
-        let told = ["hit: the", "already told", "but leads to no error", "late: the", "wrong place:", "wrong: no"];
-        for (nth, key) in (1..).zip(["q", "c", "p"]) {
-            let feedback = || told.iter().map(|words| terminal.screen().matches(words).count()).sum::<usize>();
-            terminal.insist(key, "feedback", || feedback() >= nth);
+        for (key, signal) in
+            [("q", "recipe of order 1:"), ("c", "highlight cutting board:"), ("p", "highlight cooking pot:")]
+        {
+            terminal.insist(key, "feedback", || terminal.screen().contains(signal));
         }
         terminal.see("The training is over");
         terminal.key("Enter");
@@ -167,7 +167,7 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         let record: serde_json::Value = serde_json::from_str(&record).expect("a JSON object");
         let one = &record["recordings"][0];
         assert_eq!(one["complete"], true, "{record}");
-        assert_eq!(one["signals"].as_array().map(Vec::len), Some(3));
+        assert!(one["signals"].as_array().is_some_and(|signals| signals.len() >= 3), "{record}");
         assert!(one["signals"][0]["worth"].is_string());
         assert_eq!(one["beliefs"].as_array().map(|all| all.len() as u64), one["measures"]["episodes"].as_u64());
         assert_eq!(record["speed"], 1.0, "{record}");

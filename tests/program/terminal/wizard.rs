@@ -19,8 +19,8 @@ fn check_wizard(session: &str) {
         let shown = format!("\":\"{}\"}}}}", location.name);
         terminal.insist(&key.to_string(), &shown, || terminal.count(&shown) > 0);
     }
-    let shown = terminal.count("signal_shown");
     terminal.key_logs("Backspace", "taken_back");
+    let shown = terminal.count("signal_shown");
     terminal.see("taken back");
     terminal.hold("a");
     terminal.wait("a held key", || terminal.count("signal_shown") > shown);

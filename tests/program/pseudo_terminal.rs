@@ -144,6 +144,18 @@ impl Terminal {
         });
     }
 
+    /// Presses a key until this is so, again each second: what it asks for may not be possible yet.
+    pub fn insist(&self, key: &str, what: &str, is_so: impl Fn() -> bool) {
+        let mut pressed = None;
+        self.wait(what, || {
+            if !is_so() && pressed.is_none_or(|at: Instant| at.elapsed() > Duration::from_secs(1)) {
+                self.key(key);
+                pressed = Some(Instant::now());
+            }
+            is_so()
+        });
+    }
+
     /// What is on the screen without its figures, which change by themselves.
     pub fn words(&self) -> String {
         self.screen().chars().filter(|letter| letter.is_alphabetic()).collect()

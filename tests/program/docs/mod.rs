@@ -61,6 +61,14 @@ fn run(line: &str, folder: &Path, place: &str) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// A line `…` stands for any lines, `…` within a line for any text.
+fn in_snapbox(line: &str) -> String {
+    match line.trim() {
+        "…" => "...\n".to_string(),
+        _ => format!("{}\n", line.replace('…', "[..]")),
+    }
+}
+
 /// Runs and reads the blocks of a page, in their order.
 fn hold(page: &Page, folder: &Path, python: impl Fn(&Block, &str)) {
     settings::write(page, folder);
@@ -70,13 +78,11 @@ fn hold(page: &Page, folder: &Path, python: impl Fn(&Block, &str)) {
             "console" | "sh" => {
                 for (command, expected) in block.commands() {
                     let output = run(command, folder, &place);
-                    // A line `…` stands for any lines, `…` within a line for any text.
-                    let lines =
-                        |expected: String| format!("\n{expected}").replace("\n…\n", "\n...\n").replace('…', "[..]");
-                    let printed = expected.map(|expected| {
-                        Assert::new().try_eq(Some(&place), format!("\n{output}").into(), lines(expected).into())
-                    });
-                    printed.map(|printed| printed.unwrap_or_else(|differs| panic!("{place}: {command}\n{differs}")));
+                    let Some(expected) = expected else { continue };
+                    let expected: String = expected.lines().map(in_snapbox).collect();
+                    if let Err(differs) = Assert::new().try_eq(Some(&place), output.into(), expected.into()) {
+                        panic!("{place}: {command}\n{differs}");
+                    }
                 }
             }
             "toml" => settings::check(block, folder, &place),

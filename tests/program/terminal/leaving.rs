@@ -9,8 +9,8 @@ use crate::pseudo_terminal::Terminal;
 
 #[test]
 fn a_signal_to_the_program_closes_the_recording_and_gives_the_terminal_back() {
-    for signal in [Signal::TERM, Signal::INT, Signal::HUP] {
-        let terminal = Terminal::open(&format!("signal-{signal:?}"));
+    for (name, signal) in [("TERM", Signal::TERM), ("INT", Signal::INT), ("HUP", Signal::HUP)] {
+        let terminal = Terminal::open(&format!("signal-{name}"));
         terminal.operate("default.toml", &["--participant", "keyboard", "--gaze", "mouse"]);
         terminal.begin();
         terminal.signal(signal);

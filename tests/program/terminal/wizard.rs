@@ -17,13 +17,10 @@ fn check_wizard(session: &str) {
         let Some(key) = location.signal_key.filter(|_| location.name != "human_hand") else { continue };
         // An order that was served has no recipe to show until the next one comes.
         let shown = format!("\":\"{}\"}}}}", location.name);
-        terminal.wait(&shown, || {
-            terminal.key(&key.to_string());
-            terminal.count(&shown) > 0
-        });
+        terminal.insist(&key.to_string(), &shown, || terminal.count(&shown) > 0);
     }
-    let shown = terminal.count("signal_shown");
     terminal.key_logs("Backspace", "taken_back");
+    let shown = terminal.count("signal_shown");
     terminal.see("taken back");
     terminal.hold("a");
     terminal.wait("a held key", || terminal.count("signal_shown") > shown);
@@ -157,12 +154,10 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         terminal.see("the recording plays");
         // The orders come with the trial's first moment.
         terminal.see("0:01");
-        for key in ["q", "c", "p"] {
-            terminal.key(key);
-            terminal.wait("feedback", || {
-                let screen = terminal.screen();
-                ["hit:", "already", "wrong,", "late:", "wrong:"].iter().any(|word| screen.contains(word))
-            });
+        for (key, signal) in
+            [("q", "recipe of order 1:"), ("c", "highlight cutting board:"), ("p", "highlight cooking pot:")]
+        {
+            terminal.insist(key, "feedback", || terminal.screen().contains(signal));
         }
         terminal.see("The training is over");
         terminal.key("Enter");
@@ -172,7 +167,7 @@ fn a_wizard_is_trained_with_feedback_and_a_score_and_held_against_oneself() {
         let record: serde_json::Value = serde_json::from_str(&record).expect("a JSON object");
         let one = &record["recordings"][0];
         assert_eq!(one["complete"], true, "{record}");
-        assert_eq!(one["signals"].as_array().map(Vec::len), Some(3));
+        assert!(one["signals"].as_array().is_some_and(|signals| signals.len() >= 3), "{record}");
         assert!(one["signals"][0]["worth"].is_string());
         assert_eq!(one["beliefs"].as_array().map(|all| all.len() as u64), one["measures"]["episodes"].as_u64());
         assert_eq!(record["speed"], 1.0, "{record}");

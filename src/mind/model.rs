@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::choice_parameters::{ChoiceParameters, GivenChoice};
 use super::model_table::model_table;
 use super::signal_model::{GivenSignal, SignalModel};
+use crate::kitchen::{Kitchen, LocationId};
 
 /// A human model that the program has by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -157,6 +158,27 @@ impl PerceptionModel {
     /// Radius, on the display, of the area around the fixation that is read, in metres.
     pub fn radius_m(&self) -> f64 {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
+    }
+
+    /// Probabilities of reading each value of a location's aspect, given that `value` is displayed there.
+    pub fn confusion(&self, kitchen: &Kitchen, location: LocationId, value: usize) -> Vec<f64> {
+        let aspect = &kitchen.aspects[location.index()];
+        let alike: Vec<usize> = kitchen
+            .look_alike_codes(location, aspect.values[value])
+            .into_iter()
+            .filter_map(|code| aspect.index_of(code))
+            .collect();
+        let others = aspect.values.len() - 1 - alike.len();
+        let to_alike = if alike.is_empty() { 0.0 } else { self.look_alike };
+        let to_others = if others == 0 { 0.0 } else { self.anything };
+        let each_alike = to_alike / alike.len().max(1) as f64;
+        let each_other = to_others / others.max(1) as f64;
+        let chance = |other: usize| match other {
+            _ if other == value => 1.0 - to_alike - to_others,
+            _ if alike.contains(&other) => each_alike,
+            _ => each_other,
+        };
+        (0..aspect.values.len()).map(chance).collect()
     }
 
     /// Share of a gaze sample's time in which the gaze is known: v = clamp((c - 0.4) / 0.4) for confidence c and

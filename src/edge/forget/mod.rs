@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub use self::deletion::{ParticipantDeletionError, delete};
-use self::subject::{ForgetSubject, NamedPerson, RecordingOwner};
+use self::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, RecordingOwner, file_name};
 use self::tables::{FolderTables, TableMatch};
 use crate::analysis::training_record::WizardTrainingRecord;
 use crate::edge::bids_tree;
@@ -34,10 +34,6 @@ use crate::study::report::page_head;
 
 /// Largest size of a report or a training record that is read, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
-/// Why a file is kept that names a recording, if recordings of several people have this name.
-const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
-                         tomcom forget --in the folder with one of them, or delete it by hand";
-
 /// A file that is or may be about the participant and is kept, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RetainedFile {
@@ -340,10 +336,6 @@ fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
     }
     entries.sort_by(|a, b| a.0.cmp(&b.0));
     Ok(entries)
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Whether the program writes a file of this name into the folder of a recording, or leaves it there when it is killed.

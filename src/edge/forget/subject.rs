@@ -13,6 +13,10 @@ use crate::edge::log::{LOG_NAME, SETTINGS_NAME, corrected_code, first_line, is_w
 use crate::session::header::FORMAT;
 use crate::session::person_code::without_seed;
 
+/// Why a file is kept that names a recording, if recordings of several people have this name.
+pub(super) const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
+                         tomcom forget --in the folder with one of them, or delete it by hand";
+
 /// Which participant the recording in a folder belongs to.
 pub(super) enum RecordingOwner {
     Participant {
@@ -120,7 +124,7 @@ impl ForgetSubject {
     /// Adds a recording, of the participant or of somebody else.
     pub(super) fn add(&mut self, folder: &Path, code: String, began: Option<String>) {
         let recording = KnownRecording { folder: folder.to_path_buf(), code, began };
-        self.recordings.entry(super::file_name(folder)).or_default().push(recording);
+        self.recordings.entry(file_name(folder)).or_default().push(recording);
     }
 
     /// Whether a name in a column of participants means the participant: it is the participant's code, with a random seed
@@ -138,7 +142,7 @@ impl ForgetSubject {
         let path = Path::new(name);
         let is_relative = |part: &Component| matches!(part, Component::CurDir | Component::ParentDir);
         let path: PathBuf = path.components().skip_while(is_relative).collect();
-        let named = self.recordings.get(&super::file_name(&path)).into_iter().flatten();
+        let named = self.recordings.get(&file_name(&path)).into_iter().flatten();
         let mut own = named.filter(|recording| recording.folder.ends_with(&path)).map(|one| one.code == self.code);
         match own.next() {
             None => NamedPerson::Other,
@@ -162,4 +166,9 @@ impl ForgetSubject {
             has(name) && own.any(|recording| recording.began.as_deref().is_some_and(has))
         })
     }
+}
+
+/// The last part of a path, as text.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -9,8 +9,7 @@ use std::path::Path;
 use csv::ByteRecord;
 use rustc_hash::FxHashMap;
 
-use super::subject::{ForgetSubject, NamedPerson};
-use super::{AMBIGUOUS, file_name};
+use super::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, file_name};
 use crate::edge::log::rater_codes::EXPORT_COLUMNS;
 use crate::edge::replace_file::replaced_name;
 use crate::edge::written_tables::{ListedTables, reader, records, table_named};

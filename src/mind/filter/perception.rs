@@ -18,12 +18,10 @@ use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::{LocationReadingRate, PerceptionModel, PerceptionUnit};
 
-use super::sample_observation::SampleObservations;
+use super::sample_observation::{NEGLIGIBLE, SampleObservations};
 
 /// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
-/// Contents that would be read with a smaller probability than this are ignored.
-pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// A look at a location: consecutive gaze samples near the location.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +64,7 @@ impl GazeBeliefUpdate {
     pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeBeliefUpdate {
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();
-            (0..values).map(|value| confusion(kitchen, model, LocationId(index as u8), value)).collect()
+            (0..values).map(|value| model.confusion(kitchen, LocationId(index as u8), value)).collect()
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
         let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
@@ -171,25 +169,4 @@ fn observe(
             samples.observe(&mut belief.aspects[index], index, truth);
         }
     }
-}
-
-/// Probabilities of reading each value of a location's aspect, given that `value` is displayed there.
-pub fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
-    let aspect = &kitchen.aspects[location.index()];
-    let alike: Vec<usize> = kitchen
-        .look_alike_codes(location, aspect.values[value])
-        .into_iter()
-        .filter_map(|code| aspect.index_of(code))
-        .collect();
-    let others = aspect.values.len() - 1 - alike.len();
-    let to_alike = if alike.is_empty() { 0.0 } else { model.look_alike };
-    let to_others = if others == 0 { 0.0 } else { model.anything };
-    let each_alike = to_alike / alike.len().max(1) as f64;
-    let each_other = to_others / others.max(1) as f64;
-    let chance = |other: usize| match other {
-        _ if other == value => 1.0 - to_alike - to_others,
-        _ if alike.contains(&other) => each_alike,
-        _ => each_other,
-    };
-    (0..aspect.values.len()).map(chance).collect()
 }

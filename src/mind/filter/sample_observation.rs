@@ -18,7 +18,8 @@ use crate::kitchen::{Kitchen, LocationId};
 use crate::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use crate::mind::model::PerceptionModel;
 
-use super::perception::{NEGLIGIBLE, confusion};
+/// Contents that would be read with a smaller probability than this are ignored.
+pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// Distance of neighbouring points x of the trapezoidal rule.
 const STEP: f64 = 0.375;
@@ -71,7 +72,7 @@ impl SampleObservations {
         };
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();
-            let of_value = |value: usize| confusion(kitchen, model, LocationId(index as u8), value);
+            let of_value = |value: usize| model.confusion(kitchen, LocationId(index as u8), value);
             let confusion: Vec<Vec<f64>> = (0..values).map(of_value).collect();
             let of_observed = |seen: usize| confusion.iter().map(|row| index_of(row[seen])).collect();
             let weight_of = (0..values).map(of_observed).collect();

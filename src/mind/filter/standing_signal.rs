@@ -17,7 +17,7 @@ use crate::mind::signal_model::SignalReadingForecast;
 
 use super::BeliefFilter;
 use super::look_news::PossiblyReadSignal;
-use super::perception::NEGLIGIBLE;
+use super::sample_observation::NEGLIGIBLE;
 use super::signals_so_far::{EndedSignal, SignalOnDisplay};
 
 impl BeliefFilter {

@@ -108,14 +108,14 @@ impl RecordingsFolder {
 fn record(wizard: &str, recordings: &[&str]) -> String {
     let judged = |name: &&str| {
         format!(
-            "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
+            "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"beliefs\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
             serde_json::to_string(&tomcom::measures::wizard_performance::WizardMeasures::from_signals(&[], None))
                 .expect("JSON")
         )
     };
     let judged: Vec<String> = recordings.iter().map(judged).collect();
     format!(
-        "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
+        "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"speed\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
         judged.join(",")
     )
 }

@@ -100,7 +100,7 @@ fn told_about(name: &str, bad: &Bad) -> String {
         ("recipes/sushi.toml", read("recipes/sushi.toml")),
         ("sessions/default.toml", with_keys),
         ("sessions/keys.toml", String::new()),
-        ("sessions/parameterised.toml", format!("human_model = \"parameters.toml\"\n{}", read("sessions/study.toml"))),
+        ("sessions/parameterised.toml", parameterised(&read("sessions/study.toml"))),
         ("sessions/parameters.toml", String::new()),
         ("sessions/study.toml", read("sessions/study.toml")),
         ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
@@ -143,4 +143,11 @@ fn edit(name: &str, bad: &Bad, right: &str) -> String {
         (None, None, Some(text)) => text.clone(),
         _ => panic!("{name}: either an edit or a text"),
     }
+}
+
+/// This session with a file of parameters instead of its table of them.
+fn parameterised(session: &str) -> String {
+    let (before, human) = session.split_once("[human]\n").expect("a table");
+    let (_, after) = human.split_once("\n\n").expect("a table after it");
+    format!("human_model = \"parameters.toml\"\n{before}{after}")
 }

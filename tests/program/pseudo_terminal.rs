@@ -177,6 +177,7 @@ impl Terminal {
     /// Starts a program on an empty screen.
     pub fn start(&self, command: &mut Command) {
         tcsetattr(&self.line, OptionalActions::Flush, &self.before).expect("modes");
+        self.resize(SIZE);
         *self.display() = display(&self.device);
         command.stdin(self.line()).stdout(self.line()).stderr(self.line());
         command.env("TERM", "xterm-256color").env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR");

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::kitchen;
 use crate::program::{json, verified};
 use crate::pseudo_terminal::Terminal;
@@ -22,6 +24,13 @@ fn check_wizard(session: &str) {
     terminal.key_logs("Backspace", "taken_back");
     let shown = terminal.count("signal_shown");
     terminal.see("taken back");
+    // Within the time after a signal in which none can be sent, a held key sends nothing at all.
+    let time = |line: &str| serde_json::from_str::<Value>(line).ok()?["t_ns"].as_u64();
+    terminal.wait("the end of the cool-down", || {
+        let log = terminal.log();
+        let signal = log.lines().rev().find(|line| line.contains("signal_shown")).and_then(time);
+        log.lines().rev().find_map(time).zip(signal).is_some_and(|(now, signal)| now > signal + 600_000_000)
+    });
     terminal.hold("a");
     terminal.wait("a held key", || terminal.count("signal_shown") > shown);
     terminal.key_logs("3", "\"marker\",\"note\":\"slip\"");

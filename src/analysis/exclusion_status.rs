@@ -24,12 +24,14 @@ impl ExclusionStatus {
         self.aborted.is_none() && self.excluded.is_none()
     }
 
-    /// Why analyses leave out the trial of a session that was read to its end, in words; `None` for a trial that counts.
-    pub fn left_out(self, session: &Session) -> Option<String> {
+    /// Why analyses leave out the trial of a session that was read as far as it is recorded, in words; `None` for a trial
+    /// that counts. `is_running`: a program is still recording the session.
+    pub fn left_out(self, session: &Session, is_running: bool) -> Option<String> {
         let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
         match self {
             ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
             ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
+            _ if !is_over && is_running => Some("running: its trial is not over".to_string()),
             _ if !is_over => Some("cut before the trial's end".to_string()),
             _ if session.presses == [0, 0] => Some("no press in it".to_string()),
             _ => None,

@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::{each_chosen, gathered};
+use super::list::{exists, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
@@ -29,13 +29,13 @@ const MAX_ANSWER: u64 = 1 << 12;
                   Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
                   tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/raters.md")]
 pub(super) struct CodesArgs {
-    /// The folders of recordings, or their events.jsonl.
+    /// The folders of recordings, or their events.jsonl; or folders with recordings in them.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
     /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
-    /// Import codes of raters who have no codes yet without asking.
+    /// Import codes of raters who have no codes yet, and codes that change others, without asking.
     #[arg(long, requires = "import")]
     yes: bool,
     /// Export all codes to a table with these columns.
@@ -47,14 +47,15 @@ pub(super) struct CodesArgs {
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
-    let chosen = gathered(&each_chosen(&args.recordings)?)?.paths;
+    args.recordings.iter().try_for_each(|path| exists(path))?;
+    let chosen = gathered(&args.recordings)?.paths;
     let bar = progress(chosen.len() as u64, "recordings");
     let read = crate::run::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));
     bar.finish_and_clear();
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {
         let codes = code_exchange::read(&recordings, file)?;
-        if !codes.new_raters.is_empty() && !are_meant(&codes, args.yes)? {
+        if !are_meant(&codes, args.yes)? {
             put_aside("nothing was imported\n");
             return Err(Failure::No);
         }
@@ -67,24 +68,34 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     print(args.format, &figures, || codes::describe(&figures))
 }
 
-/// Tells which raters in a table are new, and asks whether they are meant: a code that was typed wrong, or changed by a
-/// spreadsheet, would make a rater of its own.
+/// Tells which raters in a table are new, and which codes it changes, and asks whether that is meant: a code that was
+/// typed wrong, or changed by a spreadsheet, would make a rater of its own, and an old table would undo later codes.
 fn are_meant(codes: &ImportableCodes, is_agreed: bool) -> Result<bool, Failure> {
-    let (new, known) = (codes.new_raters.join(", "), codes.known_raters.join(", "));
-    let known = if known.is_empty() { "no rater".to_string() } else { known };
-    put_aside(&format!("new raters in the table: {new}; so far these recordings have codes of: {known}\n"));
+    let mut told = Vec::new();
+    if !codes.new_raters.is_empty() {
+        let (new, known) = (codes.new_raters.join(", "), codes.known_raters.join(", "));
+        let known = if known.is_empty() { "no rater".to_string() } else { known };
+        told.push(format!("new raters in the table: {new}; so far these recordings have codes of: {known}"));
+    }
+    let changes = codes.changed.iter().map(|(rater, number)| format!("{} of {rater}", count(*number, "code", "codes")));
+    let changes: Vec<String> = changes.collect();
+    if !changes.is_empty() {
+        told.push(format!("the table changes {}", changes.join(", ")));
+    }
+    told.iter().for_each(|line| put_aside(&format!("{line}\n")));
     let input = std::io::stdin();
-    if is_agreed {
+    if is_agreed || told.is_empty() {
         return Ok(true);
     }
     if !input.is_terminal() {
-        let help = "--yes if they are meant, or the table with the raters' codes put right";
+        let help = "--yes if that is meant, or the table put right";
         return Err(Failure::Wrong(miette::miette!(
             help = help,
-            "found no terminal to ask in whether codes of new raters are to be imported: {new}"
+            "found no terminal to ask in whether the table is to be imported: {}",
+            told.join("; ")
         )));
     }
-    put_aside("Import their codes? To do so, type yes: ");
+    put_aside("Import the table? To do so, type yes: ");
     let mut answer = String::new();
     input.lock().read_line(&mut answer)?;
     Ok(answer.trim() == "yes")

@@ -32,7 +32,7 @@ const MAX_BYTES: u64 = 4 << 30;
 /// Columns that contain gaze in the scene camera's image, from which the gaze on the display cannot be computed.
 const SCENE_COLUMNS: [&str; 3] = ["gaze x [px]", "gaze position in reference image x [px]", "norm_pos_x"];
 /// Characters that separate columns.
-const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
+pub(super) const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 /// Number of intervals between samples from which the unit of the times can be judged.
 const JUDGED: usize = 10;
 /// Largest number of clock steps in a table; lines in which the clock was set more often have no order of time.

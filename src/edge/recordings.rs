@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, MAX_LINE, RecordingLock, first_line, log_digest, read_header, ruling};
+use super::log::{LOG_NAME, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling};
 use crate::session::header::{FORMAT, PreviousPart};
 use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
@@ -47,18 +47,20 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
 /// Removes the copies of recordings, such as those that a file manager makes: a copy of a cut recording would be offered
 /// to be continued, instead of the recording.
 fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResult<()> {
-    let place = |part: &Part| (part.code.clone(), part.step.period, part.step.attempt, part.continues.clone());
-    let mut places: BTreeMap<_, Vec<String>> = BTreeMap::new();
+    let mut logs = Vec::new();
     for (name, part) in &*found {
-        places.entry(place(part)).or_default().push(name.clone());
+        let log = folder.join(name).join(LOG_NAME);
+        logs.push((name.clone(), format!("{} {}", header_digest(&log)?, part.code), log));
     }
-    for names in places.into_values().filter(|names| names.len() > 1) {
-        let mut logs = BTreeSet::new();
-        for name in names {
-            if !logs.insert(log_digest(&folder.join(&name).join(LOG_NAME))?) {
-                found.remove(&name);
-            }
-        }
+    let keys: Vec<(&Path, &str)> = logs.iter().map(|(_, key, log)| (log.as_path(), key.as_str())).collect();
+    let continued: BTreeSet<String> = found.values().filter_map(|part| part.continues.clone()).collect();
+    for same in SameLogs::of(&keys)? {
+        let is_excluded = |name: &String| matches!(found[name].excluded, Some(Some(_)));
+        let rank = |name: &&String| (!continued.contains(*name), is_excluded(name));
+        let names: Vec<&String> = same.all().map(|log| &logs[log].0).collect();
+        let kept = names.iter().copied().min_by_key(rank);
+        let copies: Vec<&String> = names.into_iter().filter(|name| Some(*name) != kept).collect();
+        copies.into_iter().for_each(|name| drop(found.remove(name)));
     }
     Ok(())
 }

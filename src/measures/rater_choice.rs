@@ -56,13 +56,21 @@ impl RaterPair {
 impl RaterChoice {
     /// Chooses the two raters who coded most errors.
     pub fn most_complete(all: &BTreeMap<String, RaterCodes>) -> RaterChoice {
-        let mut numbers: Vec<usize> = all.values().map(|codes| codes.0.len()).collect();
-        numbers.sort_unstable_by_key(|&number| std::cmp::Reverse(number));
-        let Some(&coded) = numbers.get(1) else { return RaterChoice::TooFew };
-        let of_most = all.iter().filter(|(_, codes)| codes.0.len() >= coded).map(|(rater, _)| rater.clone());
-        match <[String; 2]>::try_from(of_most.collect::<Vec<String>>()) {
+        let numbers = all.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect();
+        let Some((of_most, coded)) = of_most(&numbers) else { return RaterChoice::TooFew };
+        let coded = coded as usize;
+        match <[String; 2]>::try_from(of_most) {
             Ok(raters) => RaterChoice::Pair(RaterPair::named(all, &raters)),
             Err(raters) => RaterChoice::Tied { raters, coded },
         }
     }
+}
+
+/// The raters who coded most errors, with the least number of errors that each of them coded: two raters, or more if
+/// these coded equally many; `None` of fewer than two raters.
+pub fn of_most(numbers: &BTreeMap<String, u64>) -> Option<(Vec<String>, u64)> {
+    let mut sorted: Vec<u64> = numbers.values().copied().collect();
+    sorted.sort_unstable_by_key(|&number| std::cmp::Reverse(number));
+    let coded = *sorted.get(1)?;
+    Some((numbers.iter().filter(|(_, number)| **number >= coded).map(|(rater, _)| rater.clone()).collect(), coded))
 }

@@ -1,6 +1,6 @@
 //! Export and import of raters' codes and of two raters' consensus codes, as one table.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::codes::CodedRecording;
@@ -54,6 +54,8 @@ pub struct ImportableCodes {
     rows: Vec<(usize, RowAuthor, RaterCodeRow)>,
     /// Raters in the table of whom none of the recordings has codes yet: perhaps somebody who was typed wrong.
     pub new_raters: Vec<String>,
+    /// Number of codes of these recordings that the table changes, by rater, or by consensus such as `R1+R2`.
+    pub changed: BTreeMap<String, u64>,
     /// Raters of whom the recordings have codes.
     pub known_raters: Vec<String>,
 }
@@ -69,7 +71,7 @@ pub fn read(recordings: &[CodedRecording], file: &Path) -> FileResult<Importable
         |row: &RaterCodeRow, found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
     let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
     let known: BTreeSet<&str> = recordings.iter().flat_map(|one| one.codes.keys().map(String::as_str)).collect();
-    let (mut imported, mut new) = (Vec::new(), BTreeSet::new());
+    let (mut imported, mut new, mut changed) = (Vec::new(), BTreeSet::new(), BTreeMap::new());
     for row in rows {
         let Some(index) = names.iter().position(|name| *name == row.recording) else {
             let found = format!("the recording \"{}\"", row.recording);
@@ -92,12 +94,17 @@ pub fn read(recordings: &[CodedRecording], file: &Path) -> FileResult<Importable
                 new.insert(rater.clone());
             }
         }
+        if let Some((name, before)) = recordings[index].code_by(&author, row.press)
+            && *before != row.code
+        {
+            *changed.entry(name).or_default() += 1;
+        }
         imported.push((index, author, row));
     }
     imported.sort_by_key(|(_, author, _)| matches!(author, RowAuthor::Pair(_)));
     let known_raters = known.into_iter().map(str::to_string).collect();
     let new_raters = new.into_iter().collect();
-    Ok(ImportableCodes { file: file.to_path_buf(), text, rows: imported, new_raters, known_raters })
+    Ok(ImportableCodes { file: file.to_path_buf(), text, rows: imported, new_raters, changed, known_raters })
 }
 
 impl ImportableCodes {
@@ -134,6 +141,17 @@ impl ImportableCodes {
 }
 
 impl CodedRecording {
+    /// The code that an author has given to a press so far, with the author's name in tables.
+    fn code_by(&self, author: &RowAuthor, press: u64) -> Option<(String, &ErrorCauseCode)> {
+        match author {
+            RowAuthor::Rater(rater) => Some((rater.clone(), self.codes.get(rater)?.0.get(&press)?)),
+            RowAuthor::Pair(raters) => {
+                let consensus = self.consensus.as_ref().filter(|consensus| consensus.raters == *raters)?;
+                Some((consensus.name(), &consensus.settled.get(&press)?.code))
+            }
+        }
+    }
+
     /// Adds the code of a row of the table; returns what was found and what would be right if that is not possible.
     fn add(&mut self, author: &RowAuthor, row: &RaterCodeRow) -> Result<(), (String, String)> {
         match author {

@@ -13,7 +13,7 @@ use crate::edge::log::{consensus_file, rater_codes};
 use crate::history::wording;
 use crate::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
 use crate::measures::consensus::{RaterConsensus, unsettled};
-use crate::measures::rater_choice::RaterPair;
+use crate::measures::rater_choice::{RaterPair, of_most};
 use crate::session::settings::ParticipantKind;
 use crate::study::figures::IdenticalCodes;
 
@@ -101,13 +101,15 @@ impl CodedRecording {
         let [of, with] = consensus.raters.clone();
         let agreed = consensus.agreed() as u64;
         let settled = consensus.current(own).0.len() as u64;
-        let stale = consensus.changed(own).into_iter().map(|changed| ChangedRaterCode {
+        let missing = consensus.without_codes(own).map(str::to_string);
+        let changed = if missing.is_some() { Vec::new() } else { consensus.changed(own) };
+        let stale = changed.into_iter().map(|changed| ChangedRaterCode {
             error: self.codable.errors.partition_point(|&press| press < changed.press) as u64 + 1,
             press: changed.press,
             rater: changed.rater,
         });
         let errors = self.codable.errors.len() as u64;
-        Some(ConsensusSummary { of, with, agreed, settled, open: errors - settled, stale: stale.collect() })
+        Some(ConsensusSummary { of, with, agreed, settled, open: errors - settled, missing, stale: stale.collect() })
     }
 
     /// The errors to which two raters gave different codes.
@@ -185,6 +187,8 @@ pub struct ConsensusSummary {
     pub settled: u64,
     /// Number of errors without a consensus code.
     pub open: u64,
+    /// The rater of whom there are no codes any more; null if there are codes of both.
+    pub missing: Option<String>,
     /// Codes that a rater changed after the raters had settled the error.
     pub stale: Vec<ChangedRaterCode>,
 }
@@ -314,16 +318,19 @@ pub fn describe(figures: &InterRaterSummary) -> String {
             number(kappa_aspect),
         );
     }
-    text + &describe_disagreements(&figures.disagreements)
+    text + &describe_disagreements(figures)
 }
 
 fn describe_consensus(found: &ConsensusSummary) -> String {
-    let ConsensusSummary { of, with, agreed, settled, open, stale } = found;
+    let ConsensusSummary { of, with, agreed, settled, open, missing, stale } = found;
     let decided = settled.saturating_sub(*agreed);
     let mut text = format!(
         "  consensus of {of} and {with} on errors: {agreed} agreed, {decided} settled, {open} \
                             open\n"
     );
+    if let Some(rater) = missing {
+        text += &format!("  the consensus does not hold: there are no codes of {rater}\n");
+    }
     for ChangedRaterCode { error, press, rater } in stale {
         text +=
             &format!("  stale code: {rater} changed the code of error {error} (press {press}) after it was settled\n");
@@ -332,8 +339,11 @@ fn describe_consensus(found: &ConsensusSummary) -> String {
 }
 
 /// The errors that raters coded differently as a table, followed by how to settle them.
-fn describe_disagreements(all: &[RaterDisagreement]) -> String {
-    let Some(first) = all.first() else { return String::new() };
+fn describe_disagreements(figures: &InterRaterSummary) -> String {
+    let all = &figures.disagreements;
+    if all.is_empty() {
+        return String::new();
+    }
     let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);
     let open = all.iter().filter(|one| one.settled_words.is_none()).count();
     let mut text =
@@ -354,8 +364,15 @@ fn describe_disagreements(all: &[RaterDisagreement]) -> String {
     if open == 0 {
         return text;
     }
-    let (of, with) = (&first.of, &first.with);
-    text + &format!(
-        "settle the disagreements together, recording by recording: tomcom replay RECORDING --settle {of} {with}\n"
-    )
+    let mut coded: BTreeMap<String, u64> = BTreeMap::new();
+    for (rater, number) in figures.recordings.iter().flat_map(|one| &one.coded) {
+        *coded.entry(rater.clone()).or_default() += number;
+    }
+    // The raters whose codes an analysis takes.
+    let raters = of_most(&coded).map(|(raters, _)| raters).unwrap_or_default();
+    let command = "settle the disagreements together, recording by recording: tomcom replay RECORDING --settle";
+    text + &match &raters[..] {
+        [of, with] => format!("{command} {of} {with}\n"),
+        more => format!("{command} with two of {}, who coded as many errors\n", more.join(", ")),
+    }
 }

@@ -42,17 +42,7 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
     let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
     let mut all = rater_codes::read_all(log.folder(), &codable)?;
     let new = RaterConsensus::new(raters[0], raters[1]);
-    for rater in &new.raters {
-        if all.get(rater).is_none_or(|codes| codes.0.is_empty()) {
-            let found = format!("no codes of the rater {rater}");
-            let known: Vec<&str> = all.keys().map(String::as_str).collect();
-            let remedy = match known.is_empty() {
-                true => "two raters who have coded the errors, each with --rater CODE".to_string(),
-                false => format!("two raters who have coded the errors; there are codes of {}", known.join(", ")),
-            };
-            return Err(FileError::from_finding(log.folder(), found, remedy).into());
-        }
-    }
+    rater_codes::check_named(log.folder(), &new.raters, &all.keys().cloned().collect())?;
     let before = consensus_file::read(log.folder(), &codable)?;
     if let Some(other) = before.as_ref().filter(|before| before.raters != new.raters) {
         let found = format!("the consensus of {}", other.raters.join(" and "));

@@ -93,6 +93,18 @@ pub enum LiveError {
          plan"
     ))]
     Plan(String),
+    /// A recording was corrected to the code of somebody who is not in the study plan.
+    #[error("found {found}")]
+    #[diagnostic(help(
+        "take the correction back: tomcom correct {} --undo; or correct it to a code of the plan: --code CODE --why …",
+        recording.display()
+    ))]
+    Corrected {
+        /// What was found, in words.
+        found: String,
+        /// Folder of the corrected recording.
+        recording: PathBuf,
+    },
 }
 
 impl From<FileError> for LiveError {

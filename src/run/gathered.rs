@@ -3,16 +3,16 @@
 //! A folder of recordings can hold copies, such as those that a file manager or a sync program made, and two folders can
 //! hold the same trial. Counted twice, a trial would make every figure wrong without a word.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::{parallel, standing};
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader, decisions, log_digest};
+use crate::edge::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
 use crate::edge::recordings;
 use crate::session::{LogHeader, person_code};
-use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
+use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
 use crate::study::preregistration::RecordedPlan;
 
 /// Recordings without copies, of which no two count for one trial of a plan.
@@ -24,8 +24,8 @@ pub struct GatheredRecordings {
     pub copies: Vec<RecordingCopy>,
 }
 
-/// A log of a recording: its path without symbolic links, and its length in bytes.
-type LogPlace = (PathBuf, u64);
+/// A log of a recording: its path without symbolic links, and the digest of its header.
+type LogPlace = (PathBuf, String);
 
 /// What is known about a recording before its events are read.
 struct FoundRecording {
@@ -39,13 +39,14 @@ struct FoundRecording {
 
 impl GatheredRecordings {
     /// Finds the recordings at these paths: recordings, their logs, or folders of recordings. A recording to which
-    /// several paths lead is there once, and so is a recording whose log equals that of another one. Earlier parts of a
-    /// recording are read with the last part.
+    /// several paths lead is there once, and so is a recording whose log equals that of another one or a beginning of it:
+    /// the longest counts, but none that is excluded before one that is not. Earlier parts of a recording are read with
+    /// the last part.
     ///
     /// # Errors
     /// A path is neither a recording nor a folder with recordings; a recording has no readable header; two recordings
-    /// count for one trial of a plan; the codes of two participants differ in capital letters only; or a copy has other
-    /// decisions beside its log.
+    /// count for one trial of a plan; the codes of two participants differ in capital letters only; or codes
+    /// of raters, or a correction, stand beside a copy alone.
     pub fn find(paths: &[PathBuf]) -> FileResult<GatheredRecordings> {
         let mut found = Vec::new();
         for path in paths {
@@ -58,31 +59,63 @@ impl GatheredRecordings {
         // The recording that counts must not depend on the order of the paths.
         let mut order: Vec<usize> = (0..opened.len()).collect();
         order.sort_by_key(|&index| (found[index].file_name(), &found[index]));
-        let digests = digests(&opened)?;
-        let earlier: BTreeSet<&PathBuf> = opened.iter().flat_map(FoundRecording::earlier).map(|(log, _)| log).collect();
-        // By the digest of a log: the recording that the log is the last part of, or an earlier part, and its folder.
-        let mut logs: BTreeMap<&String, (usize, &Path)> = BTreeMap::new();
-        for (index, one) in opened.iter().enumerate() {
-            let alike = one.earlier().iter().filter_map(|(log, _)| Some((digests.get(log)?, folder(log))));
-            logs.extend(alike.map(|(digest, folder)| (digest, (index, folder))));
-        }
         check_codes(&opened)?;
-        let (mut places, mut trials) = (BTreeSet::new(), BTreeMap::new());
-        let (mut kept, mut copies) = (BTreeSet::new(), Vec::new());
-        for index in order {
-            let one = &opened[index];
-            if !places.insert(one.log()) || earlier.contains(one.log()) {
-                continue;
+        // By its log: the recording of which a log is the last part, and that of which it is an earlier part.
+        let (mut lasts, mut earlier, mut logs) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
+        for &index in &order {
+            for place in opened[index].earlier() {
+                earlier.entry(&place.0).or_insert_with(|| {
+                    logs.push(place);
+                    index
+                });
             }
-            if let Some(digest) = digests.get(one.log()) {
-                if let Some(&(first, beside)) = logs.get(digest) {
-                    copies.push(one.copy_of(&opened[first], beside)?);
-                    continue;
+        }
+        for &index in &order {
+            let place = &opened[index].logs[opened[index].logs.len() - 1];
+            if !earlier.contains_key(&place.0) {
+                lasts.entry(&place.0).or_insert_with(|| {
+                    logs.push(place);
+                    index
+                });
+            }
+        }
+        let keys: Vec<(&Path, &str)> = logs.iter().map(|(log, header)| (log.as_path(), header.as_str())).collect();
+        let mut copies = BTreeMap::new();
+        for same in SameLogs::of(&keys)? {
+            let all: Vec<&PathBuf> = same.all().map(|log| &logs[log].0).collect();
+            let mut recordings: Vec<usize> = all.iter().filter_map(|log| lasts.get(*log).copied()).collect();
+            let part = all.iter().find_map(|log| Some((*earlier.get(*log)?, folder(log))));
+            let mut excluded = BTreeMap::new();
+            if recordings.len() > 1 || part.is_some() {
+                for &index in &recordings {
+                    let ruling = ruling(folder(opened[index].log()))?.filter(|ruling| ruling.excluded);
+                    excluded.insert(index, ruling.map(|ruling| format!("excluded: {}", ruling.reason)));
                 }
-                logs.insert(digest, (index, folder(one.log())));
             }
-            kept.insert(index);
-            if let Some(trial) = &one.trial {
+            let (first, beside) = match part {
+                Some(part) => part,
+                None => {
+                    let is_whole = |index: usize| same.longest.iter().any(|&log| logs[log].0 == *opened[index].log());
+                    let mut ranks = BTreeMap::new();
+                    for &index in recordings.iter().filter(|_| recordings.len() > 1) {
+                        let codes = code_files(folder(opened[index].log()))?.len();
+                        ranks.insert(index, (excluded[&index].is_some(), !is_whole(index), Reverse(codes)));
+                    }
+                    // The sort is stable, so that the first by name counts among equal ones.
+                    recordings.sort_by_key(|index| ranks.get(index).copied());
+                    let Some(&first) = recordings.first() else { continue };
+                    (recordings.remove(0), folder(opened[first].log()))
+                }
+            };
+            for index in recordings {
+                let left_out = excluded.remove(&index).flatten();
+                copies.insert(index, opened[index].copy_of(&opened[first], beside, left_out)?);
+            }
+        }
+        let kept: BTreeSet<usize> = lasts.into_values().filter(|index| !copies.contains_key(index)).collect();
+        let mut trials = BTreeMap::new();
+        for &index in order.iter().filter(|index| kept.contains(index)) {
+            if let Some(trial) = &opened[index].trial {
                 trials.entry(trial).or_insert_with(Vec::new).push(index);
             }
         }
@@ -101,6 +134,7 @@ impl GatheredRecordings {
             }
         }
         let paths = kept.into_iter().map(|index| opened[index].path.clone()).collect();
+        let copies = order.iter().filter_map(|index| copies.remove(index)).collect();
         Ok(GatheredRecordings { paths, copies })
     }
 
@@ -126,8 +160,8 @@ impl FoundRecording {
         let log = LogReader::open(path)?;
         let place = |log: PathBuf| {
             let unreadable = |reason| FileError::unreadable(&log, reason, "a readable recording");
-            let length = fs::metadata(&log).map_err(unreadable)?.len();
-            Ok((log.canonicalize().map_err(unreadable)?, length))
+            let digest = header_digest(&log)?;
+            Ok((log.canonicalize().map_err(unreadable)?, digest))
         };
         let logs = log.logs().into_iter().map(place).collect::<FileResult<Vec<LogPlace>>>()?;
         let code = log.header.session.participant.code.clone();
@@ -144,14 +178,23 @@ impl FoundRecording {
         &self.logs[..self.logs.len() - 1]
     }
 
-    /// This recording as a copy of another one, or of an earlier part of that; `beside` is the folder of the same log.
-    fn copy_of(&self, first: &FoundRecording, beside: &Path) -> FileResult<RecordingCopy> {
+    /// This recording as a copy of another one, or of an earlier part of that; `beside` is the folder of the same log. What
+    /// stands beside a copy that is `left_out` does not count either.
+    fn copy_of(&self, first: &FoundRecording, beside: &Path, left_out: Option<String>) -> FileResult<RecordingCopy> {
         let [recording, copy_of] = [self, first].map(|one| one.path.display().to_string());
-        if decisions(folder(self.log()))? != decisions(beside)? {
-            let (found, remedy) = differing_copy(&copy_of);
-            return Err(FileError::from_finding(&self.path, found, remedy));
+        let wrong = |(found, remedy): (String, String)| Err(FileError::from_finding(&self.path, found, remedy));
+        if left_out.is_none() {
+            if self.code != first.code {
+                let found = format!("a copy of {copy_of} that is a recording of {}, not of {}", self.code, first.code);
+                let remedy = "one code of both (tomcom correct RECORDING --code CODE --why …, or --undo); or leave this copy \
+                              out: tomcom exclude RECORDING --reason …";
+                return wrong((found, remedy.to_string()));
+            }
+            if let Some(codes) = differing_codes(folder(self.log()), beside)? {
+                return wrong(copy_with_codes(&recording, &copy_of, codes));
+            }
         }
-        Ok(RecordingCopy { recording, copy_of })
+        Ok(RecordingCopy { recording, copy_of, left_out })
     }
 }
 
@@ -179,14 +222,4 @@ fn check_codes(opened: &[FoundRecording]) -> FileResult<()> {
         codes.entry(&one.code).or_insert(&one.path);
     }
     Ok(())
-}
-
-/// Digests of the logs that are as long as another log; no other log can equal another one.
-fn digests(opened: &[FoundRecording]) -> FileResult<BTreeMap<PathBuf, String>> {
-    let all: BTreeSet<&LogPlace> = opened.iter().flat_map(|one| &one.logs).collect();
-    let mut lengths: BTreeMap<u64, usize> = BTreeMap::new();
-    all.iter().for_each(|(_, length)| *lengths.entry(*length).or_default() += 1);
-    let alike: Vec<&PathBuf> = all.iter().filter(|(_, length)| lengths[length] > 1).map(|(log, _)| log).collect();
-    let read = parallel::each(&alike, |log| Ok(((*log).clone(), log_digest(log)?)), || ());
-    read.into_iter().collect()
 }

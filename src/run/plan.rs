@@ -12,7 +12,7 @@ use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::KitchenWithSources;
 use crate::edge::{frozen_file, recordings};
-use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
+use crate::session::plan::{ParticipantProgress, PlanRecording, RecordingOutcome, Study, TrialAttempt};
 use crate::study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
@@ -38,14 +38,8 @@ impl StudyProgress {
     /// # Errors
     /// A recording cannot be read or does not belong to the plan.
     pub fn from_study(study: &Study, out: &Path) -> Result<StudyProgress, LiveError> {
-        let made = recordings::of_plan(out, &study.plan.name)?;
+        let made = recordings_of(study, out)?;
         let codes = study.plan.codes();
-        if let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) {
-            let (recording, code) = (&stranger.recording, &stranger.code);
-            return Err(LiveError::Plan(format!(
-                "the recording {recording} of {code}, a participant who is not in the plan"
-            )));
-        }
         let progress =
             |participant| ParticipantProgress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
         let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
@@ -58,6 +52,25 @@ impl StudyProgress {
             participants,
         })
     }
+}
+
+/// The recordings of a study in the folder `out`.
+///
+/// # Errors
+/// A recording cannot be read, or is of a participant who is not in the plan.
+pub fn recordings_of(study: &Study, out: &Path) -> Result<Vec<PlanRecording>, LiveError> {
+    let made = recordings::of_plan(out, &study.plan.name)?;
+    let codes = study.plan.codes();
+    let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) else { return Ok(made) };
+    let PlanRecording { recording, code, recorded_as, .. } = stranger;
+    let found = format!("the recording {recording} of {code}, a participant who is not in the plan");
+    Err(match recorded_as {
+        None => LiveError::Plan(found),
+        Some(before) => LiveError::Corrected {
+            found: format!("{found}; it was recorded as {before}"),
+            recording: out.join(recording),
+        },
+    })
 }
 
 /// Result of freezing (preregistering) a study plan: the output of `tomcom plan SESSION --freeze FILE`.

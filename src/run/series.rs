@@ -8,6 +8,7 @@ use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
 use super::options::{SeriesRequest, SessionStart};
+use super::plan::recordings_of;
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
 use crate::analysis::watcher::SenderComparisonSettings;
@@ -15,7 +16,6 @@ use crate::console::question::StartQuestion;
 use crate::edge::file_error::FileError;
 use crate::edge::files::SessionSetup;
 use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError};
-use crate::edge::recordings;
 use crate::session::plan::{NextRecording, ParticipantProgress, Study};
 use crate::session::wall_display::AnswerDevice;
 
@@ -108,7 +108,7 @@ impl Planned {
     }
 
     fn progress(&self) -> Result<ParticipantProgress, LiveError> {
-        let made = recordings::of_plan(&self.series.out, &self.study.plan.name)?;
+        let made = recordings_of(&self.study, &self.series.out)?;
         ParticipantProgress::from_recordings(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
     }
 

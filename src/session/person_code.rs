@@ -11,7 +11,9 @@ pub const REMEDY: &str = "a code of a letter and up to 15 letters, digits, - and
 /// Why a text is no code of a participant, a rater or a wizard, in words; `None` if it is one.
 pub fn fault(code: &str) -> Option<&'static str> {
     let is_sign = |sign: char| sign.is_ascii_alphanumeric() || sign == '-' || sign == '_';
-    if !code.starts_with(|first: char| first.is_ascii_alphabetic()) {
+    if code.is_empty() {
+        Some("a code has at least one letter")
+    } else if !code.starts_with(|first: char| first.is_ascii_alphabetic()) {
         Some("a code begins with a letter, since programs that read tables make numbers of others")
     } else if code.len() > LONGEST || !code.chars().all(is_sign) {
         Some("a code has no other signs than letters, digits, - and _, and at most 16 of them")

@@ -39,7 +39,7 @@ impl PlannedTrialKey {
     }
 }
 
-/// A recording whose log equals that of another one to the last byte, so that it does not count.
+/// A recording whose log equals that of another one, or a beginning of it, so that it does not count.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordingCopy {
@@ -47,18 +47,43 @@ pub struct RecordingCopy {
     pub recording: String,
     /// The recording that counts.
     pub copy_of: String,
+    /// Why the copy would be left out anyway, in words; null if it would count.
+    pub left_out: Option<String>,
 }
 
 /// Copies of recordings in words; `None` if there are none.
 pub fn copies_in_words(copies: &[RecordingCopy]) -> Option<String> {
-    let named: Vec<String> = copies.iter().map(|one| format!("{} of {}", one.recording, one.copy_of)).collect();
+    let name = |one: &RecordingCopy| {
+        let left_out = one.left_out.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
+        format!("{}{left_out} of {}", one.recording, one.copy_of)
+    };
+    let named: Vec<String> = copies.iter().map(name).collect();
     let are = count(copies.len() as u64, "recording is a copy, and is", "recordings are copies, and are");
     (!copies.is_empty()).then(|| format!("{are} not counted: {}", named.join("; ")))
 }
 
-/// What is wrong about a copy of `first` beside whose log other decisions stand; and what would be right.
+/// What is wrong about a copy of `first` beside whose log codes of raters stand that `first` has not, in the file `codes`,
+/// or has in another version (`is_there`); and what would be right.
+pub fn copy_with_codes(copy: &str, first: &str, (codes, is_there): (String, bool)) -> (String, String) {
+    let found = match is_there {
+        true => format!("a copy of {first} with another {codes}"),
+        false => format!("a copy of {first} with {codes}, which is not in {first}"),
+    };
+    let take = match is_there {
+        true => format!("compare the two files, keep what holds in {first}"),
+        false => format!("copy that file to {first}"),
+    };
+    let remedy = format!(
+        "all codes in one recording: {take}, or tomcom codes {copy} --export codes.csv, then tomcom codes {first} --import \
+         codes.csv; or leave this copy out: tomcom exclude {copy} --reason …"
+    );
+    (found, remedy)
+}
+
+/// What is wrong about a copy of `first` of which another analysis found something else; and what would be right.
 pub fn differing_copy(first: &str) -> (String, String) {
-    let found =
-        format!("a copy of {first} with another exclusion, other codes of raters, or another correction beside it");
-    (found, "one of the two recordings, with what holds for it; the other one is to be moved elsewhere".to_string())
+    let found = format!("a copy of {first} that differs: in codes of raters, a correction, or the end of its log");
+    let remedy = "both in one analysis without --shard, which says what differs; or leave the copy out (tomcom exclude \
+                  RECORDING --reason …), and analyse its part again";
+    (found, remedy.to_string())
 }

@@ -32,7 +32,7 @@ use crate::session::header::RecordedFile;
 use crate::session::plan::PlanPosition;
 
 /// Version of the file format of a study's parts.
-pub const PART_FORMAT: u32 = 4;
+pub const PART_FORMAT: u32 = 5;
 
 /// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,7 +79,7 @@ pub struct PartAnalysisOptions {
 pub struct AnalysedRecording {
     /// The recording's name in tables.
     pub recording: String,
-    /// SHA-256 digest of the recording's log, by which copies are known.
+    /// SHA-256 digest of the header of the recording's log, by which copies are known.
     pub digest: String,
     /// The study plan to which the recording belongs.
     pub plan: RecordedPlan,
@@ -103,6 +103,16 @@ impl AnalysedRecording {
             trial.recording = other.recording.clone();
         }
         same == *other
+    }
+
+    /// Whether the recording counts: it is practice, or has a trial that is not left out.
+    pub fn counts(&self) -> bool {
+        self.left_out().is_none()
+    }
+
+    /// Why the recording's trial is left out, in words.
+    pub fn left_out(&self) -> Option<&String> {
+        self.trial.as_ref().and_then(|(trial, ..)| trial.left_out.as_ref())
     }
 
     /// The trial of a plan that the recording counts for; `None` if there is none, or the recording does not count.

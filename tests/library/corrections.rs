@@ -3,15 +3,17 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use miette::Diagnostic;
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
 use tomcom::edge::forget;
-use tomcom::edge::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct};
+use tomcom::edge::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct, rule};
 use tomcom::edge::recordings;
 use tomcom::run::bids_export;
 use tomcom::run::fit::FitTrials;
 use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::kept_cost::KeptCost;
+use tomcom::run::plan::recordings_of;
 use tomcom::run::recording_list::{RecordingListDetail, list};
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::study::reading::{self, AnalysisScope};
@@ -110,10 +112,18 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
 
     assert!(correct(&recording, Some("P03"), "again").expect_err("refused").to_string().contains("has already"));
     assert!(correct(&recording, Some("NA"), "why").expect_err("refused").to_string().contains("the code \"NA\""));
-    assert!(
-        correct(&recording, Some("P04"), " ").expect_err("refused").to_string().contains("a reason of 1 characters")
-    );
+    assert!(correct(&recording, Some("P04"), " ").expect_err("refused").to_string().contains("found an empty reason"));
+    assert!(correct(&recording, Some(""), "why").expect_err("refused").to_string().contains("at least one letter"));
+    assert!(correct(&recording, Some("P04"), "a\nb").expect_err("refused").to_string().contains("a line break"));
+    let told = correct(&recording, Some("p01"), "why").expect_err("refused").to_string();
+    assert!(told.contains("the code p01, beside P01-") && told.contains("which is a recording of P01"), "{told}");
     assert_eq!(code(&recording), "P03");
+    // A code that is not in the plan: neither a plan nor its series counts on without the recording.
+    correct(&recording, Some("P99"), "why").expect("the plan is not in the log");
+    let told = recordings_of(&plan, &out).expect_err("refused");
+    let help = told.help().map(|help| help.to_string()).unwrap_or_default();
+    assert!(told.to_string().contains("the recording P02-1 of P99, a participant who is not in the plan"), "{told}");
+    assert!(help.contains("tomcom correct") && help.contains("--undo"), "{help}");
     correct(&recording, None, "").expect("taken back");
     assert_eq!(code(&recording), "P02");
     assert_eq!(listed(&out), before);
@@ -141,6 +151,9 @@ fn all_parts_of_a_recording_are_corrected() {
     fs::write(whole.join(LOG_NAME), lines[..half].join("\n") + "\n").expect("written");
     let told = correct(&whole, Some("P03"), "why").expect_err("a later part continues it").to_string();
     assert!(told.contains("was continued already"), "{told}");
+    let told = rule(&whole, true, "why").expect_err("a later part continues it");
+    let help = told.help().map(|help| help.to_string()).unwrap_or_default();
+    assert!(help.contains("the last part of the recording") && help.contains("P02-1-part2"), "{help}");
     correct(&part, Some("P03"), "why").expect("corrected");
     assert_eq!([code(&whole), code(&part)], ["P03", "P03"]);
     let found = |code: &str| forget::find(&out, &out.join("nothing"), code).expect("a folder").recordings;

@@ -3,14 +3,17 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use miette::Diagnostic;
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::{LOG_NAME, rule};
+use tomcom::edge::log::{LOG_NAME, RecordingLock, correct, rule};
 use tomcom::edge::recordings;
 use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::standing::left_out;
 use tomcom::run::study::NamedRecordings;
 use tomcom::session::plan::RecordingOutcome;
+use tomcom::study::planned_trial::copies_in_words;
 
 /// An empty folder for the test of this name.
 fn folder(name: &str) -> PathBuf {
@@ -103,8 +106,9 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     assert!(told.contains(&format!("which {} is a recording of", first.display())), "{told}");
     assert!(NamedRecordings::find(&both).is_err());
     // What does not count is no second recording: excluded, cut, another trial, practice, another plan, no plan.
-    rule(&second, false, "").expect("included, as it is anyway");
-    assert!(refusal(&both).contains("a second recording"));
+    let told = rule(&second, false, "").expect_err("it was never excluded").to_string();
+    assert!(told.contains("no exclusion of"), "{told}");
+    assert!(!second.join("exclusion.toml").exists());
     rule(&second, true, "the first one is right").expect("excluded");
     assert_eq!(number(&both), 2);
     fs::remove_dir_all(&second).expect("removed");
@@ -171,15 +175,113 @@ fn copies_count_once_and_are_told() {
     let made: Vec<(&str, &RecordingOutcome)> = made.iter().map(|one| (one.recording.as_str(), &one.outcome)).collect();
     assert_eq!(made.len(), 1, "{made:?}");
     assert_eq!(made[0].0, "P01-1");
-    // It is not known which of two decisions holds.
+    // An excluded copy is a copy that does not count; the other one counts, and the reason is told.
+    for (excluded, counted) in [(&copied, &first), (&first, &copied)] {
+        rule(excluded, true, "a copy").expect("excluded");
+        let found = GatheredRecordings::find(std::slice::from_ref(&root)).expect("recordings");
+        assert_eq!(found.paths, std::slice::from_ref(counted));
+        assert_eq!(found.copies[0].left_out.as_deref(), Some("excluded: a copy"));
+        let told = copies_in_words(&found.copies).expect("a copy");
+        assert!(
+            told.ends_with(&format!("{} (excluded: a copy) of {}", excluded.display(), counted.display())),
+            "{told}"
+        );
+        rule(excluded, false, "").expect("taken back");
+        assert_eq!(number(std::slice::from_ref(&root)), 1);
+    }
     rule(&first, true, "interrupted").expect("excluded");
-    let told = refusal(std::slice::from_ref(&root));
-    assert!(
-        told.contains(&copied_name) && told.contains(&format!("a copy of {first_name} with another exclusion")),
-        "{told}"
-    );
-    fs::copy(first.join("exclusion.toml"), copied.join("exclusion.toml")).expect("copied");
+    rule(&copied, true, "interrupted").expect("excluded");
     assert_eq!(number(std::slice::from_ref(&root)), 1);
+}
+
+#[test]
+fn nearly_equal_copies_count_once_and_the_longest_counts() {
+    let root = folder("near-copies");
+    let log = log(&root);
+    // Without a plan, nothing else tells that the copies are recordings of one trial.
+    let without_plan = |header: &mut Value| {
+        header["session"].as_object_mut().expect("settings").remove("step");
+    };
+    let first = record(&root.join("P01-1"), &log, without_plan);
+    let text = fs::read_to_string(first.join(LOG_NAME)).expect("a log");
+    let last = text.trim_end().rfind('\n').expect("lines");
+    let copies = [
+        ("empty line", format!("{text}\n")),
+        ("other system", text.replace('\n', "\r\n")),
+        ("no last line end", text.trim_end().to_string()),
+        ("before the end", text[..=last].to_string()),
+        ("within a line", text[..last - 20].to_string()),
+        ("header alone", text[..=text.find('\n').expect("a header")].to_string()),
+    ];
+    // Folders before the recording by name, and after it.
+    for (name, copy) in
+        copies.iter().flat_map(|(name, copy)| [(format!("A {name}"), copy), (format!("Z {name}"), copy)])
+    {
+        let folder = root.join(&name);
+        fs::create_dir_all(&folder).expect("a folder");
+        fs::write(folder.join(LOG_NAME), copy).expect("written");
+        let found = GatheredRecordings::find(std::slice::from_ref(&root)).expect("recordings");
+        assert_eq!((found.paths.len(), found.copies.len()), (1, 1), "{name}");
+        let is_whole = ["empty line", "other system", "no last line end"].iter().any(|whole| name.ends_with(whole));
+        let counted = if is_whole && name.starts_with('A') { &folder } else { &first };
+        assert_eq!(&found.paths[0], counted, "{name}");
+        fs::remove_dir_all(folder).expect("removed");
+    }
+    // Another session, and another event, are no copies.
+    let other = root.join("other");
+    record(&other, &log, |header| {
+        without_plan(header);
+        header["started"] = json!("2026-03-14T11:00:00Z");
+    });
+    assert_eq!(number(std::slice::from_ref(&root)), 2);
+    fs::write(other.join(LOG_NAME), text.replacen("\"kind\":\"press\"", "\"kind\":\"prext\"", 1)).expect("written");
+    assert_eq!(number(std::slice::from_ref(&root)), 2);
+}
+
+#[test]
+fn a_plan_does_not_offer_a_copy_that_was_made_before_the_end() {
+    let root = folder("plan-copies");
+    let log = log(&root);
+    let first = record(&root.join("P01-1"), &log, |_| ());
+    let text = fs::read_to_string(first.join(LOG_NAME)).expect("a log");
+    fs::create_dir_all(root.join("A copy")).expect("a folder");
+    fs::write(root.join("A copy").join(LOG_NAME), &text[..text.len() / 2]).expect("written");
+    let made = recordings::of_plan(&root, "paper").expect("recordings");
+    assert_eq!(made.iter().map(|one| one.recording.as_str()).collect::<Vec<_>>(), ["P01-1"]);
+}
+
+#[test]
+fn codes_beside_a_copy_alone_are_named_and_are_not_lost() {
+    let root = folder("codes-of-copies");
+    let log = log(&root);
+    let first = record(&root.join("K1/P01-1"), &log, |_| ());
+    let copied = copy(&first, &root.join("K2/P01-1"));
+    let both = [root.join("K1"), root.join("K2")];
+    let codes = |folder: &Path, rater: &str, cause: &str| {
+        let text = format!("rater,press,cause,aspect\n{rater},1,{cause},\n");
+        fs::write(folder.join(format!("codes-{rater}.csv")), text).expect("written");
+    };
+    // The copy with all codes counts.
+    codes(&copied, "R2", "slip");
+    let found = GatheredRecordings::find(&both).expect("recordings");
+    assert_eq!(found.paths, std::slice::from_ref(&copied));
+    codes(&first, "R1", "slip");
+    let told = GatheredRecordings::find(&both).expect_err("refused");
+    let help = told.help().map(|help| help.to_string()).unwrap_or_default();
+    let (first_name, copied_name) = (first.display().to_string(), copied.display().to_string());
+    assert!(told.to_string().contains(&format!("a copy of {first_name} with codes-R2.csv, which is not in")), "{told}");
+    assert!(help.contains(&format!("tomcom codes {copied_name} --export codes.csv")), "{help}");
+    // The way out that the message names.
+    fs::copy(copied.join("codes-R2.csv"), first.join("codes-R2.csv")).expect("copied");
+    assert_eq!(GatheredRecordings::find(&both).expect("recordings").paths, std::slice::from_ref(&first));
+    codes(&copied, "R2", "race");
+    assert!(refusal(&both).contains(&format!("a copy of {first_name} with another codes-R2.csv")));
+    rule(&copied, true, "a copy").expect("excluded");
+    assert_eq!(number(&both), 1);
+    rule(&copied, false, "").expect("taken back");
+    fs::remove_file(copied.join("codes-R2.csv")).expect("removed");
+    correct(&copied, Some("P03"), "typed wrong").expect("corrected");
+    assert!(refusal(&both).contains("that is a recording of P03, not of P01"));
 }
 
 #[test]
@@ -204,4 +306,21 @@ fn a_copy_of_an_earlier_part_is_no_recording_of_its_own() {
     // No recording is judged by thresholds that were chosen on itself.
     let both = found.beside(&GatheredRecordings::find(&[root.join("P01-1 - Copy")]).expect("a recording"));
     assert!(both.expect_err("refused").to_string().contains("named for two purposes"));
+}
+
+#[test]
+fn a_recording_that_is_still_made_is_running_and_not_cut() {
+    let root = folder("running");
+    let log = log(&root);
+    let recording = record(&root.join("P01-1"), &log, |_| ());
+    let text = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
+    let half: Vec<&str> = text.lines().take(text.lines().count() / 2).collect();
+    fs::write(recording.join(LOG_NAME), half.join("\n") + "\n").expect("cut");
+    let lock = RecordingLock::take(&recording).expect("a lock");
+    assert_eq!(left_out(&recording).expect("readable").as_deref(), Some("running: its trial is not over"));
+    drop(lock);
+    assert_eq!(left_out(&recording).expect("readable").as_deref(), Some("cut before the trial's end"));
+    // What counts is the trial: only the session's end is missing.
+    fs::write(recording.join(LOG_NAME), &text[..=text.trim_end().rfind('\n').expect("lines")]).expect("written");
+    assert_eq!(left_out(&recording).expect("readable"), None);
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::RecordingWriteError;
+use super::{RecordingWriteError, check_continued};
 use crate::edge::file_error::{FileError, FileResult, read_regular};
 use crate::edge::replace_file;
 
@@ -23,15 +23,11 @@ pub enum DecisionError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The reason of a decision does not have 1 to 200 characters; the number is its length.
-    #[error("found a reason of {0} characters")]
-    #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
-    Reason(usize),
-    /// The participant's code cannot be corrected to this.
+    /// The decision cannot be made about this recording, or not like this.
     #[error("found {found}")]
     #[diagnostic(help("{remedy}"))]
-    Code {
-        /// What is wrong with the code, in words.
+    Unfit {
+        /// What is wrong with the decision, in words.
         found: String,
         /// What would be right instead.
         remedy: String,
@@ -47,10 +43,29 @@ impl From<FileError> for DecisionError {
 /// Checks the reason that somebody gave for a decision; an empty one only where it `may_be_empty`.
 pub(super) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), DecisionError> {
     let length = reason.chars().count();
-    match length > 200 || (!may_be_empty && reason.trim().is_empty()) || reason.chars().any(char::is_control) {
-        true => Err(DecisionError::Reason(length)),
-        false => Ok(()),
+    let found = if reason.chars().any(char::is_control) {
+        "a reason with a line break or another control character".to_string()
+    } else if length > 200 {
+        format!("a reason of {length} characters")
+    } else if !may_be_empty && reason.trim().is_empty() {
+        "an empty reason".to_string()
+    } else {
+        return Ok(());
+    };
+    Err(DecisionError::Unfit { found, remedy: "a reason of 1 to 200 characters, on one line".to_string() })
+}
+
+/// Checks that no later part continues the recording in a folder: decisions are about the whole recording.
+pub(super) fn check_last_part(folder: &Path) -> Result<(), DecisionError> {
+    let mut last = folder.to_path_buf();
+    while let Err(RecordingWriteError::Continued { part, .. }) = check_continued(&last) {
+        last = part;
     }
+    if last == folder {
+        return Ok(());
+    }
+    let found = format!("{}, a part of a recording that was continued already", folder.display());
+    Err(DecisionError::Unfit { found, remedy: format!("the last part of the recording: {}", last.display()) })
 }
 
 /// Reads a file with decisions; empty decisions if there is no such file. `remedy`: what the file should contain.

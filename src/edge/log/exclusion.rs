@@ -5,10 +5,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::decision_file::{self, DecisionError, check_reason};
-use super::{LogReader, RecordingLock, check_continued};
+use super::decision_file::{self, DecisionError, check_last_part, check_reason};
+use super::{LogReader, RecordingLock};
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::FileResult;
+use crate::session::Event;
 
 /// Name of the exclusion file in the folder of a recording.
 pub const EXCLUSION_NAME: &str = "exclusion.toml";
@@ -50,14 +51,28 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
 ///
 /// # Errors
 /// The folder is not a recording, the recording is being written or is continued by a later part, or its folder cannot
-/// be written to.
+/// be written to; or a recording is to be included again that is not excluded.
 pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
     check_reason(reason, !excluded)?;
-    let log = LogReader::open(recording)?;
-    let folder = log.folder();
+    let mut log = LogReader::open(recording)?;
+    let folder = &log.folder().to_path_buf();
     let _lock = RecordingLock::take(folder)?;
-    check_continued(folder)?;
+    check_last_part(folder)?;
     let mut all = rulings(folder)?;
+    if !excluded {
+        let mut is_excluded = false;
+        while let Some(line) = log.next_line()? {
+            match line.stamped.event {
+                Event::TrialExcluded { .. } => is_excluded = true,
+                Event::TrialIncluded => is_excluded = false,
+                _ => {}
+            }
+        }
+        if !all.ruling.last().map_or(is_excluded, |ruling| ruling.excluded) {
+            let found = format!("no exclusion of {}", recording.display());
+            return Err(DecisionError::Unfit { found, remedy: "a recording that is excluded".to_string() });
+        }
+    }
     let ruling = ExclusionRecord { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
     all.ruling.push(ruling.clone());
     decision_file::write(&folder.join(EXCLUSION_NAME), &all)?;

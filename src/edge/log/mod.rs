@@ -28,7 +28,7 @@ pub use exclusion::{EXCLUSION_NAME, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogPlace, LogReader, at_line};
 pub(super) use reader::{MAX_LINE, first_line, read_header};
-pub use same_log::{decisions, log_digest};
+pub use same_log::{SameLogs, code_files, differing_codes, header_digest};
 pub use simulated_log::{SimulatedLogState, check_simulated};
 pub use writer::{LogWriter, check_continued, is_begun, is_written_settings};
 

@@ -3,12 +3,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::RecordingWriteError;
 use crate::base::words::count;
-use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
+use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, open_regular, read_bytes};
+use crate::edge::gaze_table::SEPARATORS;
 use crate::edge::overwrite;
 use crate::edge::replace_file;
 use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
@@ -24,6 +25,8 @@ const KEEP_ONE: &str =
     "one file for each rater: compare the two, keep the codes that hold, and move the other file elsewhere";
 /// Advice for a line of a table of codes that has the wrong number of cells.
 const REMEDY: &str = "as many fields as the first line has";
+/// Endings of the names of spreadsheets' files.
+const SPREADSHEETS: [&str; 4] = [".xlsx", ".xls", ".ods", ".numbers"];
 
 /// A row of a file with exported codes of raters.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,22 +50,69 @@ struct CodeFile {
     rows: Vec<ParsedRow>,
 }
 
-/// Whether a file of this name in the folder of a recording may have a rater's codes: `codes-R1.csv`, and how file
-/// managers, browsers and sync programs name copies of it.
+/// Whether a file of this name in the folder of a recording may have a rater's codes: `codes-R1.csv`, and how people,
+/// file managers, browsers and sync programs name copies of it.
 pub(in crate::edge) fn is_codes_file(name: &str) -> bool {
+    is_named_as_codes(name, &[".csv"])
+}
+
+/// Whether the name of a file with one of these endings is, or was made of, `codes-RATER`; `codes.csv` is an export.
+fn is_named_as_codes(name: &str, endings: &[&str]) -> bool {
     let name = name.to_ascii_lowercase();
-    (name.starts_with("codes-") || name.contains(" codes-")) && name.ends_with(".csv")
+    let rest = name.strip_prefix("codes").or_else(|| name.split_once(" codes").map(|(_, rest)| rest)).unwrap_or("");
+    let named = rest.trim_start_matches(['-', '_', ' ']);
+    let is_separate = rest.len() > named.len();
+    let is_rater = rest.starts_with('-') || named.starts_with(|first: char| first.is_ascii_alphanumeric());
+    is_separate && is_rater && endings.iter().any(|ending| name.ends_with(ending))
+}
+
+/// Names of the files with raters' codes in the folder of a recording: by their names, or by their first lines.
+///
+/// # Errors
+/// The folder cannot be read, or a program has saved a rater's codes as a file of another kind.
+pub fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
+    let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
+    let mut names = BTreeSet::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
+        if is_named_as_codes(&name, &SPREADSHEETS) {
+            let found = "what looks like the codes of a rater in a spreadsheet's file, which is not read".to_string();
+            let remedy = "the table saved as CSV (UTF-8) under the name codes-RATER.csv, and this file moved elsewhere";
+            return Err(FileError::from_finding(&folder.join(name), found, remedy.to_string()));
+        }
+        let is_renamed = || name.to_ascii_lowercase().ends_with(".csv") && is_one_raters(&folder.join(&name));
+        if is_codes_file(&name) || is_renamed() {
+            names.insert(name);
+        }
+    }
+    Ok(names)
+}
+
+/// Whether the first line of a file is that of a rater's codes.
+fn is_one_raters(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = open_regular(path).and_then(|file| file.take(64).read_to_end(&mut head));
+    read.is_ok() && overwrite::first_line(&head) == COLUMNS.join(",").as_bytes()
+}
+
+/// Checks that two raters whom the user named have coded errors, where raters are those who have.
+///
+/// # Errors
+/// One of the two has no codes.
+pub fn check_named(what: &Path, named: &[String; 2], raters: &BTreeSet<String>) -> FileResult<()> {
+    let Some(missing) = named.iter().find(|rater| !raters.contains(*rater)) else { return Ok(()) };
+    let known: Vec<&str> = raters.iter().map(String::as_str).collect();
+    let remedy = match known.is_empty() {
+        true => "two raters who have coded the errors, each with tomcom replay RECORDING --rater CODE".to_string(),
+        false => format!("two raters who have coded the errors; there are codes of {}", known.join(", ")),
+    };
+    Err(FileError::from_finding(what, format!("no codes of the rater {missing}"), remedy))
 }
 
 /// The files with codes in the folder of a recording, by the rater whom each names inside. Files without a row are
 /// nobody's.
 fn code_files(folder: &Path) -> FileResult<BTreeMap<String, CodeFile>> {
-    let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
-    let mut names = BTreeSet::new();
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
-        names.extend(Some(name).filter(|name| is_codes_file(name)));
-    }
+    let names = code_file_names(folder)?;
     let mut files: BTreeMap<String, CodeFile> = BTreeMap::new();
     for name in &names {
         let path = folder.join(name);
@@ -174,8 +224,8 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
 ///
 /// # Errors
 /// The file cannot be written, or there is a file of another kind at the path.
-pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> Result<(), RecordingWriteError> {
-    let failed = |reason| RecordingWriteError::unwritable(path, reason);
+pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> FileResult<()> {
+    let failed = |reason| FileError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
     overwrite::check(path, "an export of raters' codes", is_own).map_err(failed)?;
     let write = || -> io::Result<()> {
@@ -217,7 +267,11 @@ pub(super) type ParsedRow = (usize, Vec<String>, u64, ErrorCauseCode);
 /// Reads the rows of a raters' table, whose last three columns are a press and the code of that press. No press may
 /// occur twice for the same rater and recording.
 pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
-    let mut table = csv::Reader::from_reader(text.as_bytes());
+    // Spreadsheets of countries with a decimal comma separate columns by semicolons.
+    let head = overwrite::first_line(text.as_bytes());
+    let number_of = |separator: &u8| head.iter().filter(|byte| *byte == separator).count();
+    let separator = SEPARATORS.into_iter().rev().max_by_key(number_of).unwrap_or(b',');
+    let mut table = csv::ReaderBuilder::new().delimiter(separator).from_reader(text.as_bytes());
     // Lines are counted here, since the CSV reader reports a row after empty lines at the position of the empty lines.
     let (mut counted, mut number) = (0, 1);
     let mut line_of = |position: Option<&csv::Position>| {
@@ -235,7 +289,11 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
         };
         wrong_line(path, text, line, found, REMEDY)
     };
-    let head: Vec<String> = table.headers().map_err(|error| broken(error, 1))?.iter().map(str::to_string).collect();
+    let mut head: Vec<String> = table.headers().map_err(|error| broken(error, 1))?.iter().map(str::to_string).collect();
+    // A spreadsheet adds empty columns to cells that were once used.
+    while head.len() > columns.len() && head.last().is_some_and(String::is_empty) {
+        head.pop();
+    }
     if head != columns {
         let remedy = format!("the columns {}", columns.join(","));
         return Err(wrong_line(path, text, 1, format!("the columns {}", head.join(",")), &remedy));
@@ -251,6 +309,9 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
         let before: Vec<String> = record.iter().take(columns.len() - 3).map(str::to_string).collect();
         let field = |back: usize| record.get(columns.len() - back).unwrap_or_default();
         let wrong = |(found, remedy): (String, &str)| wrong_line(path, text, line, found, remedy);
+        if let Some(cell) = record.iter().skip(columns.len()).find(|cell| !cell.is_empty()) {
+            return Err(wrong((format!("\"{cell}\" beyond the last column"), "empty cells in columns without a name")));
+        }
         let (press, code) = said(field(3), field(2), field(1)).map_err(wrong)?;
         if let Some(first) = lines.insert((before.clone(), press), line) {
             let found = format!("press {press} again, after line {first}");

@@ -16,7 +16,7 @@ mod tell;
 mod tutorials;
 mod twin;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ use super::{consents, parallel};
 use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
 use crate::edge::file_error::FileError;
 use crate::edge::frozen_file::read_frozen;
-use crate::edge::log::{LogReader, log_digest};
+use crate::edge::log::{LogReader, header_digest, rater_codes};
 use crate::kitchen::Kitchen;
 use crate::study::column::CsvTable;
 use crate::study::detail_totals::DetailTotals;
@@ -111,6 +111,16 @@ impl NamedRecordings {
         Ok(NamedRecordings { found, copies })
     }
 
+    /// Checks that the raters whom an analysis names have coded errors of these recordings.
+    fn check_raters(&self, analysis: &AnalysisRequest) -> Result<(), FileError> {
+        let Some(named) = &analysis.raters else { return Ok(()) };
+        let mut raters = BTreeSet::new();
+        for (path, _) in &self.found {
+            raters.extend(rater_codes::raters(LogReader::open(path)?.folder())?);
+        }
+        rater_codes::check_named(Path::new("--raters"), named, &raters)
+    }
+
     /// Number of recordings that were found.
     pub fn number(&self) -> usize {
         self.found.len()
@@ -133,6 +143,7 @@ pub fn study(
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
+    recordings.check_raters(analysis)?;
     let frozen = frozen(analysis)?;
     let export = AnalysisFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
@@ -161,7 +172,7 @@ fn analyse(
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
     let log = LogReader::open(path)?;
     let (plan, correction) = (RecordedPlan::from_header(&log.header), log.header.correction.clone());
-    let digest = log_digest(log.path_of_last_part())?;
+    let digest = header_digest(log.path_of_last_part())?;
     let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
     let (mut trial, mut rows) = (None, Default::default());
     if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref(), kept)? {

@@ -8,7 +8,6 @@ use super::questionnaire_answers;
 use super::replay_pass::ReplayPass;
 use super::rows::{RowCollector, TrialPressAnalyses};
 use super::twin::useful_signals;
-use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::order_work::{RegretSum, order_times};
@@ -17,7 +16,7 @@ use crate::analysis::probe_record::ProbedTrial;
 use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, rater_codes};
+use crate::edge::log::{LogEnding, LogReader, rater_codes};
 use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
@@ -163,7 +162,8 @@ pub fn read(
     let follower = pass.follower();
     let by_estimate = by_estimate.map(|found| found.causes);
     let (judged, basis) = coded.judged(follower, by_estimate.as_deref());
-    let mut trial = trial(name, &header, follower, standing);
+    let left_out = standing.left_out(&follower.session, log.ending() == LogEnding::Running);
+    let mut trial = trial(name, &header, follower, left_out);
     trial.ended = robot.ended;
     trial.robot = robot.into_figures();
     let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, &mut cost));
@@ -308,7 +308,7 @@ fn beliefs(
     }
 }
 
-fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: ExclusionStatus) -> TrialStatistics {
+fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: Option<String>) -> TrialStatistics {
     let (session, spec) = (&follower.session, &header.session);
     let step = spec.step.as_ref();
     let between = |times: Vec<SessionTime>| -> Vec<f64> {
@@ -330,7 +330,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: E
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
         acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),
-        left_out: standing.left_out(session),
+        left_out,
         ended: None,
         arm: spec.robot.arm,
         robot: RobotEventSummary::default(),

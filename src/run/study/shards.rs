@@ -14,7 +14,7 @@ use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, fro
 use crate::edge::export::AnalysisFolder;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
-use crate::edge::log::LogReader;
+use crate::edge::log::{LogReader, rater_codes};
 use crate::edge::study_part_file::{PartReader, PartWriter};
 use crate::run::kept_cost::KeptCost;
 use crate::run::parallel::{self, WorkerPool};
@@ -130,13 +130,12 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     for part in &mut parts {
         joined.copies.extend(part.header.copies.iter().cloned());
         while let Some((recording, rows)) = part.next_recording()? {
-            let index = joined.number;
-            if joined.admit(part.path(), &recording, &export)? {
+            if let Some(index) = joined.admit(part.path(), &recording, &export)? {
                 keep(&export, extent, index, &recording, &rows)?;
             }
         }
     }
-    let JoinedRecordings { number, names, copies, .. } = joined;
+    let JoinedRecordings { number, names, copies, raters, .. } = joined;
     let lost =
         parts.iter().find_map(|part| Some((part, part.header.left_out.iter().find(|name| !names.contains(*name))?)));
     if let Some((part, name)) = lost {
@@ -147,6 +146,10 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     }
     if number == 0 {
         return Err(no_recording(analysis));
+    }
+    // A shard alone may be without codes of a rater.
+    if let Some(named) = &headers[0].analysis.raters {
+        rater_codes::check_named(Path::new("--raters"), named, &raters)?;
     }
     conclude(number, &export, extent, frozen, copies.into_iter().collect())
 }
@@ -162,25 +165,43 @@ struct JoinedRecordings {
     /// By trial: the place of the recording that counts for it.
     trials: BTreeMap<PlannedTrialKey, String>,
     copies: BTreeSet<RecordingCopy>,
+    /// Raters with codes, among those who were named.
+    raters: BTreeSet<String>,
 }
 
 impl JoinedRecordings {
-    /// Whether a recording of the part at this path is joined; not if it is a copy of an earlier one.
+    /// The number under which a recording of the part at this path is kept; `None` if it is a copy of an earlier one. A
+    /// copy that counts takes the place of one that is left out.
     fn admit(
         &mut self,
         part: &Path,
         recording: &AnalysedRecording,
         export: &AnalysisFolder,
-    ) -> Result<bool, StudyError> {
+    ) -> Result<Option<usize>, StudyError> {
         let wrong = |(found, remedy): (String, String)| Err(FileError::from_finding(part, found, remedy).into());
         let place = format!("{} in {}", recording.recording, part.display());
+        if let Some(pair) = recording.trial.as_ref().and_then(|(trial, ..)| trial.raters.as_ref()) {
+            let coded = pair.raters.iter().zip(&pair.codes).filter(|(_, codes)| !codes.0.is_empty());
+            self.raters.extend(coded.map(|(rater, _)| rater.clone()));
+        }
+        let mut index = self.number;
         if let Some((first, first_place)) = self.logs.get(&recording.digest) {
-            if !recording.is_copy_of(&export.kept_analysed(*first)?) {
-                return wrong(differing_copy(first_place));
+            let kept = export.kept_analysed(*first)?;
+            let copy = |recording: String, copy_of: String, own: &AnalysedRecording| RecordingCopy {
+                recording,
+                copy_of,
+                left_out: own.left_out().cloned(),
+            };
+            if !recording.counts() || kept.counts() {
+                if recording.counts() && !recording.is_copy_of(&kept) {
+                    return wrong(differing_copy(first_place));
+                }
+                self.names.insert(recording.recording.clone());
+                self.copies.insert(copy(place, first_place.clone(), recording));
+                return Ok(None);
             }
-            self.names.insert(recording.recording.clone());
-            self.copies.insert(RecordingCopy { recording: place, copy_of: first_place.clone() });
-            return Ok(false);
+            self.copies.insert(copy(first_place.clone(), place.clone(), &kept));
+            index = *first;
         }
         if let Some(trial) = recording.counted_trial() {
             if let Some(first) = self.trials.get(&trial) {
@@ -188,12 +209,15 @@ impl JoinedRecordings {
             }
             self.trials.insert(trial, place.clone());
         }
-        if !self.names.insert(recording.recording.clone()) {
-            let found = format!("the recording {}, which is in another part, too", recording.recording);
-            return wrong((found, "each recording once".to_string()));
+        let is_new = self.names.insert(recording.recording.clone());
+        if index == self.number {
+            if !is_new {
+                let found = format!("the recording {}, which is in another part, too", recording.recording);
+                return wrong((found, "each recording once".to_string()));
+            }
+            self.number += 1;
         }
-        self.logs.insert(recording.digest.clone(), (self.number, place));
-        self.number += 1;
-        Ok(true)
+        self.logs.insert(recording.digest.clone(), (index, place));
+        Ok(Some(index))
     }
 }

@@ -317,6 +317,25 @@ fn one_rater_does_not_become_two_by_copies_of_a_file() {
         fs::rename(out.join("aside.csv"), &own).expect("moved");
         fs::remove_file(copy).expect("removed");
     }
+    for renamed in ["codes_R1.csv", "codes R1.csv", "R1.csv"] {
+        fs::rename(&own, recording.join(renamed)).expect("renamed");
+        let (found, remedy) = told();
+        assert!(found.contains("codes of R1, in a file with another name"), "{renamed}: {found}");
+        assert!(remedy.contains("the name codes-R1.csv"), "{remedy}");
+        fs::rename(recording.join(renamed), &own).expect("renamed");
+    }
+    fs::write(recording.join("codes-R1.xlsx"), "PK").expect("written");
+    assert!(told().0.contains("codes-R1.xlsx: found what looks like the codes of a rater in a spreadsheet's file"));
+    fs::remove_file(recording.join("codes-R1.xlsx")).expect("removed");
+    // An export is nobody's codes, and German spreadsheets separate by semicolons.
+    fs::write(recording.join("codes.csv"), "recording,rater,press,cause,aspect\n").expect("written");
+    let comma = fs::read_to_string(&own).expect("codes");
+    let spread: Vec<String> = comma.lines().map(|line| format!("{};\r\n", line.replace(',', ";"))).collect();
+    fs::write(&own, spread.concat()).expect("written");
+    assert_eq!(coded().codes["R1"], slips);
+    fs::write(&own, spread.concat().replacen(";;\r\n", ";;x\r\n", 1)).expect("written");
+    assert!(told().0.contains("found \"x\" beyond the last column"), "{:?}", told());
+    fs::write(&own, comma).expect("written");
     let mixed = recording.join("codes-R2.csv");
     let press = *slips.0.keys().next().expect("an error");
     fs::write(&mixed, format!("rater,press,cause,aspect\nR2,{press},slip,\nR3,{press},slip,\n")).expect("written");
@@ -374,6 +393,17 @@ fn new_raters_in_a_table_are_known_before_it_is_imported() {
     let codes = code_exchange::read(&coded, &table).expect("readable");
     assert_eq!((codes.new_raters.join(" "), codes.known_raters.join(" ")), ("R2".to_string(), "R1".to_string()));
     codes.import(&mut coded).expect("imported");
+    assert!(codes.changed.is_empty(), "{:?}", codes.changed);
+    // Codes that the table changes are counted before.
+    let rows = [("R1", "race"), ("R1+R2", "slip"), ("R2", "slip")]
+        .map(|(rater, cause)| format!("{name},{rater},{press},{cause},\n"));
+    fs::write(&table, format!("recording,rater,press,cause,aspect\n{}", rows.concat())).expect("written");
+    let codes = code_exchange::read(&coded, &table).expect("readable");
+    assert_eq!(codes.changed, [("R1".to_string(), 1)].into());
+    // A file that is no export is not replaced, and the message is about that file.
+    fs::write(&table, "mine").expect("written");
+    let told = export(&coded, &table).expect_err("refused").to_string();
+    assert!(told.contains("codes.csv: cannot be written: a file is there that is not an export"), "{told}");
     put(&["r2"]);
     let told = code_exchange::read(&[CodedRecording::open(&recording).expect("a recording")], &table);
     let told = told.expect_err("refused").to_string();

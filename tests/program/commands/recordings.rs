@@ -153,11 +153,19 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     let told = String::from_utf8_lossy(&check(&["list", out], 0).stdout).into_owned();
     assert!(told.contains("excluded    seed7-S003  (excluded: interrupted)"), "{told}");
     assert!(told.ends_with(&format!("4 recordings in {out}\n")), "{told}");
-    for command in [&["replay", out][..], &["replay", out, "--verify"], &["compare", out], &["codes", out]] {
+    for command in [&["replay", out][..], &["replay", out, "--verify"], &["compare", out]] {
         let told = complaint(command);
         assert!(told.contains("found a folder with 4 recordings, where one recording is meant"), "{told}");
         assert!(told.contains(&format!("{out}/seed7-S001, {out}/seed7-S002")), "{told}");
     }
+    // All recordings of a folder are meant; another folder in it is none.
+    fs::remove_dir_all(format!("{out}/seed7-S004")).expect("removed");
+    fs::create_dir_all(format!("{out}/study")).expect("a folder");
+    let coded = figures(&["codes", out, "--format", "json"], 0);
+    assert_eq!(coded["recordings"].as_array().map(Vec::len), Some(3), "{coded}");
+    let told = complaint(&["study", out, "--raters", "ra", "Rb"]);
+    assert!(told.contains("no codes of the rater ra"), "{told}");
+    assert!(complaint(&["exclude", &format!("{out}/seed7-S002"), "--back"]).contains("no exclusion of"));
     assert!(complaint(&["list", &format!("{out}/seed7-S001/nothing")]).contains("found no folder of this name"));
 }
 

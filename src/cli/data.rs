@@ -62,7 +62,8 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
         codes.import(&mut recordings)?;
     }
     if let Some(file) = &args.export {
-        code_exchange::export(&recordings, file)?;
+        // The recordings are as they should be: what fails is writing.
+        code_exchange::export(&recordings, file).map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     }
     let figures = InterRaterSummary::from_recordings(&recordings);
     print(args.format, &figures, || codes::describe(&figures))

@@ -6,13 +6,13 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::error::LiveError;
-use super::series::{slot_name, stands};
+use super::series::{recordings_of, slot_name, stands};
 use crate::base::path_text::PathText;
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::KitchenWithSources;
-use crate::edge::{frozen_file, recordings};
-use crate::session::plan::{ParticipantProgress, PlanRecording, RecordingOutcome, Study, TrialAttempt};
+use crate::edge::frozen_file;
+use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
 use crate::study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
@@ -52,25 +52,6 @@ impl StudyProgress {
             participants,
         })
     }
-}
-
-/// The recordings of a study in the folder `out`.
-///
-/// # Errors
-/// A recording cannot be read, or is of a participant who is not in the plan.
-pub fn recordings_of(study: &Study, out: &Path) -> Result<Vec<PlanRecording>, LiveError> {
-    let made = recordings::of_plan(out, &study.plan.name)?;
-    let codes = study.plan.codes();
-    let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) else { return Ok(made) };
-    let PlanRecording { recording, code, recorded_as, .. } = stranger;
-    let found = format!("the recording {recording} of {code}, a participant who is not in the plan");
-    Err(match recorded_as {
-        None => LiveError::Plan(found),
-        Some(before) => LiveError::Corrected {
-            found: format!("{found}; it was recorded as {before}"),
-            recording: out.join(recording),
-        },
-    })
 }
 
 /// Result of freezing (preregistering) a study plan: the output of `tomcom plan SESSION --freeze FILE`.

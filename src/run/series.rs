@@ -8,7 +8,6 @@ use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
 use super::options::{SeriesRequest, SessionStart};
-use super::plan::recordings_of;
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
 use crate::analysis::watcher::SenderComparisonSettings;
@@ -16,7 +15,8 @@ use crate::console::question::StartQuestion;
 use crate::edge::file_error::FileError;
 use crate::edge::files::SessionSetup;
 use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError};
-use crate::session::plan::{NextRecording, ParticipantProgress, Study};
+use crate::edge::recordings;
+use crate::session::plan::{NextRecording, ParticipantProgress, PlanRecording, Study};
 use crate::session::wall_display::AnswerDevice;
 
 /// Result of one session, or of a participant's series of sessions.
@@ -251,4 +251,23 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
             format!("{code}: {done} of {all} done, {} is being recorded in {recording}", slot_name(progress, *slot))
         }
     }
+}
+
+/// The recordings of a study in the folder `out`.
+///
+/// # Errors
+/// A recording cannot be read, or is of a participant who is not in the plan.
+pub fn recordings_of(study: &Study, out: &Path) -> Result<Vec<PlanRecording>, LiveError> {
+    let made = recordings::of_plan(out, &study.plan.name)?;
+    let codes = study.plan.codes();
+    let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) else { return Ok(made) };
+    let PlanRecording { recording, code, recorded_as, .. } = stranger;
+    let found = format!("the recording {recording} of {code}, a participant who is not in the plan");
+    Err(match recorded_as {
+        None => LiveError::Plan(found),
+        Some(before) => LiveError::Corrected {
+            found: format!("{found}; it was recorded as {before}"),
+            recording: out.join(recording),
+        },
+    })
 }

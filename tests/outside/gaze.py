@@ -222,15 +222,16 @@ def lags(events, since_ns=0):
 
 
 def check_clocks(tomcom, scratch):
-    """Clocks at other rates, and what is no clock: told within five seconds, and stamped by arrival from then on."""
+    """Clocks at other rates, and what is no clock: told within five seconds, and stamped by arrival from then on. A rate that is told
+    after little more than a second is only roughly right, as samples are delayed by up to 60 ms."""
     cases = {
-        "slow loop": (lambda s, n: n / 120, 120 / 1.03, r"t runs at 9[678] % of real time"),
-        "92 percent": (lambda s, n: 0.92 * s, 120, r"t runs at 9[123] % of real time"),
-        "half": (lambda s, n: 0.5 * s, 120, r"t runs at (49|50|51|52) % of real time"),
-        "fast": (lambda s, n: 1e6 + 1.03 * s, 120, r"t runs at 10[234] % of real time"),
-        "milliseconds": (lambda s, n: 1e3 * s, 120, r"t runs (99\d|10[01]\d) times as fast as real time, like milliseconds"),
-        "microseconds": (lambda s, n: 1e6 * s, 120, r"t runs (99|100|101)\d{4} times as fast"),
-        "frames": (lambda s, n: n, 120, r"t runs (11[789]|12[0123]) times as fast as real time, like counts"),
+        "slow loop": (lambda s, n: n / 120, 120 / 1.03, r"t runs at 9[5-9] % of real time"),
+        "92 percent": (lambda s, n: 0.92 * s, 120, r"t runs at (89|9[0-5]) % of real time"),
+        "half": (lambda s, n: 0.5 * s, 120, r"t runs at (4[5-9]|5[0-5]) % of real time"),
+        "fast": (lambda s, n: 1e6 + 1.03 * s, 120, r"t runs at 10[1-5] % of real time"),
+        "milliseconds": (lambda s, n: 1e3 * s, 120, r"t runs 1000 times as fast as real time, like milliseconds"),
+        "microseconds": (lambda s, n: 1e6 * s, 120, r"t runs 1000000 times as fast"),
+        "frames": (lambda s, n: n, 120, r"t runs 1[123]\d times as fast as real time, like counts"),
         "constant": (lambda s, n: 7.5, 120, r"t stands still"),
         "falling": (lambda s, n: 500 - s, 120, r"t goes back from sample to sample"),
     }

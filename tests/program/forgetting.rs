@@ -142,6 +142,21 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     assert_eq!(lab.forget(&["Jane Doe", "--yes"]).0, Some(2));
 }
 
+/// Tables that were made before the correction have the old code.
+#[test]
+fn rows_from_before_a_code_was_corrected_go_with_the_recording() {
+    let lab = RecordingsFolder::of_two_people("corrected");
+    lab.study();
+    let recording = lab.at("seed1-P01-1").display().to_string();
+    let (code, told) = lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(lab.forget(&["P88", "--yes"]).0, Some(0));
+    for table in ["actions", "trials"] {
+        let left = lab.text(&format!("study/{table}.csv"));
+        assert!(!left.contains("seed1-P01-1") && left.contains("seed1-P01-2"), "{table}: {left}");
+    }
+}
+
 #[test]
 fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     let lab = RecordingsFolder::of_two_people("everywhere");

@@ -169,7 +169,9 @@ impl ForgetSearch {
         let is_recording = matches!(&owner, RecordingOwner::Participant { code, .. } if *code == self.found.code);
         let is_own = is_recording || (is_inside && matches!(owner, RecordingOwner::NoRecording));
         match owner {
-            RecordingOwner::Participant { code, began } => self.subject.add(folder, code, began),
+            RecordingOwner::Participant { code, recorded_as, began } => {
+                self.subject.add(folder, code, recorded_as, began);
+            }
             RecordingOwner::Unknown(reason) => self.leave(folder, reason),
             RecordingOwner::NoRecording => {}
         }

@@ -21,6 +21,8 @@ pub(super) const AMBIGUOUS: &str = "it names a recording, and recordings of seve
 pub(super) enum RecordingOwner {
     Participant {
         code: String,
+        /// The code in the log; another one if the code was corrected.
+        recorded_as: String,
         /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable
         /// header.
         began: Option<String>,
@@ -40,7 +42,7 @@ impl RecordingOwner {
         let settings = read_settings(folder);
         if !is_file(&log) {
             return match settings {
-                Some((code, true)) => RecordingOwner::Participant { code, began: None },
+                Some((code, true)) => RecordingOwner::Participant { recorded_as: code.clone(), code, began: None },
                 _ => RecordingOwner::NoRecording,
             };
         }
@@ -60,15 +62,16 @@ impl RecordingOwner {
                          hand, if it is the participant's",
                     );
                 };
-                let code = correction.map_or(code.to_string(), |correction| correction.after);
+                let recorded_as = code.to_string();
+                let code = correction.map_or(recorded_as.clone(), |correction| correction.after);
                 let simulated =
                     || Some(format!("seed {} trial {}", session["seed"].as_u64()?, header["trial"].as_u64()?));
                 let began = header["started"].as_str().map(str::to_string).or_else(simulated);
-                return RecordingOwner::Participant { code, began };
+                return RecordingOwner::Participant { code, recorded_as, began };
             }
         }
         match settings {
-            Some((code, _)) => RecordingOwner::Participant { code, began: None },
+            Some((code, _)) => RecordingOwner::Participant { recorded_as: code.clone(), code, began: None },
             None => RecordingOwner::Unknown(
                 "a recording that does not say whose it is: events.jsonl has no readable header, and session.toml is \
                  missing or damaged; it is to be deleted by hand, if it is the participant's",
@@ -106,6 +109,7 @@ pub(super) enum NamedPerson {
 struct KnownRecording {
     folder: PathBuf,
     code: String,
+    recorded_as: String,
     began: Option<String>,
 }
 
@@ -122,8 +126,8 @@ impl ForgetSubject {
     }
 
     /// Adds a recording, of the participant or of somebody else.
-    pub(super) fn add(&mut self, folder: &Path, code: String, began: Option<String>) {
-        let recording = KnownRecording { folder: folder.to_path_buf(), code, began };
+    pub(super) fn add(&mut self, folder: &Path, code: String, recorded_as: String, began: Option<String>) {
+        let recording = KnownRecording { folder: folder.to_path_buf(), code, recorded_as, began };
         self.recordings.entry(file_name(folder)).or_default().push(recording);
     }
 
@@ -133,6 +137,17 @@ impl ForgetSubject {
         name == self.code
             || (without_seed(name) == Some(&self.code)
                 && !self.recordings.values().flatten().any(|recording| recording.code == name))
+    }
+
+    /// Whether a row about this recording, with this name in its column of participants, means the participant: also
+    /// tables that were made before the recording's code was corrected.
+    pub(super) fn is_in_row(&self, name: &str, recording: Option<&str>) -> bool {
+        let as_recorded = |path: &str| {
+            let mut recordings = self.recordings.get(&file_name(Path::new(path))).into_iter().flatten();
+            self.recording(path) == NamedPerson::Subject
+                && recordings.any(|one| name == one.recorded_as || without_seed(name) == Some(&one.recorded_as))
+        };
+        self.is_participant(name) || recording.is_some_and(as_recorded)
     }
 
     /// To which person the recording with this name belongs. The name is that of the recording's folder, with parent

@@ -48,7 +48,8 @@ impl FolderTables {
             && let (Some(recording), Some(participant)) = (column(header, "recording"), column(header, "participant"))
         {
             for row in rows.iter().filter(|row| row.len() == header.len()) {
-                let is_subject = subject.is_participant(&String::from_utf8_lossy(&row[participant]));
+                let [name, of] = [participant, recording].map(|column| String::from_utf8_lossy(&row[column]));
+                let is_subject = subject.is_in_row(&name, Some(&of));
                 let whose = if is_subject { NamedPerson::Subject } else { NamedPerson::Other };
                 tables.recordings.insert(row[recording].to_vec(), whose);
             }
@@ -94,11 +95,16 @@ impl FolderTables {
                 )));
             }
             let whose = match (participant, recording) {
-                (Some(column), _) if subject.is_participant(&String::from_utf8_lossy(&row[column])) => {
-                    NamedPerson::Subject
+                (Some(column), of) => {
+                    let name = String::from_utf8_lossy(&row[column]);
+                    let recording = of.map(|column| String::from_utf8_lossy(&row[column]));
+                    match subject.is_in_row(&name, recording.as_deref()) {
+                        true => NamedPerson::Subject,
+                        false => NamedPerson::Other,
+                    }
                 }
                 (None, Some(column)) => self.whose(&row[column], subject),
-                _ => NamedPerson::Other,
+                (None, None) => NamedPerson::Other,
             };
             match whose {
                 NamedPerson::Subject => cut.push(start..end),

@@ -3,7 +3,7 @@
 //! The space bar stops the robot, so no byte that came before may keep it from doing so. The parsers of crossterm and of
 //! the crates derived from it drop the byte at which an escape sequence turns out to be invalid, and wait for the end of
 //! an incomplete one without a time limit. Here a space ends every incomplete sequence and counts as a key, except
-//! within a paste that ends; and after [`SILENCE`] without a byte, an incomplete sequence is given up. Bytes and times
+//! within a paste that ends; and after `SILENCE` without a byte, an incomplete sequence is given up. Bytes and times
 //! are given to the parser, so it depends neither on a clock nor on how the bytes are split into reads.
 
 use std::time::{Duration, Instant};

@@ -1,7 +1,7 @@
 //! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events.
 //!
 //! A log of hours has millions of gaze samples, so events are not kept in memory: they are read again from the file, a
-//! chunk of [`CHUNK`] events at a time, when the shown session comes there. What is kept are the places of the chunks, the
+//! chunk of `CHUNK` events at a time, when the shown session comes there. What is kept are the places of the chunks, the
 //! events at which a replay stops, and snapshots of the session, so that every move applies few events. The console can
 //! begin before the recording is read to its end.
 

@@ -53,8 +53,8 @@ impl RecordedTimeline {
         let mut timeline = RecordedTimeline { times: vec![None; times.len()], ..RecordedTimeline::default() };
         let runs = kept_runs(times, limits);
         let interval = median_interval(times).unwrap_or(0).max(0);
-        // Distances of the clocks so far, as they were set one after the other, from the axis.
-        let mut offsets: Vec<i128> = Vec::new();
+        // Distances from the axis of the clocks before the present one.
+        let mut earlier: Vec<i128> = Vec::new();
         let mut offset = 0;
         for (nth, run) in runs.iter().enumerate() {
             let first = times[run.start];
@@ -64,14 +64,14 @@ impl RecordedTimeline {
                     let gap = |offset: i128, before: i128| (first + offset - before).abs() >= limits.gap;
                     let end = times[last] + offset;
                     // A long gap of this clock that is none of an earlier one: the clock was set right again.
-                    let is_earlier = gap(offset, end) && offsets.iter().any(|&earlier| !gap(earlier, end));
-                    if is_earlier || !limits.follows(times[last], first) {
+                    let is_right_again = gap(offset, end) && earlier.iter().any(|&earlier| !gap(earlier, end));
+                    if is_right_again || !limits.follows(times[last], first) {
                         timeline.steps.push(RecordedClockStep { at: run.start, from: times[last], to: first });
+                        earlier.push(offset);
                         offset = end + interval - first;
                     }
                 }
             }
-            offsets.push(offset);
             run.clone().for_each(|index| timeline.times[index] = Some(times[index] + offset));
         }
         timeline.odd = (0..times.len()).filter(|&index| timeline.times[index].is_none()).collect();

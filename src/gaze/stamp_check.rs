@@ -38,8 +38,8 @@ const STEADY: f64 = 0.4;
 /// scene camera have the same stamp for less.
 const STANDS_S: f64 = 0.25;
 const STANDS: u32 = 5;
-/// Stamps go back if this share of them lies before the previous one, or if this share does by so much that the network
-/// is no reason, in this number of samples at least.
+/// Stamps go back if more than this share of them lies before the previous stamp; or if more than this smaller share lies
+/// so far before it that no delay in the network explains it. Both are shares of at least this number of samples.
 const BACK_SHARE: f64 = 0.75;
 const FAR_BACK_SHARE: f64 = 0.25;
 const BACK: u32 = 8;

@@ -93,7 +93,7 @@ fn read(path: &Path) -> Vec<(State, u32, u32)> {
     text.lines().filter(|line| !line.starts_with('#')).map(line).collect()
 }
 
-/// The searched cost is never too low, and too high for so many of the states (for one order, for all of them), by at most
+/// The searched cost is never too low. It is too high in `too_high` of the states (for one order, for all orders), by at most
 /// `most_off` presses. The proven cost is that of the exact search, for all of them.
 fn check(kitchen_name: &str, sample: &str, too_high: [usize; 2], most_off: u32) {
     let kitchen = kitchen(kitchen_name);

@@ -79,7 +79,7 @@ const ARM: [BidsColumn; 14] = [
     BidsColumn::new("seq", "Number of the sample in the log"),
 ];
 
-/// A table whose rows are so many that they are written as they come.
+/// A table with too many rows to keep in memory: each row is written at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LongTable {
     /// Gaze samples, in the order in which they were taken.

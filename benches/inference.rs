@@ -1,5 +1,5 @@
-//! How long inference takes, event by event, on recorded sessions, how much longer it takes where lapse and attention are
-//! learned, and how much longer its plain reference takes for the same events on the same machine.
+//! How long inference takes, event by event, on recorded sessions, and how much longer its plain reference takes for the
+//! same events on the same machine.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{AdaptationSettings, HumanModel};
+use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 
@@ -71,17 +71,13 @@ fn main() {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = Arc::new(read_kitchen(Path::new(layout)).expect("the layout loads").kitchen);
         let (mut fast, mut same, mut plain) = (Times::default(), Times::default(), Times::default());
-        let mut adapting = Times::default();
         for seed in 0..TRIALS {
             let observations = observed::recorded(&kitchen, 31 + seed, PRESSES);
             let mut cost = CostToGo::new(kitchen.clone());
             let mut filter = BeliefFilter::new(kitchen.clone(), HumanModel::default(), seed);
-            let model = HumanModel { adapt: AdaptationSettings::ALL, ..HumanModel::default() };
-            let (mut other_cost, mut learning) = (cost.clone(), BeliefFilter::new(kitchen.clone(), model, seed));
             for (index, observation) in observations.iter().enumerate() {
                 let took = observe(&mut filter, observation, &mut cost);
                 fast.add(observation, took);
-                adapting.add(observation, observe(&mut learning, observation, &mut other_cost));
                 if index < REFERENCE_EVENTS {
                     same.add(observation, took);
                 }
@@ -105,12 +101,6 @@ fn main() {
             plain.total() / same.total(),
             ratio(&plain.gaze, &same.gaze),
             ratio(&plain.press, &same.press),
-        );
-        println!(
-            "  with lapse and attention learned, in turn with the filter without: {:.2} times as long (gaze {:.2}, presses {:.2})",
-            adapting.total() / fast.total(),
-            ratio(&adapting.gaze, &fast.gaze),
-            ratio(&adapting.press, &fast.press),
         );
         println!("  {}", told("gaze", fast.gaze));
         println!("  {}", told("press", fast.press));

@@ -6,11 +6,11 @@ use std::error::Error;
 use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
-use tomcom::communication::available;
 use tomcom::communication::concept::{Concept, DecisionPoint};
 use tomcom::communication::planner::Planner;
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::Situation;
+use tomcom::communication::{HighlightSet, available};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{AspectId, Kitchen, OrderContent};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -34,7 +34,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let is_shrimp = |label: &String| f64::from(u8::from(label == "shrimp nigiri"));
     belief.aspects[aspect] = Dirichlet::new(kitchen.aspects[aspect].labels.iter().map(is_shrimp).collect(), 100.0);
 
-    let signals = available(&kitchen, state, false);
+    let signals = available(&kitchen, state, HighlightSet::usual(&kitchen));
     let mut spec = AssistantSpec::default();
     // Few, so that an unoptimised build answers at once; a session takes more.
     (spec.rollout.rollouts, spec.rollout.least_rollouts) = (32, 32);

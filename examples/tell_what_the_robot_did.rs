@@ -7,7 +7,7 @@ use std::sync::Arc;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::{Concept, DecisionPoint};
 use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::{available, planner::Planner, situation::Situation};
+use tomcom::communication::{HighlightSet, available, planner::Planner, situation::Situation};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
 use tomcom::mind::observation::{Observation, ObservedEvidence};
@@ -56,7 +56,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     println!("the board holds {}; P(truth) is {p_truth:.2}", kitchen.content_label(state, board));
 
     let mut planner = Planner::new(kitchen.clone(), &human, AssistantSpec::default(), 1);
-    let (signals, situation) = (available(&kitchen, state, false), Situation::new(state, filter.belief()));
+    let (signals, situation) =
+        (available(&kitchen, state, HighlightSet::usual(&kitchen)), Situation::new(state, filter.belief()));
     let (time, presses) = (SessionTime::from_secs_f64(seconds), ROBOT.len() as u32);
     let moment = DecisionPoint { seq: 0, time, presses, situation, signals: &signals, error: None };
     let advice = planner.advise(&mut cost, &moment);

@@ -29,7 +29,6 @@ mod tutorial_alone;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -39,17 +38,16 @@ use miette::MietteHandlerOpts;
 
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
-use self::output::{OutputFormat, print, put, put_aside, put_error};
+use self::output::{OutputFormat, print, put, put_error};
 use crate::analysis::kitchen_summary::{self, KitchenSummary};
 use crate::analysis::recording_summary::RecordingSummary;
 use crate::analysis::{event_lines, timing_summary};
-use crate::base::number_range::OutOfRange;
 use crate::base::printable::printable;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
-use crate::edge::log::{self, LogEnding, LogReader};
+use crate::edge::log::{self, LogEnding};
 use crate::run::plan::{self, StudyProgress};
 use crate::run::replay::RecordingReplay;
 use crate::run::review_console as console_over;
@@ -131,23 +129,8 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     print(args.format, &frozen, || frozen.describe())
 }
 
-/// Warns of recordings that have settings outside of the ranges that settings files allow.
-fn warn_of(recordings: &[PathBuf]) -> Result<(), Failure> {
-    for recording in recordings {
-        if let Some(OutOfRange { found, remedy, .. }) = LogReader::open(recording)?.unusual() {
-            let name = recording.display();
-            let warning = format!(
-                "{name}: recorded with {found}, outside of the range for settings files ({remedy}); used as recorded\n"
-            );
-            put_aside(&warning);
-        }
-    }
-    Ok(())
-}
-
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let args = &ReplayArgs { recordings: list::each_chosen(&args.recordings)?, ..args.clone() };
-    warn_of(&args.recordings)?;
     if args.check_beliefs {
         return estimates::check_beliefs(args);
     }

@@ -53,7 +53,7 @@
 //! use tomcom::base::time::SessionTime;
 //! use tomcom::communication::concept::{Concept, DecisionPoint};
 //! use tomcom::communication::settings::AssistantSpec;
-//! use tomcom::communication::{available, planner::Planner, situation::Situation};
+//! use tomcom::communication::{HighlightSet, available, planner::Planner, situation::Situation};
 //! use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
 //! use tomcom::mind::observation::{Observation, ObservedEvidence};
 //! use tomcom::mind::{filter::BeliefFilter, model::HumanModel};
@@ -87,7 +87,7 @@
 //!
 //! // Which signal is worth more than it costs.
 //! let mut planner = Planner::new(kitchen.clone(), &human, AssistantSpec::default(), 1);
-//! let (signals, situation) = (available(&kitchen, state, false), Situation::new(state, filter.belief()));
+//! let (signals, situation) = (available(&kitchen, state, HighlightSet::usual(&kitchen)), Situation::new(state, filter.belief()));
 //! let moment = DecisionPoint { seq: 3, time: SessionTime::ZERO, presses: 1, situation, signals: &signals, error: None };
 //! let advice = planner.advise(&mut cost, &moment);
 //! println!("{:?}: it saves {:?} presses", advice.best, advice.top().map(|option| option.benefit));

@@ -28,10 +28,6 @@ pub struct AdviceRequest {
     robot: RobotIntent,
     robot_press_s: f64,
     forecast: SignalReadingForecast,
-    /// How attentive the human is, as a multiple of the human model's rates.
-    attention: f64,
-    /// Probability of each order focus.
-    focus: Vec<f64>,
     /// The signals that can be sent at the time of the request.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
@@ -52,27 +48,12 @@ impl AdviceRequest {
             None => RobotIntent::Free,
         };
         let (state, robot_press_s) = (session.state, session.spec.robot.press_s);
-        let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
+        let signals = follower.repeats.allowed(&session.kitchen, session.highlights());
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();
-        let filter = &follower.filter;
-        let (forecast, attention, focus) = (filter.forecast(), filter.attention().expected(), filter.order_focus());
-        AdviceRequest {
-            seq,
-            time,
-            presses,
-            state,
-            belief,
-            changed,
-            robot,
-            robot_press_s,
-            forecast,
-            attention,
-            focus,
-            signals,
-            error,
-        }
+        let forecast = follower.filter.forecast();
+        AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, forecast, signals, error }
     }
 
     /// The request for advice in the form in which a communication concept receives it.
@@ -87,12 +68,10 @@ impl AdviceRequest {
             robot,
             robot_press_s,
             forecast,
-            attention,
-            ref focus,
             ref signals,
             error,
         } = *self;
-        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast, attention, focus };
+        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast };
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 

@@ -1,12 +1,9 @@
 //! The robustness table as text for the terminal: at most 125 characters wide, since few trials give shares beyond
 //! -100 %.
 
-use super::cohort_table::{AdaptationDifference, CohortPerformance, CohortRow, RobustnessTable};
+use super::cohort_table::{CohortRow, RobustnessTable};
 use crate::base::words::decimal;
 use crate::measures::flags::MOST_FALSE_FLAGS;
-
-/// Name of a cohort's second row.
-const ADAPTING: &str = "  adapting";
 
 /// Heading of the robustness table as text; the column of cohort names is `width` characters wide.
 pub fn heading(width: usize) -> String {
@@ -24,16 +21,10 @@ pub fn heading(width: usize) -> String {
     format!("{}\n{}\n", columns("", above), columns("cohort", below))
 }
 
-/// The rows of one cohort as text: without adaptation and, where measured, adapting to the person. The column of cohort
-/// names is `width` characters wide.
-pub fn describe_rows(row: &CohortRow, width: usize) -> String {
-    let without = format!("{:.1}", row.unassisted.related_per_100);
-    let orders = format!("{:.2}, ", row.unassisted.orders_per_minute);
-    let usual = describe(&row.cohort, [&without, &orders], &row.usual, width);
-    row.adapting.iter().fold(usual, |text, adapting| text + &describe(ADAPTING, ["", ""], adapting, width))
-}
-
-fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, width: usize) -> String {
+/// The row of one cohort as text. The column of cohort names is `width` characters wide.
+pub fn describe_row(of: &CohortRow, width: usize) -> String {
+    let name = &of.cohort;
+    let without = format!("{:.1}", of.unassisted.related_per_100);
     let (found, flags) = (&of.detection, &of.detection.flags);
     let flagged = match (flags.flagged_before_third_error, flags.episodes) {
         (Some(share), Some(episodes)) => format!("{share:.2} of {episodes}"),
@@ -46,7 +37,7 @@ fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, wi
         (Some(share), None) => format!("{:.0}", 100.0 * share),
         (None, _) => "-".to_string(),
     };
-    let orders = format!("{orders}{:.2}", of.assisted.orders_per_minute);
+    let orders = format!("{:.2}, {:.2}", of.unassisted.orders_per_minute, of.assisted.orders_per_minute);
     format!(
         "{name:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{without:>8}{:>6} {saved:>18}{:>8}{orders:>11}\n",
         decimal(found.auc_locations, 3),
@@ -60,58 +51,16 @@ fn describe(name: &str, [without, orders]: [&str; 2], of: &CohortPerformance, wi
     )
 }
 
-/// Width, in characters, of a table column that fits the longest of these names, and that of the second rows.
+/// Width, in characters, of a table column that fits the longest of these names and the heading.
 pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
-    names.map(|name| name.chars().count()).max().unwrap_or_default().max(ADAPTING.len()) + 1
+    names.map(|name| name.chars().count()).max().unwrap_or_default().max("cohort".len()) + 1
 }
 
-/// What adaptation changes, as a table with a row for each cohort; empty where adaptation is left out.
-fn describe_differences(table: &RobustnessTable) -> String {
-    if !table.is_adapted() {
-        return String::new();
-    }
-    let heading = "adapting less usual";
-    // Every cell begins with a space of its own.
-    let width = (name_width(table.cohorts.iter().map(|row| row.cohort.as_str())) - 1).max(heading.len());
-    let mut text = format!(
-        "\n{heading:<width$} {:>25} {:>25} {:>25} {:>19}\n",
-        "ROC places", "ROC recipes", "ECE", "saved, points"
-    );
-    let cell = |one: Option<AdaptationDifference>, scale: f64, digits: usize| {
-        let number = |value: f64| format!("{:+.digits$}", scale * value);
-        match one {
-            Some(AdaptationDifference { difference, interval: Some([from, to]) }) => {
-                format!("{} ({} to {})", number(difference), number(from), number(to))
-            }
-            Some(AdaptationDifference { difference, interval: None }) => number(difference),
-            None => "-".to_string(),
-        }
-    };
-    for row in &table.cohorts {
-        let Some(found) = &row.adaptation else { continue };
-        let areas =
-            [found.auc_locations, found.auc_recipes, found.ece].map(|one| format!(" {:>25}", cell(one, 1.0, 3)));
-        text += &format!("{:<width$}{} {:>19}\n", row.cohort, areas.concat(), cell(found.saved, 100.0, 0));
-    }
-    text
-}
-
-/// What adaptation changes, and an explanation of the robustness table's rows and columns, as text.
+/// An explanation of the robustness table's columns, as text.
 pub fn describe_end(table: &RobustnessTable) -> String {
-    describe_differences(table) + &legend(table)
-}
-
-fn legend(table: &RobustnessTable) -> String {
-    let rows = match table.is_adapted() {
-        true => {
-            "first row: with the parameters of the human model; adapting: lapse and attention are learned in each trial.\n"
-        }
-        false => "",
-    };
     format!(
         "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
          flags from as many trials of seed {}.\n\
-         {rows}\
          ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs.\n\
          ECE: expected calibration error, how far its predicted probabilities of a false belief are off.\n\
          flagged: false belief episodes of two or more errors that are flagged before the third; the thresholds allow \

@@ -1,7 +1,7 @@
 //! The robustness table: how well estimate and assistant do with cohorts of simulated people to whom the assistant's
-//! human model was not fitted, without and with adaptation to the person. The belief estimate is judged on unassisted
-//! trials; the thresholds for flagging false beliefs are chosen on trials with another seed. The assistant is judged by
-//! comparing the same trials without signals and with signals that the assistant sends by itself.
+//! human model was not fitted. The belief estimate is judged on unassisted trials; the thresholds for flagging false
+//! beliefs are chosen on trials with another seed. The assistant is judged by comparing the same trials without signals
+//! and with signals that the assistant sends by itself.
 
 use std::sync::Arc;
 
@@ -20,23 +20,17 @@ use crate::mind::choice_parameters::ChoiceParameters;
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
 
-/// Of a pair: the estimate by the parameters of the human model alone.
-pub const USUAL: usize = 0;
-/// Of a pair: the estimate that adapts its parameters to the person in each trial.
-pub const ADAPTING: usize = 1;
-
-/// Simulated trials of one cohort. Pairs are of the usual and the adapting estimate; where adaptation is left out, the
-/// second lists are empty.
+/// Simulated trials of one cohort.
 #[derive(Clone, Debug, Default)]
 pub struct CohortTrials {
     /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
-    pub chosen_on: [Vec<TrialBeliefs>; 2],
+    pub chosen_on: Vec<TrialBeliefs>,
     /// The presses of the judged trials without signals.
-    pub judged: [Vec<TrialBeliefs>; 2],
-    /// Summaries of the judged trials without signals, which do not depend on the estimate.
+    pub judged: Vec<TrialBeliefs>,
+    /// Summaries of the judged trials without signals.
     pub unassisted: Vec<TrialSummary>,
     /// Summaries of the judged trials, in the same order, repeated with signals that the assistant sends by itself.
-    pub assisted: [Vec<TrialSummary>; 2],
+    pub assisted: Vec<TrialSummary>,
 }
 
 /// Rates of errors, signals and served orders of one cohort, without signals or with the assistant.
@@ -52,11 +46,16 @@ pub struct CohortRates {
     pub orders_per_minute: f64,
 }
 
-/// How well estimate and assistant do with a cohort, without or with adaptation. Values that cannot be computed are
-/// null. An interval is one of 95 %, by a bootstrap over trials; it is null also where resamples leave its value
-/// unknown.
+/// Results of one cohort: a row of the robustness table. Values that cannot be computed are null. An interval is one of
+/// 95 %, by a bootstrap over trials; it is null also where resamples leave its value unknown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CohortPerformance {
+pub struct CohortRow {
+    /// Name of the cohort in the battery file.
+    pub cohort: String,
+    /// Number of trials on which the estimate and the assistant are judged.
+    pub trials: u64,
+    /// Rates of errors, signals and served orders in the trials without signals.
+    pub unassisted: CohortRates,
     /// How well the belief estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
     pub detection: FalseBeliefDetection,
@@ -77,48 +76,6 @@ pub struct CohortPerformance {
     pub saved_interval: Option<[f64; 2]>,
 }
 
-/// Difference of a measure between the adapting and the usual estimate on the same trials, with its 95 % interval by a
-/// bootstrap over trials.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct AdaptationDifference {
-    /// The adapting estimate's value minus that of the usual one.
-    pub difference: f64,
-    /// Interval of the difference.
-    pub interval: Option<[f64; 2]>,
-}
-
-/// What adaptation changes in one cohort; null where a measure is unknown.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct AdaptationEffect {
-    /// Difference of the areas under the ROC curves over locations.
-    pub auc_locations: Option<AdaptationDifference>,
-    /// Difference of the areas under the ROC curves over recipes.
-    pub auc_recipes: Option<AdaptationDifference>,
-    /// Difference of the expected calibration errors; below 0 where adaptation is better.
-    pub ece: Option<AdaptationDifference>,
-    /// Difference of the shares of errors from false beliefs that the assistant saves.
-    pub saved: Option<AdaptationDifference>,
-}
-
-/// Results of one cohort: two rows of the robustness table, or one where adaptation is left out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CohortRow {
-    /// Name of the cohort in the battery file.
-    pub cohort: String,
-    /// Number of trials on which the estimate and the assistant are judged.
-    pub trials: u64,
-    /// Rates of errors, signals and served orders in the trials without signals.
-    pub unassisted: CohortRates,
-    /// Estimate and assistant without adaptation.
-    #[serde(flatten)]
-    pub usual: CohortPerformance,
-    /// Estimate and assistant that learn lapse and attention of the person in each trial; null where adaptation is left
-    /// out.
-    pub adapting: Option<CohortPerformance>,
-    /// What adaptation changes; null where adaptation is left out.
-    pub adaptation: Option<AdaptationEffect>,
-}
-
 /// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom robustness`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobustnessTable {
@@ -130,13 +87,6 @@ pub struct RobustnessTable {
     pub cohorts: Vec<CohortRow>,
 }
 
-impl RobustnessTable {
-    /// Whether the adapting estimate was measured, too.
-    pub fn is_adapted(&self) -> bool {
-        self.cohorts.iter().any(|row| row.adapting.is_some())
-    }
-}
-
 /// Number of measures with intervals: areas of locations and recipes, calibration error, share of saved errors.
 const MEASURES: usize = 4;
 
@@ -144,86 +94,45 @@ impl CohortRow {
     /// Computes the results of one cohort from the cohort's trials.
     pub fn from_trials(kitchen: &Arc<Kitchen>, name: &str, trials: &CohortTrials) -> CohortRow {
         let count = trials.unassisted.len();
-        let errors = |assisted: &Vec<TrialSummary>| -> Vec<[RelatedErrors; 2]> {
-            let pairs = trials.unassisted.iter().zip(assisted);
-            pairs.map(|(without, with)| [without, with].map(RelatedErrors::from_trial)).collect()
-        };
-        let pairs = trials.assisted.each_ref().map(errors);
-        let scores = trials.judged.each_ref().map(|views| DetectionScores::from_trials(kitchen, views));
-        let is_measured = trials.assisted.each_ref().map(|assisted| !assisted.is_empty());
-        let measured = |times: &[f64]| -> [[f64; MEASURES]; 3] {
-            let of = |which: usize| match is_measured[which] {
-                true => measures(&scores[which], &pairs[which], times),
-                false => [f64::NAN; MEASURES],
-            };
-            let (usual, adapting) = (of(USUAL), of(ADAPTING));
-            [usual, adapting, std::array::from_fn(|index| adapting[index] - usual[index])]
-        };
+        let pairs = trials.unassisted.iter().zip(&trials.assisted);
+        let pairs: Vec<[RelatedErrors; 2]> =
+            pairs.map(|(without, with)| [without, with].map(RelatedErrors::from_trial)).collect();
+        let scores = DetectionScores::from_trials(kitchen, &trials.judged);
+        let measured = |times: &[f64]| measures(&scores, &pairs, times);
         let indices: Vec<usize> = (0..count).collect();
-        let ends: [[f64; 2]; 3 * MEASURES] = intervals(&indices, SEED, |drawn| {
-            let measured = measured(&occurrences(drawn, count));
-            std::array::from_fn(|index| measured[index / MEASURES][index % MEASURES])
-        });
+        let ends: [[f64; 2]; MEASURES] = intervals(&indices, SEED, |drawn| measured(&occurrences(drawn, count)));
         let values = measured(&vec![1.0; count]);
         // A resample without false beliefs, or without errors, leaves a measure unknown: trials of which more than a few
         // resamples are like that are too few for an interval.
-        let interval = |of: usize, measure: usize| {
-            let is_known = values[of][measure].is_finite();
-            Some(ends[of * MEASURES + measure]).filter(|ends| is_known && ends.iter().all(|end| end.is_finite()))
+        let interval = |measure: usize| {
+            let is_known = values[measure].is_finite();
+            Some(ends[measure]).filter(|ends| is_known && ends.iter().all(|end| end.is_finite()))
         };
-        let performance = |of: usize| {
-            let bounds: [Option<[f64; 2]>; MEASURES] = std::array::from_fn(|measure| interval(of, measure));
-            CohortPerformance::new(kitchen, trials, of, values[of][MEASURES - 1], bounds)
-        };
-        let difference = |measure: usize| {
-            let difference = values[2][measure];
-            let interval = interval(2, measure);
-            difference.is_finite().then_some(AdaptationDifference { difference, interval })
-        };
+        let [auc_locations_interval, auc_recipes_interval, ece_interval, saved_interval] =
+            std::array::from_fn(interval);
+        let thresholds = chosen_thresholds(&trials.chosen_on, &aspect_groups(kitchen)).map(ThresholdChoice::Given);
+        // Every trial of a cohort is of another participant.
+        let participants: Vec<usize> = (0..trials.judged.len()).collect();
+        let mut cost = CostToGo::new(kitchen.clone());
+        let choice = ChoiceParameters::default();
         CohortRow {
             cohort: name.to_string(),
             trials: count as u64,
             unassisted: CohortRates::from_trials(&trials.unassisted),
-            usual: performance(USUAL),
-            adapting: is_measured[ADAPTING].then(|| performance(ADAPTING)),
-            adaptation: is_measured[ADAPTING].then(|| AdaptationEffect {
-                auc_locations: difference(0),
-                auc_recipes: difference(1),
-                ece: difference(2),
-                saved: difference(3),
-            }),
-        }
-    }
-}
-
-impl CohortPerformance {
-    fn new(
-        kitchen: &Arc<Kitchen>,
-        trials: &CohortTrials,
-        of: usize,
-        saved: f64,
-        intervals: [Option<[f64; 2]>; MEASURES],
-    ) -> CohortPerformance {
-        let thresholds = chosen_thresholds(&trials.chosen_on[of], &aspect_groups(kitchen)).map(ThresholdChoice::Given);
-        // Every trial of a cohort is of another participant.
-        let participants: Vec<usize> = (0..trials.judged[of].len()).collect();
-        let [auc_locations_interval, auc_recipes_interval, ece_interval, saved_interval] = intervals;
-        let (views, mut cost) = (&trials.judged[of], CostToGo::new(kitchen.clone()));
-        CohortPerformance {
-            detection: FalseBeliefDetection::from_trials(kitchen, views, thresholds),
+            detection: FalseBeliefDetection::from_trials(kitchen, &trials.judged, thresholds),
             auc_locations_interval,
             auc_recipes_interval,
             ece_interval,
             log_likelihood: PressLogLikelihood::from_trials(
                 kitchen,
                 &mut cost,
-                &ChoiceParameters::default(),
-                views,
+                &choice,
+                &trials.judged,
                 &participants,
                 SEED,
             ),
-            assisted: CohortRates::from_trials(&trials.assisted[of]),
-            saved: Some(saved).filter(|share| share.is_finite()),
+            assisted: CohortRates::from_trials(&trials.assisted),
+            saved: Some(values[MEASURES - 1]).filter(|share| share.is_finite()),
             saved_interval,
         }
     }

@@ -45,8 +45,7 @@ impl SenderComparer {
         let comparison = self.follower.comparison(true);
         let is_wizards = self.session().spec.trial.condition == Condition::Wizard;
         let wizard = is_wizards.then(|| self.wizard.figures(&self.follower.follower));
-        let offers = self.session().makes_offers.then(|| TimedOffer::visible(self.session()));
-        let offers = offers.map(|offers| OfferSummary::from_offers(&offers));
+        let offers = OfferSummary::from_offers(&TimedOffer::visible(self.session()));
         RecordingSenderComparison { recording, follower: self.follower, standing, comparison, wizard, offers }
     }
 }
@@ -63,8 +62,8 @@ pub struct RecordingSenderComparison {
     pub comparison: SenderComparison,
     /// Summary of the wizard's signals; `None` where nobody could send signals.
     pub wizard: Option<WizardSummary>,
-    /// Statistics of the offers that a wizard could see; `None` in recordings without offers.
-    pub offers: Option<OfferSummary>,
+    /// Statistics of the offers that a wizard could see.
+    pub offers: OfferSummary,
 }
 
 impl RecordingSenderComparison {

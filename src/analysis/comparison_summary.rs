@@ -64,7 +64,7 @@ pub struct RecordingComparison {
     /// Summary of the wizard's signals; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     /// Statistics of the offers that a wizard could see; null in recordings without offers.
-    pub offers: Option<OfferSummary>,
+    pub offers: OfferSummary,
     /// Communications of one sender that the other sender did not match.
     pub differences: Vec<UnmatchedCommunicationSummary>,
 }
@@ -271,7 +271,7 @@ pub fn describe(figures: &ComparisonSummary, request: &SenderComparisonSettings)
             text += &format!("left out of the analysis: {}\n", one.standing.describe());
         }
         text += &one.wizard.as_ref().map_or(String::new(), wizard_log::describe);
-        text += &one.offers.as_ref().map_or(String::new(), OfferSummary::describe);
+        text += &one.offers.describe();
         text += &describe_differences(&one.differences);
         // The printed context is that of the session's own concept, if the session has one.
         if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {

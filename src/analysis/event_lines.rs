@@ -12,7 +12,6 @@ use crate::kitchen::{Agent, Kitchen};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
 use crate::mind::{AspectBelief, RecordedBelief};
-use crate::robot::IdleReason;
 use crate::robot::safety::SafetyMode;
 use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
@@ -60,14 +59,9 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::HumanWaits { silent_ns } => {
             format!("participant has not pressed for {:.1} s, unusually long", silent_ns.as_secs_f64())
         }
-        Event::SeemsUnaware { aspect } => format!("participant seems unaware of {}, by its gaze", said(aspect)),
         Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
-        Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
-        Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can act now".to_string(),
-        Event::RobotIdles { reason: IdleReason::Skipped } => {
-            "robot idles: its only possible press was skipped".to_string()
-        }
+        Event::RobotIdles { reason, waits_for } => format!("robot {}", wording::idle(*reason, waits_for)),
         // Changes between normal and reduced speed get no line: the arm slows near the hand and speeds up again too
         // often.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,

@@ -2,11 +2,10 @@
 //! Live sessions and replays derive these with the same code.
 
 use crate::base::time::SessionTime;
-use crate::communication::recommendation::aspects_told;
+use crate::communication::Signal;
 use crate::communication::repeats::SignalRepeatRule;
-use crate::communication::{Signal, unavailable};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange, Press, State};
+use crate::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::{ErrorAttributor, ErrorCause};
 use crate::measures::errors::PressJudge;
@@ -17,11 +16,8 @@ use crate::mind::filter::signals_so_far::EndedSignal;
 use crate::mind::filter::{BeliefFilter, PressEvidence};
 use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 use crate::mind::recorded_estimate::RecordedEstimate;
-use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
-use crate::session::gaze_awareness::UnawarenessDetector;
 use crate::session::probes::{ProbeEvent, ProbeSubject, StartedProbe};
-use crate::session::silence::USUAL_SHARE;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent, apply};
 
@@ -44,8 +40,6 @@ pub struct SessionFollower {
     pub cost: CostToGo,
     judge: PressJudge,
     attributor: ErrorAttributor,
-    /// State of the judgement by gaze of which changes the human seems unaware.
-    awareness: UnawarenessDetector,
     /// Session time of the last update of the belief estimate.
     updated_at: Option<SessionTime>,
     /// Recorded belief of the participant before its next press.
@@ -131,7 +125,6 @@ impl SessionFollower {
             cost,
             judge,
             attributor,
-            awareness: UnawarenessDetector::default(),
             updated_at: None,
             belief,
             told_cause,
@@ -152,12 +145,6 @@ impl SessionFollower {
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         let is_current = self.updated_at.is_some_and(|updated| updated >= now);
         self.filter.foreseen(now, is_current, &mut self.cost)
-    }
-
-    /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant was not asked for
-    /// advice about that aspect yet.
-    pub fn unaware(&self) -> Option<AspectId> {
-        self.awareness.unaware()
     }
 
     /// Applies the next event to the session, and updates judgements and belief estimate.
@@ -193,32 +180,7 @@ impl SessionFollower {
             self.judge.postpone(pause);
         }
         self.estimate(stamped, &applied.change);
-        self.watch_gaze(&stamped.event);
         Ok(applied)
-    }
-
-    /// Judges by gaze which change the human seems unaware of, in sessions that ask the assistant when gaze passes over
-    /// a change.
-    fn watch_gaze(&mut self, event: &Event) {
-        let session = &self.session;
-        if !session.spec.notes_unawareness() || !session.is_running() {
-            return;
-        }
-        let belief = self.filter.belief();
-        match event {
-            Event::TrialStarted => self.awareness = UnawarenessDetector::default(),
-            Event::Gaze(sample) if session.gaze.fault.is_none() => {
-                let (kitchen, state) = (&session.kitchen, session.state);
-                let tells = |signal: &Signal, aspect| {
-                    unavailable(kitchen, state, signal).is_none()
-                        && aspects_told(kitchen, state, signal).contains(&aspect)
-                };
-                let signals = || self.repeats.allowed(kitchen, session.spec.signals.own_hand);
-                self.awareness.looked(session, belief, sample, |aspect| signals().iter().any(|one| tells(one, aspect)));
-            }
-            event if leads_to_advice(session, event) => self.awareness.asked(session, belief),
-            _ => {}
-        }
     }
 
     /// Updates the belief estimate by an event that has just been applied.
@@ -297,9 +259,6 @@ impl SessionFollower {
                 let over = self.session.probes.over.last()?;
                 let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
                 Some(ObservedEvidence::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
-            }
-            Event::HumanWaits { .. } if self.session.spec.human.inference.waiting => {
-                Some(ObservedEvidence::Waited { longer: 1.0 - USUAL_SHARE })
             }
             Event::SignalShown { signal: Signal::Propose(presses), .. } => {
                 let button = |name: &String| self.session.kitchen.button_named(Agent::Human, name);

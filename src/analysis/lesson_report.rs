@@ -96,7 +96,7 @@ pub fn hear(belief: &mut HarmfulFalseBelief, session: &Session, aspect: AspectId
         unavailable(kitchen, session.state, signal).is_none()
             && aspects_told(kitchen, session.state, signal).contains(&aspect)
     };
-    let right = signals(kitchen, session.spec.signals.own_hand).into_iter().map(|(_, signal)| signal).find(tells);
+    let right = signals(kitchen, session.spec.highlights(kitchen)).into_iter().map(|(_, signal)| signal).find(tells);
     belief.signal = right.or(belief.signal.take());
 }
 
@@ -202,7 +202,7 @@ pub fn describe(record: &WizardTrainingRecord, path: &Path) -> String {
     text.extend(lines(&recordings, &record.criterion).iter().map(|line| format!("{line}\n")));
     let met = if record.met { "met" } else { "not met" };
     let speed = match record.speed {
-        Some(speed) if speed != 1.0 => format!(", played {speed} times as fast as it was"),
+        speed if speed != 1.0 => format!(", played {speed} times as fast as it was"),
         _ => String::new(),
     };
     text += &format!("criterion {met}; {:.1} minutes{speed}\nrecorded in {}\n", record.minutes, path.display());

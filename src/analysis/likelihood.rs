@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::fitting::downhill_simplex::minimise;
+use super::fitting::response_surface::{REACH, surface};
 use super::trial_bootstrap::interval;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
@@ -12,10 +12,12 @@ use crate::measures::belief_detection::{BeliefsBeforePress, TrialBeliefs};
 use crate::mind::ChoiceModel;
 use crate::mind::choice_parameters::ChoiceParameters;
 
-/// Tolerance of the fit of the baseline "informed human", in nats per press.
+/// Gain below which the fit of the baseline "informed human" takes a finer surface, or ends, in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;
-/// Largest number of iterations of the fit of the baseline "informed human".
-const MOST_ITERATIONS: usize = 200;
+/// First and last step of the surfaces of that fit.
+const STEPS: [f64; 2] = [0.5, 0.05];
+/// Largest number of surfaces of that fit.
+const MOST_SURFACES: usize = 60;
 
 /// Mean log probability of the human's presses under the model and two baselines, in nats per press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -58,7 +60,7 @@ impl PressLogLikelihood {
         let with = |at: &[f64]| ChoiceParameters { tau: at[0].exp(), lapse: logistic(at[1]), ..model.clone() };
         let start = [model.tau.ln(), logit(model.lapse)];
         let loss = |at: &[f64]| -total(&with(at), cost).iter().sum::<f64>() / presses;
-        let best = with(&minimise(loss, &start, &[-0.5, 0.5], TOLERANCE_NATS, MOST_ITERATIONS).at);
+        let best = with(&least(loss, start));
         let informed = total(&best, cost);
         let estimated: Option<Vec<f64>> = trials
             .iter()
@@ -86,6 +88,24 @@ impl PressLogLikelihood {
     }
 }
 
+/// Where a loss without noise is least: each step leads to the minimum of a quadratic surface.
+fn least(mut loss: impl FnMut(&[f64]) -> f64, mut at: [f64; 2]) -> [f64; 2] {
+    let mut step = STEPS[0];
+    for _ in 0..MOST_SURFACES {
+        let Some(surface) = surface(&mut loss, &at, &[step; 2]) else { break };
+        let by = surface.least(&[-REACH; 2], &[REACH; 2]);
+        at.iter_mut().zip(&by).for_each(|(at, by)| *at += by * step);
+        if surface.value - surface.at(&by) > TOLERANCE_NATS {
+            continue;
+        }
+        if step <= STEPS[1] {
+            break;
+        }
+        step = (step / 4.0).max(STEPS[1]);
+    }
+    at
+}
+
 /// Log probability of a press by a human who knows the true world.
 fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &BeliefsBeforePress) -> f64 {
     let truth = WeightedWorlds::certain(World::with_true_recipes(kitchen, press.state));
@@ -105,4 +125,18 @@ fn logistic(x: f64) -> f64 {
 fn ratio(pairs: &[(f64, f64)]) -> f64 {
     let (gain, presses) = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
     gain / presses
+}
+
+#[cfg(test)]
+mod tests {
+    use super::least;
+
+    #[test]
+    fn the_bottom_of_a_bent_valley_is_found_and_a_slope_without_an_end_is_left() {
+        let bent = |at: &[f64]| (at[0] - 1.3).cosh() + (at[1] - at[0].powi(2) / 4.0 + 2.0).powi(2);
+        let found = least(bent, [3.0, 2.0]);
+        assert!((found[0] - 1.3).abs() < 1e-3 && (found[1] + 1.5775).abs() < 2e-3, "{found:?}");
+        let found = least(|at| (-at[0]).exp() + at[1].powi(2), [0.0, 1.0]);
+        assert!(found[0] > 10.0 && found[1].abs() < 1e-3, "{found:?}");
+    }
 }

@@ -16,9 +16,8 @@ pub struct WizardTrainingRecord {
     pub at: String,
     /// Duration of the training, in minutes.
     pub minutes: f64,
-    /// Playback speed as a multiple of real time; null in older records, which lack the speed.
-    #[serde(default)]
-    pub speed: Option<f64>,
+    /// Playback speed as a multiple of real time.
+    pub speed: f64,
     /// Criterion for passing the training.
     pub criterion: TrainingCriterion,
     /// Whether the wizard met the criterion over all recordings that were watched to their end.
@@ -41,7 +40,6 @@ pub struct WatchedRecording {
     /// Signals that the wizard sent while watching, with their judgements.
     pub signals: Vec<JudgedSignal>,
     /// False beliefs that led to errors, among those that began in the part that was watched.
-    #[serde(default)]
     pub beliefs: Vec<HarmfulFalseBelief>,
     /// Measures of the wizard's performance: hits and wrong signals.
     pub measures: WizardMeasures,
@@ -60,9 +58,7 @@ pub struct JudgedSignal {
     pub clock_ns: SessionTime,
     /// The signal that the wizard sent.
     pub signal: Signal,
-    /// Judgement of the signal: "hit", "again", "harmless", "late", "wrong" or "needless"; empty in older records,
-    /// which lack the judgement.
-    #[serde(default)]
+    /// Judgement of the signal: "hit", "again", "harmless", "late", "wrong" or "needless".
     pub worth: String,
 }
 

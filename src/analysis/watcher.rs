@@ -247,12 +247,12 @@ impl SenderComparisonFollower {
         self.asked += 1;
         let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
         let session = &self.follower.session;
-        let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
+        let (kitchen, highlights) = (session.kitchen.clone(), session.highlights());
         let belief = estimate(&self.follower, &self.counterfactuals);
         let shown = &self.shown;
         let answer = |voice: &mut Voice| {
-            let mut signals = shown.allowed(&kitchen, own_hand);
-            let unsaid = voice.repeats.allowed(&kitchen, own_hand);
+            let mut signals = shown.allowed(&kitchen, highlights);
+            let unsaid = voice.repeats.allowed(&kitchen, highlights);
             signals.retain(|signal| unsaid.contains(signal));
             voice.advisor.answer(&question.about(belief, signals))
         };

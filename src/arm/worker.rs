@@ -11,7 +11,7 @@ use super::report::PressFailure;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{ButtonId, Kitchen, State};
+use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 use crate::robot::policy::{self, PolicyDecision};
 use crate::robot::{AbortReason, IdleReason, RobotEvent};
 
@@ -28,6 +28,24 @@ struct OngoingPress {
     driven: bool,
 }
 
+impl OngoingPress {
+    /// Whether the arm makes the press in this state.
+    fn is_useful(self, kitchen: &Kitchen, cost: &mut CostToGo, state: State, is_passive: bool) -> bool {
+        self.driven || policy::is_useful(kitchen, cost, state, is_passive, self.button)
+    }
+}
+
+/// What the robot reported when it became idle, and the situation in which it decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Idleness {
+    reason: IdleReason,
+    /// The human's presses for one of which the robot waits, as a bit set of the human's buttons.
+    waits_for: u64,
+    state: State,
+    /// Whether the human was passive.
+    is_passive: bool,
+}
+
 /// The robot at work: it decides on presses and carries them out with its arm; the robot can be idle, held or stopped.
 #[derive(Clone, Debug)]
 pub struct RobotTaskExecutor {
@@ -42,18 +60,24 @@ pub struct RobotTaskExecutor {
     driven: Option<ButtonId>,
     /// Presses that were skipped or failed, each with the time until which the robot does not choose the press.
     skipped: Vec<(ButtonId, SessionTime)>,
-    /// The last reported reason for being idle, and the state of the kitchen at the last decision.
-    idle: Option<(IdleReason, State)>,
+    /// What the robot last reported about being idle.
+    idle: Option<Idleness>,
+    /// Time without a press of the human after which the human counts as passive.
+    initiative: SessionTime,
+    /// The time from which the human counts as passive if the human does not press before.
+    passive_from: SessionTime,
     /// The simulated arm in the physics; none for the timed arm.
     body: Option<Box<SimulatedArm>>,
 }
 
 impl RobotTaskExecutor {
     /// A robot at rest with a timed arm. `press_s` is the median duration of a press in seconds, `spread` the standard
-    /// deviation of its logarithm.
-    pub fn new(press_s: f64, spread: f64, seed: u64, trial: u64) -> RobotTaskExecutor {
+    /// deviation of its logarithm; after `initiative_s` seconds without a press of the human the robot takes the
+    /// initiative.
+    pub fn new(press_s: f64, spread: f64, initiative_s: f64, seed: u64, trial: u64) -> RobotTaskExecutor {
         let median = press_s.max(0.05);
         let duration_s = LogNormal::new(median.ln(), spread.clamp(0.0, 2.0)).expect("a finite mean and spread");
+        let initiative = SessionTime::from_secs_f64(initiative_s);
         RobotTaskExecutor {
             random: stream(seed, "robot", trial),
             duration_s,
@@ -63,6 +87,8 @@ impl RobotTaskExecutor {
             driven: None,
             skipped: Vec::new(),
             idle: None,
+            initiative,
+            passive_from: initiative,
             body: None,
         }
     }
@@ -79,12 +105,16 @@ impl RobotTaskExecutor {
     }
 
     /// The time of the robot's next action: a touch of the button, a controller cycle, or a new decision after a
-    /// skipped press. The time may have passed already: a held arm touches the button as soon as the arm is released.
+    /// skipped press or once the human is passive. The time may have passed already: a held arm touches the button as
+    /// soon as the arm is released.
     pub fn next_due(&self) -> Option<SessionTime> {
-        let again = match (self.busy, self.idle) {
-            (None, Some((IdleReason::Skipped, _))) if !self.held => self.skipped.iter().map(|(_, until)| *until).min(),
-            _ => None,
-        };
+        let idle = self.idle.filter(|_| self.busy.is_none() && !self.held);
+        let unskips = self.skipped.iter().map(|(_, until)| *until).min();
+        let again = idle.and_then(|idle| match idle.reason {
+            IdleReason::Skipped => unskips,
+            IdleReason::HumanTurn => (!idle.is_passive).then_some(self.passive_from),
+            IdleReason::NoOrder => None,
+        });
         let moves = match (&self.body, self.busy) {
             (Some(body), _) => body.next_due(!self.waits()),
             (None, Some(ongoing)) => (!self.held || ongoing.driven).then_some(ongoing.until),
@@ -118,20 +148,33 @@ impl RobotTaskExecutor {
         if self.skipped.len() < skipped {
             self.idle = None;
         }
-        if self.held || self.idle.is_some_and(|(_, decided)| decided == state) {
+        let is_passive = self.is_passive(now);
+        if self.held || self.idle.is_some_and(|idle| (idle.state, idle.is_passive) == (state, is_passive)) {
             return None;
         }
         let skipped: Vec<ButtonId> = self.skipped.iter().map(|(button, _)| *button).collect();
-        match policy::decide(kitchen, cost, state, &skipped, &mut self.random) {
+        match policy::decide(kitchen, cost, state, is_passive, &skipped, &mut self.random) {
             PolicyDecision::Press(button) => Some(self.set_out(now, button, false)),
             PolicyDecision::Idle(reason) => {
                 if let Some(body) = &mut self.body {
                     body.has_nothing_to_do();
                 }
-                let said = self.idle.replace((reason, state)).map(|(said, _)| said);
-                (said != Some(reason)).then_some(RobotEvent::Idle(reason))
+                let waits_for = match reason {
+                    IdleReason::HumanTurn => {
+                        cost.nearer(Fidelity::Searched, state, &kitchen.true_recipes(), Agent::Human)
+                    }
+                    IdleReason::NoOrder | IdleReason::Skipped => 0,
+                };
+                let told = self.idle.replace(Idleness { reason, waits_for, state, is_passive });
+                let is_new = told.is_none_or(|told| (told.reason, told.waits_for) != (reason, waits_for));
+                is_new.then_some(RobotEvent::Idle { reason, waits_for })
             }
         }
+    }
+
+    /// Whether the human has not pressed for so long that the robot takes the initiative.
+    fn is_passive(&self, now: SessionTime) -> bool {
+        now >= self.passive_from
     }
 
     fn set_out(&mut self, now: SessionTime, button: ButtonId, driven: bool) -> RobotEvent {
@@ -153,15 +196,21 @@ impl RobotTaskExecutor {
 
     /// Carries out the robot's action that is due: a touch of the timed arm, or a cycle of the simulated arm.
     pub fn act(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, now: SessionTime, state: State) -> Vec<RobotEvent> {
-        let may_press = !self.waits();
-        let Some(body) = &mut self.body else { return self.touch(kitchen, cost, state).into_iter().collect() };
+        let (may_press, is_passive) = (!self.waits(), self.is_passive(now));
+        let Some(body) = &mut self.body else {
+            return self.touch(kitchen, cost, state, is_passive).into_iter().collect();
+        };
         let mut events = Vec::new();
+        // Only a new decision is due, which follows; an arm whose cycle is not due would move too fast.
+        if body.next_due(may_press).is_none_or(|due| due > now) {
+            return events;
+        }
         if let Some((button, why)) = body.go_on() {
             events.extend(self.go_without(now, button, why));
             return events;
         }
         if let Some(ongoing) = self.busy.filter(|_| body.asks(may_press, state)) {
-            match is_useful(kitchen, cost, state, ongoing) {
+            match ongoing.is_useful(kitchen, cost, state, is_passive) {
                 true => body.go_for_it(may_press, state),
                 false => {
                     body.give_up();
@@ -211,20 +260,26 @@ impl RobotTaskExecutor {
         self.idle = None;
     }
 
-    /// Lets the timed arm touch the button. The arm presses if the press is still among the best presses or the wizard
-    /// chose the press; otherwise the arm abandons the press.
-    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotEvent> {
+    /// Lets the timed arm touch the button. The arm presses if the press is still useful or the wizard chose the press;
+    /// otherwise the arm abandons the press.
+    fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State, is_passive: bool) -> Option<RobotEvent> {
         let ongoing = self.busy.take()?;
-        match is_useful(kitchen, cost, state, ongoing) {
+        match ongoing.is_useful(kitchen, cost, state, is_passive) {
             true => Some(RobotEvent::Press(ongoing.button)),
             false => Some(RobotEvent::Abort(ongoing.button, AbortReason::NoLongerUseful)),
         }
     }
 
     /// Reacts to a change of the state without a press: a press that is no longer useful is abandoned at once.
-    pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotEvent> {
+    pub fn reconsider(
+        &mut self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        now: SessionTime,
+        state: State,
+    ) -> Option<RobotEvent> {
         let ongoing = self.busy?;
-        match is_useful(kitchen, cost, state, ongoing) {
+        match ongoing.is_useful(kitchen, cost, state, self.is_passive(now)) {
             true => None,
             false => self.give_up(AbortReason::NoLongerUseful),
         }
@@ -280,8 +335,15 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// Tells the simulated hand that the person has pressed the button at this position on the table (metres).
+    /// Starts the robot's work at the start of the trial.
+    pub fn start(&mut self, now: SessionTime) {
+        self.passive_from = now + self.initiative;
+    }
+
+    /// Tells the robot, and the simulated hand, that the person has pressed the button at this position on the table
+    /// (metres).
     pub fn human_pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
+        self.passive_from = now + self.initiative;
         if let Some(body) = &mut self.body {
             body.human_pressed(now, button_m);
         }
@@ -303,15 +365,9 @@ impl RobotTaskExecutor {
         for (_, until) in &mut self.skipped {
             *until = *until + by;
         }
+        self.passive_from = self.passive_from + by;
         if let Some(body) = &mut self.body {
             body.postpone(by);
         }
     }
-}
-
-/// Whether a press of the robot is among the best presses, or the wizard chose the press.
-fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, ongoing: OngoingPress) -> bool {
-    let best =
-        |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Searched, state, &kitchen.true_recipes());
-    ongoing.driven || best(cost).contains(&ongoing.button)
 }

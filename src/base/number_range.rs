@@ -5,15 +5,6 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-/// The bounds of a number that must be above 0.
-pub const ABOVE_0: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
-/// The bounds of a number that must be 0 or above.
-pub const NOT_NEGATIVE: [f64; 2] = [0.0, f64::MAX];
-/// The bounds of a number between 0 and 1, both excluded.
-pub const INSIDE_0_AND_1: [f64; 2] = [f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0];
-/// The bounds of a number that may have any finite value.
-pub const ANY: [f64; 2] = [f64::MIN, f64::MAX];
-
 /// The allowed range of one number of a settings file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NumberRange {
@@ -30,9 +21,6 @@ pub struct NumberRange {
     pub unit: &'static str,
     /// Why values below or above the range are not allowed.
     pub reason: &'static str,
-    /// Bounds for the same number in the header of a recording, which may be wider: earlier versions of the program
-    /// allowed other ranges in files.
-    pub recorded: [f64; 2],
 }
 
 /// Error: a number of a settings file is outside of its allowed range.
@@ -49,36 +37,20 @@ pub struct OutOfRange {
     pub place: Option<Range<usize>>,
 }
 
-/// Whether a setting is 0, in which case files and headers leave it out.
-pub fn is_zero(number: &f64) -> bool {
-    *number == 0.0
-}
-
 impl NumberRange {
-    /// The allowed range of a decimal number; recordings have the same range as files.
+    /// The allowed range of a decimal number.
     pub const fn real(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {
-        NumberRange { path, least: range[0], most: range[1], is_whole: false, unit, reason, recorded: range }
+        NumberRange { path, least: range[0], most: range[1], is_whole: false, unit, reason }
     }
 
-    /// The allowed range of a whole number; recordings have the same range as files.
+    /// The allowed range of a whole number.
     pub const fn whole(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {
-        NumberRange { path, least: range[0], most: range[1], is_whole: true, unit, reason, recorded: range }
-    }
-
-    /// This range for files, with a range of its own for the headers of recordings.
-    pub const fn recorded(self, recorded: [f64; 2]) -> NumberRange {
-        NumberRange { recorded, ..self }
+        NumberRange { path, least: range[0], most: range[1], is_whole: true, unit, reason }
     }
 
     /// Whether a settings file may have this value.
     pub fn holds(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
-    }
-
-    /// Whether the header of a recording may have this value.
-    pub fn may_be_recorded(&self, value: f64) -> bool {
-        let [least, most] = self.recorded;
-        (least..=most).contains(&value)
     }
 
     /// The error message for a value outside of the range.
@@ -165,23 +137,7 @@ fn collect(value: &toml::Value, path: &str, found: &mut Vec<(String, f64)>) {
 /// # Errors
 /// The first number outside of its range.
 pub fn check_file(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
-    check(ranges, numbers, NumberRange::holds)
-}
-
-/// Checks that the header of a recording may have all these numbers.
-///
-/// # Errors
-/// The first number outside of its range.
-pub fn check_recorded(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
-    check(ranges, numbers, NumberRange::may_be_recorded)
-}
-
-fn check(
-    ranges: &[NumberRange],
-    numbers: &[(String, f64)],
-    is_right: fn(&NumberRange, f64) -> bool,
-) -> Result<(), OutOfRange> {
     let ranged = numbers.iter().filter_map(|(path, value)| Some((range_of(ranges, path)?, path, *value)));
-    let mut wrong = ranged.filter(|(range, _, value)| !is_right(range, *value));
+    let mut wrong = ranged.filter(|(range, _, value)| !range.holds(*value));
     wrong.next().map_or(Ok(()), |(range, path, value)| Err(range.violation(path, value)))
 }

@@ -168,9 +168,9 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
     /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5,
-    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off, asks=presses,silence,gaze,silence+gaze,
-    /// waiting=on,off. Several settings make a grid. The assistant sends the signals unless --condition says otherwise.
-    /// With a plan, its settings apply, and every trial has another participant.
+    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several settings make a grid. The assistant sends
+    /// the signals unless --condition says otherwise. With a plan, its settings apply, and every trial has another
+    /// participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<ParameterSweepAxis>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
@@ -190,24 +190,17 @@ pub(super) struct SimulateArgs {
 
 /// Fits the human model to recordings.
 ///
-/// Maximum likelihood estimates of parameters from recorded presses, with standard errors; with --people a population
-/// whose persons differ.
+/// Maximum likelihood estimates of parameters from recorded presses, with standard errors.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nExample: tomcom fit recordings/* --people --out sessions/human-people.toml\nMore: docs/human-model.md"
+    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nMore: docs/human-model.md"
 )]
 pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Fit a population whose persons have parameters of their own: estimates for both, shrinkage, and how likely each
-    /// person's last trial is after a fit without it.
-    #[arg(long)]
-    pub(super) people: bool,
-    /// Parameters to fit, separated by commas. With --people by default tau, lapse, reading, half-life and
-    /// recipe-knowledge.
-    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL,
-          default_value_if("people", "true", FitParameter::OF_PERSONS))]
+    /// Parameters to fit, separated by commas.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL)]
     pub(super) parameters: Vec<FitParameter>,
     /// Parameter file to start from; parameters that are not fitted keep its values. By default the parameters in the
     /// recordings.
@@ -220,7 +213,7 @@ pub(super) struct FitArgs {
     /// Largest number of likelihood evaluations.
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     pub(super) tries: u64,
-    /// Write the fitted parameters to this file; with --people also those of each person, by code.
+    /// Write the fitted parameters to this file.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Output format.
@@ -251,13 +244,10 @@ pub(super) enum FitParameter {
     Capture,
     /// Expected probability of a true recipe at the start of a trial.
     RecipeKnowledge,
-    /// Share of the people who, at a given time, consider only one order.
-    OneOrder,
 }
 
 impl FitParameter {
     const USUAL: &str = "tau,lapse,radius,reading,half-life";
-    const OF_PERSONS: &str = "tau,lapse,reading,half-life,recipe-knowledge";
 
     pub(super) fn parameter(self) -> HumanModelParameter {
         match self {
@@ -271,7 +261,6 @@ impl FitParameter {
             FitParameter::OtherLooks => HumanModelParameter::OtherLooksHz,
             FitParameter::Capture => HumanModelParameter::Capture,
             FitParameter::RecipeKnowledge => HumanModelParameter::RecipeTruth,
-            FitParameter::OneOrder => HumanModelParameter::OneOrder,
         }
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put, put_aside};
-use crate::analysis::cohort_lines::{describe_end, describe_rows, heading, name_width};
+use crate::analysis::cohort_lines::{describe_end, describe_row, heading, name_width};
 use crate::analysis::cohort_table::CohortRow;
 use crate::edge::battery_file::read_battery;
 use crate::edge::file_error::FileError;
@@ -18,10 +18,9 @@ use crate::study::cohort_chart;
 
 /// Measures estimate and assistant with cohorts of simulated people.
 ///
-/// Each cohort differs from the people to whom the assistant's human model was fitted. Its trials are simulated without
-/// signals and with the assistant acting by itself, once with the parameters of the human model and once with an
-/// estimate that learns lapse and attention of the person in each trial. Nothing is recorded. The rows of a cohort are
-/// printed when it is finished; with --format json on standard error.
+/// Each cohort differs from the default population. Its trials are simulated without signals and with the assistant
+/// acting by itself. Nothing is recorded. The row of a cohort is printed when it is finished; with --format json on
+/// standard error.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tomcom robustness sessions/people/robustness.toml --seed 9101 --choose-seed 9001 --arm timed\nMore: docs/study.md"
@@ -43,9 +42,6 @@ pub(super) struct RobustnessArgs {
     /// Simulate only this cohort (several: repeat the option).
     #[arg(long, value_name = "NAME")]
     cohort: Vec<String>,
-    /// Leave out the estimate that adapts to the person, which takes three quarters of the time.
-    #[arg(long)]
-    no_adaptation: bool,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     arm: Option<ArmArg>,
@@ -78,8 +74,7 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.battery, found, "another seed than --seed"));
     }
     let width = name_width(battery.cohorts.iter().map(|cohort| cohort.name.get_ref().as_str()));
-    let request =
-        RobustnessRequest { battery, trials: args.trials, seed, choose_seed, adaptation: !args.no_adaptation };
+    let request = RobustnessRequest { battery, trials: args.trials, seed, choose_seed };
     let bar = progress(request.all_trials(), "trials");
     let tell = |text: &str| match args.format {
         OutputFormat::Text => put(text),
@@ -91,7 +86,7 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let mut told = tell(&heading(width));
     let finished = |row: &CohortRow| {
         if told.is_ok() {
-            told = bar.suspend(|| tell(&describe_rows(row, width)));
+            told = bar.suspend(|| tell(&describe_row(row, width)));
         }
     };
     let table = robustness::measure(&request, || bar.inc(1), finished);

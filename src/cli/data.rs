@@ -156,7 +156,6 @@ fn check_terminal() -> Result<(), Failure> {
 /// records of training. Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
 #[derive(Debug, Args)]
 #[command(after_help = "Session files stay, and so does what other programs have written, such as an eye tracker.\n\
-                  A code that begins with - stands behind --: tomcom forget --in sessions -- -7\n\
                   Exit code 0: all of it below the folder is deleted. 1: there was nothing, or something is left. 2: wrong arguments.\n\
                   Example: tomcom forget P07 --in sessions\nMore: docs/recordings.md, docs/security.md")]
 pub(super) struct ForgetArgs {
@@ -181,7 +180,7 @@ struct ForgetSummary<'a> {
     recordings: Vec<String>,
     recording_files: Vec<String>,
     files: Vec<String>,
-    tables: Vec<(String, u64)>,
+    tables: Vec<(String, usize)>,
     trainings: Vec<String>,
     left: Vec<LeftSummary<'a>>,
 }
@@ -202,8 +201,8 @@ impl ForgetSummary<'_> {
             recordings: all(&found.recordings),
             recording_files: all(&found.recording_files),
             files: all(&found.files),
-            tables: found.tables.iter().map(|(path, rows)| (told(path), *rows)).collect(),
-            trainings: all(&found.trainings),
+            tables: found.tables.iter().map(|(path, rows)| (told(path), rows.len())).collect(),
+            trainings: found.trainings.iter().map(|(path, _)| told(path)).collect(),
             left: found.left.iter().map(|left| LeftSummary { path: told(&left.path), reason: &left.reason }).collect(),
         }
     }
@@ -235,6 +234,10 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     })?;
     if deletes && done.left.is_empty() { Ok(()) } else { Err(Failure::No) }
 }
+
+/// What the command cannot know of.
+const UNKNOWN: &str = "not looked for: copies, tables and exports in other folders, files of other programs (videos, eye trackers), \
+                       backups\n";
 
 /// Shows what the deletion would remove, and asks for the participant's code as confirmation.
 fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
@@ -271,14 +274,16 @@ fn listed(found: &ParticipantData) -> String {
     };
     let recordings = found.recordings.iter().map(recording);
     let files = found.files.iter().map(|path| line(path, ""));
-    let tables = found.tables.iter().map(|(path, rows)| line(path, &format!(" ({})", count(*rows, "row", "rows"))));
-    let trainings = found.trainings.iter().map(|path| line(path, " (a wizard's training on these recordings)"));
+    let rows = |rows: usize| format!(" ({})", count(rows as u64, "row", "rows"));
+    let tables = found.tables.iter().map(|(path, cut)| line(path, &rows(cut.len())));
+    let trainings = found.trainings.iter().map(|(path, _)| line(path, " (a wizard's training on these recordings)"));
     recordings.chain(files).chain(tables).chain(trainings).collect()
 }
 
-/// What is not deleted although it is about the participant, as text with a line and a reason each; empty if nothing
-/// stays.
+/// What is not deleted although it is or may be about the participant, as text with a line and a reason each, and what
+/// cannot be known.
 fn left(found: &ParticipantData) -> String {
     let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
-    if lines.is_empty() { lines } else { format!("not deleted:\n{lines}") }
+    let lines = if lines.is_empty() { lines } else { format!("not deleted:\n{lines}") };
+    lines + UNKNOWN
 }

@@ -1,17 +1,15 @@
 //! Commands that check estimates: beliefs, net benefits of signals, parameters of the human model.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
-use crate::analysis::fitting::people_summary;
 use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
-use crate::mind::fitted_people::HumanModelFile;
 use crate::run::accuracy::AccuracyStepCounts;
-use crate::run::{accuracy, check_beliefs, fit, fit_people, steadiness};
+use crate::run::{accuracy, check_beliefs, fit, steadiness};
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
@@ -46,7 +44,7 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
-    let start = args.start.as_deref().map(files::read_human_model).transpose()?.map(|file| file.population());
+    let start = args.start.as_deref().map(files::read_human_model).transpose()?;
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     parameters.sort_unstable();
     parameters.dedup();
@@ -61,33 +59,13 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let recordings = gathered(&args.recordings)?;
     let trials = fit::FitTrials::read(&recordings, args.probes)?;
     let plan = fitting::FitSettings { parameters, start, most_tries: args.tries as usize };
-    let write = |file: &HumanModelFile, comment: &str| match &args.out {
-        Some(path) => files::write_human_model(path, file, comment).map_err(|error| unwritable(path, error)),
-        None => Ok(()),
-    };
-    if args.people {
-        return fit_people(args, &recordings.paths, &trials, &plan, write);
-    }
     let searches = if args.probes { 2 } else { 1 };
     let bar = progress(searches * plan.most_tries as u64, "tries of parameters at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
-    write(&HumanModelFile::new(found.model.clone(), None), &fitting::comment(&found))?;
+    if let Some(path) = &args.out {
+        let written = files::write_human_model(path, &found.model, &fitting::comment(&found));
+        written.map_err(|error| unwritable(path, error))?;
+    }
     print(args.format, &found, || fitting::describe(&found))
-}
-
-/// Runs the command `tomcom fit RECORDING... --people`.
-fn fit_people(
-    args: &FitArgs,
-    recordings: &[PathBuf],
-    trials: &fit::FitTrials,
-    plan: &fitting::FitSettings,
-    write: impl Fn(&HumanModelFile, &str) -> Result<(), Failure>,
-) -> Result<(), Failure> {
-    fit_people::require_people(recordings, trials)?;
-    let bar = progress(fit_people::most_replays(trials, plan), "replays of recordings at most");
-    let found = fit_people::fit(trials, plan, || bar.inc(1));
-    bar.finish_and_clear();
-    write(&found.file, &people_summary::people_comment(fitting::FITTED, &found))?;
-    print(args.format, &found, || people_summary::describe_people(&found))
 }

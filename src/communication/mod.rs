@@ -22,4 +22,4 @@ mod signal;
 pub mod situation;
 pub mod tom;
 
-pub use signal::{Sender, Signal, available, signals, unavailable};
+pub use signal::{HighlightSet, Sender, Signal, available, signals, unavailable};

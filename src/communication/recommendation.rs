@@ -64,7 +64,7 @@ pub struct SignalReason {
     pub truth: String,
     /// Expected probability that the human gives to the falsely believed value.
     pub p_believes: f64,
-    /// Name of the press to which the false belief would lead.
+    /// Name of the press to which the false belief would lead; `None` for waiting, if there is a press instead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prevents: Option<String>,
     /// Name of the press that the human makes after the signal instead; `None` for waiting.
@@ -147,10 +147,13 @@ impl SignalReason {
     pub fn words(&self) -> String {
         let said = |name: &str| name.replace('_', " ");
         let taken = self.taken();
-        let instead = self.instead.as_deref().map_or("waiting".to_string(), |button| format!("\"{}\"", said(button)));
-        match &self.prevents {
-            Some(button) => format!("{taken}: would press \"{}\" instead of {instead}", said(button)),
-            None => taken,
+        match (&self.prevents, &self.instead) {
+            (Some(button), Some(instead)) => {
+                format!("{taken}: would press \"{}\" instead of \"{}\"", said(button), said(instead))
+            }
+            (Some(button), None) => format!("{taken}: would press \"{}\" instead of waiting", said(button)),
+            (None, Some(instead)) => format!("{taken}: would wait instead of pressing \"{}\"", said(instead)),
+            (None, None) => taken,
         }
     }
 }

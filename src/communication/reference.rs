@@ -19,7 +19,6 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
-use crate::mind::reference::order_focus;
 use crate::mind::reference::person::{Particle, pick, press_chances};
 use crate::robot::policy;
 
@@ -51,7 +50,8 @@ struct Future {
     /// press in any case.
     robot_press: Option<(ButtonId, f64, bool)>,
     now_s: f64,
-    presses: u32,
+    /// Number of presses of both agents so far, and of waits of the human while something was wanted.
+    spent: u32,
     /// The state aspects of the signal, and the time at which the human reads it; `None` once it is read.
     signal: Option<(Vec<AspectId>, f64)>,
 }
@@ -113,15 +113,13 @@ impl ReferencePlanner {
         stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
 
-    /// Number of presses of both agents in one rollout, plus the cost to go at its end.
+    /// Number of presses of both agents and waits of the human in one rollout, plus the cost to go at its end.
     fn roll_out(&self, cost: &mut CostToGo, moment: &DecisionPoint, signal: Option<&Signal>, rollout: u64) -> f64 {
         let DecisionPoint { situation, presses, .. } = *moment;
         let mut random = self.chance("plain belief", presses, rollout, 0);
         let mut person = Particle::draw(&self.kitchen, situation.belief, &mut random);
         let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
         let sees = random.random::<f64>() < self.human.looking.capture;
-        let focus = pick(situation.focus, &mut self.chance("plain focus", presses, rollout, 0));
-        person.focus = focus.checked_sub(1).and_then(|index| self.kitchen.orders.get(index)).copied();
         let signal =
             signal.map(|signal| (aspects_told(&self.kitchen, situation.state, signal), situation.forecast.delay_s));
         for &aspect in situation.changed.iter().filter(|_| sees) {
@@ -131,35 +129,20 @@ impl ReferencePlanner {
             RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, presses: 0, signal };
+        let mut future = Future { state: situation.state, person, robot_press, now_s: 0.0, spent: 0, signal };
         future.read_by(&self.kitchen, 0.0);
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
-            let before = future.state;
             if situation.robot != RobotIntent::Still {
                 let mut random = self.chance("plain robot", presses, rollout, step as u64);
                 self.robot_until(cost, &mut future, until_s, situation.robot_press_s, &mut random);
             }
             future.read_by(&self.kitchen, until_s);
             future.now_s = until_s;
-            let mut turning = self.chance("plain turn", presses, rollout, step as u64);
-            self.turn_from_changed(&mut future, before, &mut turning);
             let mut random = self.chance("plain decision", presses, rollout, step as u64);
-            let before = future.state;
-            let has_pressed = self.decide(cost, &mut future, situation.attention, &mut random);
-            if has_pressed {
-                let people = std::slice::from_mut(&mut future.person);
-                order_focus::turn_at_press(&self.kitchen, &self.human, people, &mut turning);
-            }
-            self.turn_from_changed(&mut future, before, &mut turning);
+            self.decide(cost, &mut future, &mut random);
         }
-        f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
-    }
-
-    /// Lets the human choose anew who considers only an order that has changed since the state `before`.
-    fn turn_from_changed(&self, future: &mut Future, before: State, random: &mut Stream) {
-        let people = std::slice::from_mut(&mut future.person);
-        order_focus::turn_from_changed(&self.kitchen, &self.human, people, [before, future.state], random);
+        f64::from(future.spent) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
     }
 
     /// Lets the robot act until the human's next decision.
@@ -183,7 +166,7 @@ impl ReferencePlanner {
             {
                 let before = future.state;
                 future.state = kitchen.press(before, &recipes, Agent::Robot, button).unwrap_or(before);
-                future.presses += 1;
+                future.spent += 1;
                 if random.random::<f64>() < self.human.transition.foresight {
                     future.person.robot_pressed(kitchen, cost, self.spec.rollout.states, random);
                 }
@@ -195,10 +178,10 @@ impl ReferencePlanner {
         }
     }
 
-    /// Lets the human look at locations, decide, and press; returns whether the human has pressed a button.
-    fn decide(&self, cost: &mut CostToGo, future: &mut Future, attention: f64, random: &mut Stream) -> bool {
+    /// Lets the human look at locations, decide, and press.
+    fn decide(&self, cost: &mut CostToGo, future: &mut Future, random: &mut Stream) {
         let kitchen = &self.kitchen;
-        let chance = |rate_hz: f64| 1.0 - (-rate_hz * attention * self.spec.rollout.human_press_s).exp();
+        let chance = |rate_hz: f64| 1.0 - (-rate_hz * self.spec.rollout.human_press_s).exp();
         let looks = chance(self.human.looking.looks_hz);
         let other_looks = chance(self.human.looking.other_looks_hz);
         let draw = random.random::<f64>();
@@ -213,8 +196,12 @@ impl ReferencePlanner {
                 chosen = self.chosen_press(cost, &future.person, draw, random);
             }
         }
-        let Some(button) = chosen else { return false };
         let before = future.state;
+        // A wait counts as a press as long as something is wanted.
+        if chosen.is_some() || kitchen.wanted(before).next().is_some() {
+            future.spent += 1;
+        }
+        let Some(button) = chosen else { return };
         let after = kitchen.press(before, &kitchen.true_recipes(), Agent::Human, button);
         // A human whose belief is contradicted by the effect of the press looks at the locations involved.
         let truth = |index: usize| {
@@ -225,8 +212,6 @@ impl ReferencePlanner {
         let truth: Vec<Vec<f64>> = (0..kitchen.aspects.len()).map(truth).collect();
         future.person.pressed(kitchen, &truth, button, after.is_some());
         future.state = after.unwrap_or(before);
-        future.presses += 1;
-        true
     }
 
     /// The human's action for a uniform random number `draw`: `None` for waiting, or a press, slips included.

@@ -2,7 +2,7 @@
 //! forgotten, and a signal that was probably missed is not repeated before it has left the display.
 
 use super::recommendation::aspects_told;
-use super::signal::{Signal, signals};
+use super::signal::{HighlightSet, Signal, signals};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
@@ -55,7 +55,7 @@ impl SignalRepeatRule {
 
     /// Updates which signals may be repeated, after a change of the estimate or of the true state.
     pub fn update(&mut self, kitchen: &Kitchen, state: State, belief: &DirichletBelief) {
-        for (location, signal) in signals(kitchen, true) {
+        for (location, signal) in signals(kitchen, HighlightSet::ALL) {
             let slot = &mut self.told[location.index()];
             let Some(told) = slot else { continue };
             let p_truth = |aspect: AspectId| belief.p_truth(kitchen, state, aspect);
@@ -70,8 +70,8 @@ impl SignalRepeatRule {
     }
 
     /// The available signals that the rule against repeats allows now.
-    pub fn allowed(&self, kitchen: &Kitchen, own_hand: bool) -> Vec<Signal> {
-        let all = signals(kitchen, own_hand).into_iter();
+    pub fn allowed(&self, kitchen: &Kitchen, highlights: HighlightSet) -> Vec<Signal> {
+        let all = signals(kitchen, highlights).into_iter();
         all.filter(|(location, _)| self.told[location.index()].is_none()).map(|(_, signal)| signal).collect()
     }
 }

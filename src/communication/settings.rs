@@ -19,25 +19,11 @@ pub struct AssistantSpec {
     pub belief_threshold: f64,
     /// Number of presses that the concept DEV proposes after an error.
     pub proposed_presses: usize,
-    /// Whether the assistant is also asked for advice when the human has not pressed for unusually long (event
-    /// `human_waits`).
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub asks_in_silence: bool,
-    /// Whether the assistant is also asked for advice when, judged by the gaze alone, the human seems to have a false
-    /// belief (event `seems_unaware`).
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub asks_by_gaze: bool,
     /// Whether the assistant of a live session works ahead between requests for advice, which makes the answers come
-    /// sooner, and changes nothing else. Recordings contain this setting only where it is off.
-    #[serde(skip_serializing_if = "is_on")]
+    /// sooner, and changes nothing else.
     pub works_ahead: bool,
     /// Settings of the planner's rollouts: how finely the planner computes.
     pub rollout: RolloutSettings,
-}
-
-// A setting that is on by default is not written to recordings.
-fn is_on(setting: &bool) -> bool {
-    *setting
 }
 
 /// Whether the assistant computes recommendations in conditions in which the assistant does not send signals.
@@ -60,8 +46,6 @@ impl Default for AssistantSpec {
             // The default threshold is equal to that in the definition of a false belief.
             belief_threshold: 0.5,
             proposed_presses: 1,
-            asks_in_silence: false,
-            asks_by_gaze: false,
             works_ahead: true,
             rollout: RolloutSettings::default(),
         }

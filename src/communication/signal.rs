@@ -51,25 +51,56 @@ pub enum Sender {
     Assistant,
 }
 
+/// The locations that highlights may be about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HighlightSet(u32);
+
+impl HighlightSet {
+    /// Every location.
+    pub const ALL: HighlightSet = HighlightSet(u32::MAX);
+
+    /// All shared places and the robot's hand. People see their own hand best.
+    pub fn usual(kitchen: &Kitchen) -> HighlightSet {
+        let own = kitchen.hands[Agent::Human.index()];
+        HighlightSet(!(1 << own.index()))
+    }
+
+    /// The paper's locations, where "coordination conflicts" are possible: the robot's hand and the assembly board (paper,
+    /// section "Design of communication signals").
+    pub fn of_paper(kitchen: &Kitchen) -> HighlightSet {
+        HighlightSet(1 << kitchen.hands[Agent::Robot.index()].index() | 1 << kitchen.board.index())
+    }
+
+    /// The locations with these names; the kitchen need not have all of them.
+    pub fn named<'a>(kitchen: &Kitchen, names: impl IntoIterator<Item = &'a str>) -> HighlightSet {
+        let locations = names.into_iter().filter_map(|name| kitchen.location_named(name));
+        HighlightSet(locations.fold(0, |bits, location| bits | 1 << location.index()))
+    }
+
+    /// Whether highlights may be about this location.
+    pub fn holds(self, location: LocationId) -> bool {
+        self.0 >> location.index() & 1 == 1
+    }
+}
+
 /// The signal about each location, from which wizard, ToM-Com and ToM choose, in the order of the locations: recipes
-/// for orders, highlights for the other locations. The human's own hand has a signal only if `own_hand` allows that,
-/// since people see their own hand best.
-pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
+/// for orders, and highlights for those of the other locations that may be highlighted.
+pub fn signals(kitchen: &Kitchen, highlights: HighlightSet) -> Vec<(LocationId, Signal)> {
     let signal = |index: usize| {
-        let location = &kitchen.locations[index];
+        let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);
         let signal = match location.kind {
             LocationKind::Order => Signal::ShowRecipe(location.name.clone()),
-            LocationKind::Hand(Agent::Human) if !own_hand => return None,
-            _ => Signal::Highlight(location.name.clone()),
+            _ if highlights.holds(id) => Signal::Highlight(location.name.clone()),
+            _ => return None,
         };
-        Some((LocationId(index as u8), signal))
+        Some((id, signal))
     };
     (0..kitchen.locations.len()).filter_map(signal).collect()
 }
 
 /// The signals that can be sent in this state of the kitchen.
-pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal> {
-    let all = signals(kitchen, own_hand).into_iter().map(|(_, signal)| signal);
+pub fn available(kitchen: &Kitchen, state: State, highlights: HighlightSet) -> Vec<Signal> {
+    let all = signals(kitchen, highlights).into_iter().map(|(_, signal)| signal);
     all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
 }
 

@@ -19,27 +19,14 @@ pub struct Situation<'a> {
     pub robot_press_s: f64,
     /// Forecast of how a signal that is shown now will be read.
     pub forecast: SignalReadingForecast,
-    /// How attentive the human is: factor on the human model's rates of looks in rollouts.
-    pub attention: f64,
-    /// Probability of each order focus ([`crate::mind::filter::order_focus`]); one number: the human considers all orders.
-    pub focus: &'a [f64],
 }
 
 impl<'a> Situation<'a> {
     /// A situation in which nothing has just changed, the robot follows its policy, with a press every 2.4 s, and
-    /// signals are believed at once by a human who has the human model's rates of looks and considers all orders.
+    /// signals are believed at once.
     pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
         let forecast = SignalReadingForecast::default();
-        Situation {
-            state,
-            belief,
-            changed: &[],
-            robot: RobotIntent::Free,
-            robot_press_s: 2.4,
-            forecast,
-            attention: 1.0,
-            focus: &[1.0],
-        }
+        Situation { state, belief, changed: &[], robot: RobotIntent::Free, robot_press_s: 2.4, forecast }
     }
 }
 

@@ -1,15 +1,16 @@
 //! ToM: the communication concept with theory of mind, but without planning. ToM sends signals about false or uncertain
 //! beliefs, whether the beliefs matter now or not (paper, "Concept comparisons"; Buehler and Weisswange 2018).
 //!
-//! Among the available signals, the one whose aspect has the largest expected belief deviation, 1 - E[P(truth)], is
-//! recommended if that deviation exceeds a threshold (0.4 to 0.99 in the paper). There is no signal about the human's
-//! own hand (unless the session allows it) and about recipes of dishes that are not ordered.
+//! ToM has the paper's signals: the recipe of an order, and highlights of the places where both agents get into each
+//! other's way, the robot's hand and the assembly board. Among those that can be sent, the one whose aspect has the
+//! largest expected belief deviation, 1 - E[P(truth)], is recommended if that deviation exceeds a threshold (0.4 to
+//! 0.99 in the paper).
 
 use std::sync::Arc;
 
 use super::concept::{Concept, DecisionPoint};
 use super::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
-use super::signal::{Signal, unavailable};
+use super::signal::{HighlightSet, Signal, unavailable};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::recorded_estimate::rounded;
@@ -27,6 +28,18 @@ impl TomConcept {
         TomConcept { kitchen, threshold }
     }
 
+    /// Whether the paper has this signal.
+    fn is_of_paper(&self, signal: &Signal) -> bool {
+        match signal {
+            Signal::ShowRecipe(_) => true,
+            Signal::Highlight(_) => {
+                let highlights = HighlightSet::of_paper(&self.kitchen);
+                signal.location(&self.kitchen).is_some_and(|location| highlights.holds(location))
+            }
+            Signal::Propose(_) => false,
+        }
+    }
+
     /// Largest expected belief deviation among the state aspects that a signal shows.
     fn deviation(&self, moment: &DecisionPoint, signal: &Signal) -> f64 {
         let (kitchen, state, belief) = (&self.kitchen, moment.situation.state, moment.situation.belief);
@@ -40,7 +53,8 @@ impl Concept for TomConcept {
     /// the threshold.
     fn advise(&mut self, _: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let (kitchen, state) = (&self.kitchen, moment.situation.state);
-        let possible = moment.signals.iter().filter(|signal| unavailable(kitchen, state, signal).is_none());
+        let of_paper = moment.signals.iter().filter(|signal| self.is_of_paper(signal));
+        let possible = of_paper.filter(|signal| unavailable(kitchen, state, signal).is_none());
         let mut ranked: Vec<(f64, &Signal)> = possible.map(|signal| (self.deviation(moment, signal), signal)).collect();
         // The sort is stable, so that signals with equal deviations keep the layout's order.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -98,5 +98,5 @@ pub(super) fn confirm(
 }
 
 fn shown(signal: &Signal) -> Event {
-    Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None }
+    Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None }
 }

@@ -50,7 +50,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             send(
                 model,
                 session,
-                Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None },
+                Event::SignalShown { by: Sender::Wizard, signal, offer: None },
                 NoticeLevel::Done,
                 &words,
             )

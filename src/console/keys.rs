@@ -10,8 +10,9 @@ use super::key_action::{
 use super::keymap::KeyFileBindings;
 use super::playback::ReplayAction;
 use super::table;
+use crate::communication::Signal;
 use crate::history::landmark::ReplayLandmark;
-use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
+use crate::kitchen::{ButtonId, Kitchen, LocationId};
 use crate::session::settings::{ParticipantKind, SessionSpec};
 
 /// Key bindings of a console: the key table.
@@ -37,10 +38,9 @@ impl KeyBindings {
             Consoles::from_bindings(lines(kitchen, map)?, KeyFileTable::Console);
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
+        let highlights = spec.highlights(kitchen);
         bindings.retain(|line| match &line.action {
-            KeyAction::Signal(id, _) => {
-                spec.signals.own_hand || kitchen.location(*id).kind != LocationKind::Hand(Agent::Human)
-            }
+            KeyAction::Signal(id, Signal::Highlight(_)) => highlights.holds(*id),
             KeyAction::Press(_) | KeyAction::SwitchLayer => at_keyboard,
             KeyAction::Move(_) => false,
             KeyAction::Note(index) => *index < spec.console.notes.len(),

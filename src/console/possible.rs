@@ -93,7 +93,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     match action {
         KeyAction::Signal(_, signal) => {
             let (by, signal) = (Sender::Wizard, signal.clone());
-            let event = Event::SignalShown { by, signal, accepted: None, offer: None };
+            let event = Event::SignalShown { by, signal, offer: None };
             refusal(session, model.now, &event).is_none()
         }
         KeyAction::Accept => !is_right_after_list(model) && offers::enter(session, model.now).is_ok(),

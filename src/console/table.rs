@@ -11,7 +11,7 @@ use super::key_action::RaterAction;
 use super::key_action::ViewAction;
 use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer};
 use super::playback::ReplayAction;
-use crate::communication::{self, Signal};
+use crate::communication::{self, HighlightSet, Signal};
 use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use crate::measures::cause_codes::ErrorCauseKind;
@@ -333,7 +333,7 @@ fn times() -> [KeyBinding; 2] {
 }
 
 fn signals(kitchen: &Kitchen) -> impl Iterator<Item = KeyBinding> {
-    communication::signals(kitchen, true).into_iter().map(|(id, signal)| {
+    communication::signals(kitchen, HighlightSet::ALL).into_iter().map(|(id, signal)| {
         let location = kitchen.location(id);
         let help = match signal {
             Signal::ShowRecipe(_) => format!("show the recipe of {}", location.label()),

@@ -52,7 +52,9 @@ pub struct RobotHand {
 impl RobotHand {
     /// Creates the hand at its resting position; `None` if the session does not show the hand.
     pub fn new(session: &Session) -> Option<RobotHand> {
-        session.spec.display.arm.filter(|arm| *arm != RobotDepiction::None)?;
+        if session.spec.display.arm == RobotDepiction::None {
+            return None;
+        }
         let kitchen = &session.kitchen;
         let [x, y] = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
         Some(RobotHand {

@@ -10,7 +10,7 @@ use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 use crate::session::settings::GazeSource;
-use crate::session::wall_display::{DisplayedNames, RobotDepiction};
+use crate::session::wall_display::DisplayedNames;
 use crate::session::{Session, SessionSpec};
 
 /// Area on the display: left, top, width and height in fractions of the display's size, with the origin at the top
@@ -160,10 +160,10 @@ pub fn scene(session: &Session) -> DisplayScene {
         words: words.of_page(),
         names: spec.display.names,
         keys: spec.display.keys,
-        arm: spec.display.arm.unwrap_or(RobotDepiction::None).name(),
+        arm: spec.display.arm.name(),
         flash: spec.display.flash,
         clock: spec.display.clock,
-        served: spec.display.shows_served(),
+        served: spec.display.served,
         sound: spec.display.sound,
         pointer: has_pointer(spec),
     }

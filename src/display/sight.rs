@@ -10,8 +10,10 @@ use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffectReason;
 use crate::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::robot::IdleReason;
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
+use crate::session::wall_display::RobotDepiction;
 use crate::session::{Session, TimelineEvent, TrialPhase, proposals};
 
 /// Everything that changes on the participant's display; each update is complete.
@@ -32,6 +34,8 @@ pub struct DisplayContent {
     pub presses: [Option<DisplayedPress>; 2],
     /// Location or storage where the robot is about to press, if the session shows the robot's intention.
     pub intention: Option<SceneElement>,
+    /// What the idle robot waits for, if the display shows the robot.
+    pub robot_waits: Option<RobotWait>,
     /// The signal that the display shows, if any.
     pub signal: Option<DisplayedSignal>,
     /// Number of the newest event that is marked by a flash.
@@ -77,6 +81,17 @@ pub enum DisplayStage {
     Answered,
     /// The participant is thanked, in the debriefing and after the session's end.
     Thanks,
+}
+
+/// What the idle robot waits for, as the participant's display says it; the page has a text for each. Which press of the
+/// human would help is not told, since that would be a proposal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RobotWait {
+    /// The robot waits for a press of the human.
+    Human,
+    /// The robot waits for an order.
+    Order,
 }
 
 /// Content that a location shows on the participant's display.
@@ -152,7 +167,7 @@ pub fn sight(session: &Session) -> DisplayContent {
         stage,
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
         contents: contents.filter(|_| probe.is_none()).collect(),
-        served: session.spec.display.shows_served().then_some(session.served.len()),
+        served: session.spec.display.served.then_some(session.served.len()),
         clock: clock(session, stage),
         presses: Agent::BOTH.map(|agent| match practised.is_some() {
             true => practised_press(session).filter(|_| agent == Agent::Human),
@@ -160,6 +175,7 @@ pub fn sight(session: &Session) -> DisplayContent {
         }),
         intention: intention
             .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
+        robot_waits: robot_waits(session).filter(|_| is_trial),
         signal: match practised {
             Some((step, tutorial)) => explained(kitchen, tutorial.kitchen, step),
             None if probe.is_some() => None,
@@ -172,6 +188,18 @@ pub fn sight(session: &Session) -> DisplayContent {
         probe,
         target: session.calibration.as_ref().and_then(RunningGazeCheck::target),
         checks: session.calibration.as_ref().is_some_and(|check| check.result.is_none()),
+    }
+}
+
+/// What the idle robot waits for. Where the display shows no robot, a real one is seen, and the display says nothing.
+fn robot_waits(session: &Session) -> Option<RobotWait> {
+    if session.spec.display.arm == RobotDepiction::None {
+        return None;
+    }
+    match session.robot.idle.as_ref()?.0 {
+        IdleReason::HumanTurn => Some(RobotWait::Human),
+        IdleReason::NoOrder => Some(RobotWait::Order),
+        IdleReason::Skipped => None,
     }
 }
 
@@ -241,7 +269,7 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     });
     let (button, no_effect) = newest?;
     let at = spot(&session.kitchen, agent, session.kitchen.button(agent, button).action);
-    let is_told = agent == Agent::Human && session.spec.display.reasons == Some(true);
+    let is_told = agent == Agent::Human && session.spec.display.reasons;
     let effective = no_effect.is_none();
     let why =
         no_effect.filter(|_| is_told).map(|(reason, about)| DisplayedNoEffectReason { reason, about: about.index() });
@@ -253,7 +281,7 @@ fn practised_press(session: &Session) -> Option<DisplayedPress> {
     let (_, tutorial) = session.tutorial_step()?;
     let press = tutorial.last?;
     let at = spot(&session.kitchen, Agent::Human, session.kitchen.button(Agent::Human, press.button).action);
-    let is_told = session.spec.display.reasons == Some(true);
+    let is_told = session.spec.display.reasons;
     let why = press.no_effect.filter(|_| is_told);
     let why = why.map(|(reason, about)| DisplayedNoEffectReason { reason, about: about.index() });
     Some(DisplayedPress { number: press.number, at, effective: press.is_right, why })

@@ -145,9 +145,7 @@ impl AnalysisFolder {
             overwrite::check(&path, &what, is_own).map_err(|reason| AnalysisWriteError { path, reason })?;
         }
         let path = self.folder.join(REPORT_NAME);
-        // Reports of earlier program versions do not name the program, but have a data dictionary beside them.
-        let is_own =
-            |head: &[u8]| written.is_listed() || page_head::participants(&String::from_utf8_lossy(head)).is_some();
+        let is_own = |head: &[u8]| page_head::participants(&String::from_utf8_lossy(head)).is_some();
         overwrite::check(&path, "a report", is_own).map_err(|reason| AnalysisWriteError { path, reason })
     }
 

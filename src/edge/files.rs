@@ -15,15 +15,12 @@ use crate::kitchen::compile::{KitchenFileError, KitchenFileKind};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::{Kitchen, layout_ranges};
-use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::RecordedFile;
-use crate::session::person_code;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
 use crate::session::settings::SettingError;
-use crate::session::wall_display::RobotDepiction;
 use crate::wizard::settings::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
@@ -74,8 +71,8 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         *file = beside;
     }
     if let Some(file) = &spec.human_model {
-        if spec.human != HumanModel::default() {
-            let found = "human_model, beside parameters of the human model in the session file".to_string();
+        if text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("human")) {
+            let found = "human_model, beside a [human] table in the session file".to_string();
             let remedy = "one of the two: that file, or the [human] tables in here, which then have to go".to_string();
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
@@ -84,13 +81,9 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
             let remedy = "the path of a file with parameters of the human model, relative to the session file";
             return Err(missing(path, &text, ("human_model", 0, file), reason, remedy));
         }
-        let model = read_human_model(&model)?;
-        (spec.human, spec.people) = (model.population(), model.people);
+        spec.human = read_human_model(&model)?;
     }
     read_words(path, &text, &mut spec)?;
-    spec.display.reasons.get_or_insert(true);
-    spec.display.served.get_or_insert(false);
-    spec.display.arm.get_or_insert(RobotDepiction::Hand);
     // In a study plan, the condition of a trial decides whether the wizard sees offers.
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
@@ -100,11 +93,6 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
         let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
         return Err(FileError::at(path, &text, place_of(&text, "step.digest", 0), found, remedy));
-    }
-    if spec.parameters_of.is_some() {
-        let found = "parameters_of, which says whose parameters a recording uses".to_string();
-        let remedy = "no parameters_of: it follows from the participant's code and the file of human_model".to_string();
-        return Err(FileError::at(path, &text, place_of(&text, "parameters_of", 0), found, remedy));
     }
     let questionnaires = match &spec.plan {
         Some(plan) => read_questionnaires(path, &text, &spec, plan)?,
@@ -118,9 +106,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     let keys = read_keys(path, &text, &spec)?;
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
-    if let Some(probes) = &spec.probes {
-        probes.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
-    }
+    spec.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
     let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
     Ok(SessionSetup { spec, kitchen, keys, questionnaires, tutorial })
 }
@@ -190,39 +176,17 @@ fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
 /// Reads a file with parameters of the human model; parameters that the file does not name have their defaults.
 ///
 /// # Errors
-/// The file cannot be read, or a parameter of the population or of a person is invalid.
-pub fn read_human_model(path: &Path) -> FileResult<HumanModelFile> {
+/// The file cannot be read, or a parameter is invalid.
+pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     let text = read_text(path)?;
-    let file: HumanModelFile = parse(path, &text)?;
-    let model = file.population();
+    let model: HumanModel = parse(path, &text)?;
     let rule = model.fault().map(|(path, found, remedy)| SettingError::new(path, found, remedy));
     let wrong = ranges::check_human_model(&model).err().map(SettingError::from).or(rule);
     if let Some(error) = wrong {
         let inside = error.path.strip_prefix(ranges::HUMAN).unwrap_or(&error.path).trim_start_matches('.');
         return Err(FileError::at(path, &text, place_of(&text, inside, 0), error.found, error.remedy.into_owned()));
     }
-    check_people(path, &text, &model, file.people.as_ref())?;
-    Ok(file)
-}
-
-/// Checks the parameters of persons, each in a human model that is otherwise that of the population.
-fn check_people(path: &Path, text: &str, population: &HumanModel, people: Option<&FittedPeople>) -> FileResult<()> {
-    for (code, own) in people.iter().flat_map(|people| &people.0) {
-        if let Some(fault) = person_code::fault(code) {
-            let found = format!("the code \"{code}\": {fault}");
-            let remedy = person_code::REMEDY.to_string();
-            return Err(FileError::at(path, text, place_of(text, "people", 0), found, remedy));
-        }
-        for (parameter, value) in own {
-            let mut model = population.clone();
-            parameter.set(&mut model, *value);
-            ranges::check_human_model(&model).map_err(|error| {
-                let place = place_of(text, &format!("people.{code}.{}", parameter.name()), 0);
-                FileError::at(path, text, place, error.found, error.remedy)
-            })?;
-        }
-    }
-    Ok(())
+    Ok(model)
 }
 
 /// Checks that a file of fitted parameters can be written to this path.
@@ -238,10 +202,10 @@ pub fn check_fitted(path: &Path) -> std::io::Result<()> {
 ///
 /// # Errors
 /// The file cannot be written, or there is a file at the path that this program did not write.
-pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> std::io::Result<()> {
+pub fn write_human_model(path: &Path, model: &HumanModel, comment: &str) -> std::io::Result<()> {
     check_fitted(path)?;
     let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
-    let text = toml::to_string(file).map_err(std::io::Error::other)?;
+    let text = toml::to_string(model).map_err(std::io::Error::other)?;
     overwrite::write(path, format!("{comment}\n{text}").as_bytes())
 }
 
@@ -283,7 +247,6 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileRes
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
-    layout_ranges::check(&layout_text).map_err(|error| wrong_layout(layout_path, &layout_text, error))?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
     #[cfg(feature = "physics")]
     check_reach(layout_path, &files.layout.text, &layout, &files.kitchen)?;
@@ -296,10 +259,10 @@ fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
     FileError::at(path, text, error.place, error.found, error.remedy)
 }
 
-/// Compiles a kitchen from texts without checking the ranges of its numbers, since it may be the kitchen of an old
-/// recording. The paths serve error messages only.
+/// Compiles a kitchen from the texts of its layout and recipe files. The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
+    layout_ranges::check(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {

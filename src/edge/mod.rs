@@ -62,7 +62,6 @@ pub mod terminal_bytes;
 pub mod terminal_input;
 mod tracker_folder;
 pub mod training;
-mod type_error;
 #[cfg(feature = "rerun")]
 pub mod viewer;
 pub mod written_tables;

@@ -5,10 +5,9 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 use super::file_error::{FileError, FileResult};
-use super::type_error::{in_words, message};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
-use crate::mind::fitted_people::HumanModelFile;
+use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::battery::BatterySpec;
 use crate::session::plan::{Questionnaire, Tutorial};
@@ -49,7 +48,7 @@ impl FileKind {
             () if has(&["layout"]) => Some(FileKind::Session),
             () if has(&["step"]) => Some(FileKind::Tutorial),
             () if has(&["language"]) => Some(FileKind::Language),
-            () if has(&["prior", "perception", "transition", "decision", "people"]) => Some(FileKind::HumanModel),
+            () if has(&["model", "prior", "perception", "transition", "decision"]) => Some(FileKind::HumanModel),
             () if has(&["console", "replay", "signals", "buttons"]) => Some(FileKind::Keys),
             () => None,
         }
@@ -114,7 +113,7 @@ impl ParsedFile for BatterySpec {
     const KIND: FileKind = FileKind::Battery;
 }
 
-impl ParsedFile for HumanModelFile {
+impl ParsedFile for HumanModel {
     const KIND: FileKind = FileKind::HumanModel;
 }
 
@@ -123,10 +122,50 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
         None => {
-            let (found, right) = in_words(&message::<T>(text, &error));
+            let (found, right) = told::<T>(text, &error);
             let kind = T::KIND.remedy();
             let remedy = right.map_or(kind.to_string(), |right| format!("{right}; in {kind}"));
             FileError::at(path, text, error.span(), found, remedy)
         }
     })
+}
+
+/// What the parser found, and what it expected instead, if it says so.
+fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Option<String>) {
+    let message = error.message();
+    if let Some((found, expected)) = message.split_once(", expected ") {
+        return (found.to_string(), Some(type_name(expected)));
+    }
+    let (span, value) = match error.span().and_then(|span| Some((span.clone(), text.get(span)?))) {
+        Some((span, value)) if !value.is_empty() && !value.contains('\n') => (span, value),
+        _ => return (message.to_string(), None),
+    };
+    // Which words are right the parser says only of a text.
+    if message == "wanted string or table"
+        && let Err(error) = toml::from_str::<T>(&[&text[..span.start], "\"\"", &text[span.end..]].concat())
+        && let Some((_, words)) = error.message().split_once(", expected ")
+    {
+        return (value.to_string(), Some(type_name(words)));
+    }
+    (format!("{value}: {message}"), None)
+}
+
+/// What was expected, with types of Rust by names that people know who write settings, and words in quotes.
+fn type_name(expected: &str) -> String {
+    let name = match expected {
+        "u8" => "a whole number from 0 to 255",
+        "u16" => "a whole number from 0 to 65535",
+        // Most settings have narrower bounds, which are checked and reported by other code.
+        "u32" | "u64" | "usize" => "a whole number, not below 0",
+        "i64" => "a whole number",
+        "f32" | "f64" => "a number",
+        "a boolean" => "true or false",
+        "a string" => "a text in quotes",
+        "a sequence" => "a list, in [ ]",
+        "a map" => "a table of settings",
+        _ if expected.starts_with("struct ") => "a table of settings",
+        _ if expected.contains('"') => expected,
+        _ => return expected.replace('`', "\""),
+    };
+    name.to_string()
 }

@@ -1,7 +1,7 @@
 //! Writes a small file as a whole: a program that reads the file meanwhile, or after a crash or on a full disk, finds
 //! the old content or the new content. New files have names that nobody can know before, and no link is followed.
 
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -120,18 +120,16 @@ pub fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a file that must not exist yet. A file that cannot be written completely is removed again.
+/// Writes a file that must not exist yet.
 ///
 /// # Errors
 /// There is a file at the path, the folder cannot be written to, or the disk is full.
 pub fn create(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
-    let written = file.write_all(bytes).and_then(|()| file.sync_all());
-    if written.is_err() {
-        // If the file cannot be removed, the error that is returned explains why it is cut.
-        let _ = fs::remove_file(path);
-    }
-    written
+    let mut file = new_beside(path)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist_noclobber(path)?;
+    Ok(())
 }
 
 /// Name of the file that a file of this name was to replace; the name itself if no program has left such a file.
@@ -211,6 +209,16 @@ mod tests {
         put(&put_there, b"").unwrap();
         let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
         assert_eq!(mode(&put_there), mode(&made), "a new file has the permissions that the system gives to new files");
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_not_created() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frozen");
+        create(&path, b"first").unwrap();
+        assert_eq!(create(&path, b"second").unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!(fs::read_to_string(&path).unwrap(), "first");
+        assert_eq!(names(folder.path()), ["frozen"]);
     }
 
     #[test]

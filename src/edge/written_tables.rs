@@ -48,14 +48,6 @@ impl ListedTables {
         listed.is_some_and(|columns| header.iter().eq(columns.iter().map(Vec::as_slice)))
             || table_named(name).is_some_and(|table| has_columns_of(header, table))
     }
-
-    /// Columns of the table with this name in a study's tables; `None` if a study has no such table.
-    pub fn columns_of(&self, name: &str) -> Option<Vec<Vec<u8>>> {
-        let listed = self.columns.get(name.as_bytes()).cloned();
-        listed.or_else(|| {
-            Some(columns(table_named(name)?).into_iter().map(|row| row.column.as_bytes().to_vec()).collect())
-        })
-    }
 }
 
 /// The table of a study that has this name.

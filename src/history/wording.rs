@@ -11,6 +11,7 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, O
 use crate::measures::JudgedPress;
 use crate::measures::attribution::ErrorCause;
 use crate::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
+use crate::robot::IdleReason;
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
 use crate::session::accuracy_check::GazeCheckEvent;
@@ -26,6 +27,17 @@ use crate::session::{Session, TimelineEvent, TrialPhase};
 /// A button's label in words: "cutting board", "take rice".
 pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> String {
     kitchen.button(agent, id).name.replace('_', " ")
+}
+
+/// What the robot waits for while it is idle; `waits_for`: names of the human's buttons for which it waits.
+pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>]) -> String {
+    let buttons: Vec<String> = waits_for.iter().map(|name| name.as_ref().replace('_', " ")).collect();
+    match reason {
+        IdleReason::NoOrder => "waits for an order".to_string(),
+        IdleReason::HumanTurn if buttons.is_empty() => "waits for the human".to_string(),
+        IdleReason::HumanTurn => format!("waits for the human: {}", buttons.join(" or ")),
+        IdleReason::Skipped => "waits: its press was skipped".to_string(),
+    }
 }
 
 /// A location of the kitchen in words, such as "cutting board".
@@ -150,7 +162,7 @@ pub fn phase(phase: TrialPhase) -> &'static str {
 /// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
-        ProtocolEvent::ConsentGiven { on: Some(AnswerDevice::Display), .. } => {
+        ProtocolEvent::ConsentGiven { on: AnswerDevice::Display, .. } => {
             "the participant agrees to be recorded, on the display".to_string()
         }
         ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),

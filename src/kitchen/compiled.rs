@@ -10,7 +10,6 @@ use super::location::{IngredientStorage, Location, LocationId, LocationKind};
 use super::process::ProcessingStep;
 use super::state::{OrderContent, Recipes, State};
 use super::transition_tables::TransitionTables;
-use crate::base::rng::mix;
 
 /// A compiled kitchen: tables over contents, locations, buttons and dishes, which never change after loading.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,12 +140,6 @@ impl Kitchen {
             },
             _ => &self.content(state.content(location)).wording,
         }
-    }
-
-    /// A fingerprint of a state for comparing logs: equal states have equal fingerprints.
-    pub fn state_mark(&self, state: State) -> u64 {
-        let bytes = state.bits();
-        mix(bytes as u64 ^ mix((bytes >> 64) as u64))
     }
 
     /// The agent's button that is nearest to this button on the table.

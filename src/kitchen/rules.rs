@@ -108,11 +108,6 @@ impl Kitchen {
         }
     }
 
-    /// Whether an order wants this dish.
-    pub fn is_ordered(&self, state: State, dish: DishId) -> bool {
-        self.wanted(state).any(|(_, wanted)| wanted == dish)
-    }
-
     /// The ordered dishes with the locations of their orders.
     pub fn wanted(&self, state: State) -> impl Iterator<Item = (LocationId, DishId)> + '_ {
         self.orders.iter().filter_map(move |&order| match state.order(order) {

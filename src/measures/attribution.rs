@@ -95,7 +95,7 @@ impl FalseBeliefTarget {
 
 impl ErrorCause {
     /// The cause of an error that a simulated participant recorded before its press in `state`; `None` if the
-    /// participant recorded no cause.
+    /// record leads to no press.
     pub fn recorded(kitchen: &Kitchen, state: State, witness: &RecordedBelief) -> Option<ErrorCause> {
         match witness.origin? {
             PressOrigin::Plan => return Some(ErrorCause::Planning),

@@ -7,7 +7,6 @@
 //! planner implement the same choice model a second time, so that tests can compare the two.
 
 use super::choice_parameters::ChoiceParameters;
-use super::lapse_posterior::PressParts;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 
@@ -169,25 +168,6 @@ impl ChoiceModel {
         let pressed =
             self.slips_to_button(button.index(), &weight).fold(intended, |pressed, slipped| pressed + slipped);
         pressed / total + self.anywhere
-    }
-
-    /// The parts of p(a | b) without a slip and given a slip, from the same sums as [`ChoiceModel::press_likelihood`].
-    /// That likelihood is the sum of the two parts weighted by the lapse.
-    #[inline]
-    pub fn press_parts(&self, sums: &[u32], button: ButtonId) -> PressParts {
-        let weight = relative_weights(self.draws_row(), sums, fewest(sums));
-        let total: f64 = (0..sums.len()).map(&weight).sum();
-        let slips: f64 = self.slips_to_button(button.index(), &weight).sum();
-        let slipped = (slips / total + self.anywhere) / self.parameters.lapse;
-        PressParts { chosen: weight(button.index()) / total, slipped }
-    }
-
-    /// Likelihood p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the
-    /// present state, summed over the same draws.
-    pub fn wait_likelihood(&self, here: u32, sums: &[u32]) -> f64 {
-        let draws = self.weights.len().saturating_sub(1).max(1);
-        let ChoiceWeights { wait, total, .. } = self.weights(here, sums, draws as u32);
-        wait / (wait + total)
     }
 
     /// p(a | b) of every button, given that a button is pressed, from the same sums as

@@ -1,36 +1,24 @@
 //! The parameters of the choice model (see [`super::choice`]).
 
-use serde::{Deserialize, Serialize};
-
 use super::belief::Belief;
-use crate::base::number_range::is_zero;
+use super::model_table::model_table;
 use crate::base::rng::Stream;
 use crate::kitchen::{Kitchen, WeightedWorlds};
 
-/// Parameters of the choice model (paper, section "Human model").
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ChoiceParameters {
-    /// Softmax rationality tau, per press: how strongly a lower expected cost to go is preferred.
-    pub tau: f64,
-    /// The lapse rate: share of presses that are slips.
-    pub lapse: f64,
-    /// Share of the slips that hit any button at random. The other slips hit the neighbouring button and the look-alike
-    /// button with equal probability.
-    pub lapse_anywhere: f64,
-    /// Cost of waiting instead of pressing, in presses, in the choice model.
-    pub wait_cost: f64,
-    /// Share of the people who, at a given time, consider only one order in their decisions, whatever they believe about
-    /// the others. A header without the key means that everybody considers all orders.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub one_order: f64,
-    /// Number of drawn worlds that represent a belief.
-    pub cases: usize,
-}
-
-impl Default for ChoiceParameters {
-    fn default() -> Self {
-        ChoiceParameters { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, one_order: 0.0, cases: 32 }
+model_table! {
+    /// Parameters of the choice model (paper, section "Human model").
+    ChoiceParameters, GivenChoice {
+        /// Softmax rationality tau, per press: how strongly a lower expected cost to go is preferred.
+        tau: f64,
+        /// The lapse rate: share of presses that are slips.
+        lapse: f64,
+        /// Share of the slips that hit any button at random. The other slips hit the neighbouring button and the
+        /// look-alike button with equal probability.
+        lapse_anywhere: f64,
+        /// Cost of waiting instead of pressing, in presses, in the choice model.
+        wait_cost: f64,
+        /// Number of drawn worlds that represent a belief.
+        cases: usize,
     }
 }
 

@@ -5,7 +5,7 @@
 //! preserves the mean and the pooled second moment S = sum_k E[b_k^2]; the precision follows as (1 - S) / (S - sum_k
 //! m_k^2).
 
-use super::model::{HumanModel, PriorModel};
+use super::model::PriorModel;
 use crate::kitchen::{AspectId, AspectKind, ContentId, Kitchen, State};
 
 /// Lower bound of a value's expected probability, which lets later evidence still raise the probability.
@@ -83,25 +83,6 @@ impl Dirichlet {
             *mean = (1.0 - share) * *mean + share * value;
         }
         self.set_second(second);
-    }
-
-    /// Moves every belief b towards the distribution c = `values` by the share q: b' = (1 - q) b + q c, so that m' =
-    /// (1 - q) m + q c, and S' = (1 - q)^2 S + 2 q (1 - q) m c + q^2 c c, where m c and c c are sums over the values.
-    pub fn fade(&mut self, share: f64, values: &[f64]) {
-        let kept = 1.0 - share;
-        let both: f64 = self.mean.iter().zip(values).map(|(m, c)| m * c).sum();
-        let second =
-            kept * kept * self.second() + 2.0 * share * kept * both + share * share * sum_of(values, |c| c * c);
-        for (mean, &value) in self.mean.iter_mut().zip(values) {
-            *mean = kept * *mean + share * value;
-        }
-        self.set_second(second);
-    }
-
-    /// This Dirichlet with every belief b replaced by one that is drawn from the Dirichlet with mean b and this precision
-    /// r: the mean stays, and S' = (r S + 1) / (r + 1).
-    pub fn redrawn(&self, precision: f64) -> Dirichlet {
-        Dirichlet::of_moments(self.mean.clone(), (precision * self.second() + 1.0) / (precision + 1.0))
     }
 
     /// Moves all probability of the value `from` to the value `to`; the result is an exact Dirichlet.
@@ -185,17 +166,6 @@ impl DirichletBelief {
             }
         };
         DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
-    }
-
-    /// What is left of recipes that are forgotten: the prior with the transition model's probability of a true recipe.
-    pub fn forgotten(kitchen: &Kitchen, model: &HumanModel, state: State) -> DirichletBelief {
-        let recipe_truth = model.transition.forgotten_truth.unwrap_or(model.prior.recipe_truth);
-        DirichletBelief::prior(kitchen, &PriorModel { recipe_truth, ..model.prior.clone() }, state)
-    }
-
-    /// Mixes each aspect with that of another estimate, which has this share, matching mean and second moment.
-    pub fn mix(&mut self, share: f64, other: &DirichletBelief) {
-        self.aspects.iter_mut().zip(&other.aspects).for_each(|(own, other)| own.mix(share, other));
     }
 
     /// The Dirichlet distribution of this aspect.

@@ -1,8 +1,6 @@
 //! Fitting the human model: the parameters that can be fitted, the scale on which each parameter is fitted, and the
 //! likelihood of a trial's presses and answers to freeze probes.
 
-use serde::{Deserialize, Serialize};
-
 use super::dirichlet::Dirichlet;
 use super::filter::BeliefFilter;
 use super::model::HumanModel;
@@ -16,8 +14,7 @@ use std::sync::Arc;
 const STRICT: f64 = 0.1;
 
 /// A parameter of the human model that can be fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum HumanModelParameter {
     /// Softmax rationality tau: how strictly fewer expected presses are preferred, per press.
     Tau,
@@ -39,8 +36,6 @@ pub enum HumanModelParameter {
     Capture,
     /// Expected probability of a dish's true recipe at the start of a trial.
     RecipeTruth,
-    /// Share of the people who, at a given time, consider only one order.
-    OneOrder,
 }
 
 impl HumanModelParameter {
@@ -66,7 +61,6 @@ impl HumanModelParameter {
             HumanModelParameter::OtherLooksHz => "other_looks_hz",
             HumanModelParameter::Capture => "capture",
             HumanModelParameter::RecipeTruth => "recipe_truth",
-            HumanModelParameter::OneOrder => "one_order",
         }
     }
 
@@ -74,10 +68,7 @@ impl HumanModelParameter {
     pub fn unit(self) -> &'static str {
         match self {
             HumanModelParameter::Tau => "1/press",
-            HumanModelParameter::Lapse
-            | HumanModelParameter::Foresight
-            | HumanModelParameter::Capture
-            | HumanModelParameter::OneOrder => "share",
+            HumanModelParameter::Lapse | HumanModelParameter::Foresight | HumanModelParameter::Capture => "share",
             HumanModelParameter::RadiusDeg => "deg",
             HumanModelParameter::ReadingRateHz | HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz => {
                 "1/s"
@@ -100,7 +91,6 @@ impl HumanModelParameter {
             HumanModelParameter::OtherLooksHz => model.looking.other_looks_hz,
             HumanModelParameter::Capture => model.looking.capture,
             HumanModelParameter::RecipeTruth => model.prior.recipe_truth,
-            HumanModelParameter::OneOrder => model.decision.one_order,
         }
     }
 
@@ -117,7 +107,6 @@ impl HumanModelParameter {
             HumanModelParameter::OtherLooksHz => model.looking.other_looks_hz = value,
             HumanModelParameter::Capture => model.looking.capture = value,
             HumanModelParameter::RecipeTruth => model.prior.recipe_truth = value,
-            HumanModelParameter::OneOrder => model.decision.one_order = value,
         }
     }
 
@@ -130,9 +119,7 @@ impl HumanModelParameter {
             HumanModelParameter::RadiusDeg => [0.25, 16.0],
             HumanModelParameter::ReadingRateHz => [0.2, 100.0],
             HumanModelParameter::RecipeHalfLifeS => [5.0, 20_000.0],
-            HumanModelParameter::Foresight | HumanModelParameter::Capture | HumanModelParameter::OneOrder => {
-                [0.001, 0.999]
-            }
+            HumanModelParameter::Foresight | HumanModelParameter::Capture => [0.001, 0.999],
             HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz => [0.01, 20.0],
             HumanModelParameter::RecipeTruth => [0.01, 0.999],
         }
@@ -145,7 +132,6 @@ impl HumanModelParameter {
             HumanModelParameter::Lapse
             | HumanModelParameter::Foresight
             | HumanModelParameter::Capture
-            | HumanModelParameter::OneOrder
             | HumanModelParameter::RecipeTruth => {
                 let p = value.clamp(1e-4, 1.0 - 1e-4);
                 (p / (1.0 - p)).ln()
@@ -161,7 +147,6 @@ impl HumanModelParameter {
             HumanModelParameter::Lapse
             | HumanModelParameter::Foresight
             | HumanModelParameter::Capture
-            | HumanModelParameter::OneOrder
             | HumanModelParameter::RecipeTruth => 1.0 / (1.0 + (-scaled).exp()),
             HumanModelParameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
             _ => scaled.exp(),
@@ -174,7 +159,6 @@ impl HumanModelParameter {
             HumanModelParameter::Lapse
             | HumanModelParameter::Foresight
             | HumanModelParameter::Capture
-            | HumanModelParameter::OneOrder
             | HumanModelParameter::RecipeTruth => value * (1.0 - value),
             HumanModelParameter::Tau => value * (1.0 + STRICT * value),
             _ => value,

@@ -1,17 +1,16 @@
 //! The human's mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how
 //! the human decides.
 
-pub mod attention_posterior;
 pub mod belief;
 pub mod choice;
 pub mod choice_parameters;
 pub mod dirichlet;
 pub mod filter;
-pub mod fitted_people;
 pub mod fitting;
 pub mod gaze_presence;
-pub mod lapse_posterior;
 pub mod model;
+pub mod model_table;
+pub mod named_models;
 pub mod observation;
 pub mod recorded_estimate;
 pub mod reference;
@@ -29,8 +28,8 @@ pub struct RecordedBelief {
     pub aspects: Vec<AspectBelief>,
     /// Reason for the participant's next press: "as believed", "slip: hit a button nearby, meant cut", …
     pub cause: String,
-    /// Origin of the participant's next press, found by repeating the participant's decision with the truth; `None` in
-    /// recordings made before version 0.2.0.
+    /// Origin of the participant's next press, found by repeating the participant's decision with the truth; `None` at
+    /// a freeze probe, which leads to no press.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<PressOrigin>,
     /// Names of the aspects whose replacement by the truth changes a press that a false belief caused.

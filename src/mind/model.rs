@@ -1,18 +1,45 @@
 //! The human model (paper, section "Human model"): the parameters of prior, perception, transition, decision and
 //! signals.
 //!
-//! Every parameter has a default. A session file names a file with other values (`human_model = "…"`); the values in
-//! use are recorded in the header of every recording.
+//! The program has two models by name ([`super::named_models`]). A session names one of them, and may set single
+//! parameters on top of it, or name a file with such parameters (`human_model = "…"`); the values in use are recorded
+//! in the header of every recording.
 
 use serde::{Deserialize, Serialize};
 
-use super::choice_parameters::ChoiceParameters;
-use super::signal_model::SignalModel;
+use super::choice_parameters::{ChoiceParameters, GivenChoice};
+use super::model_table::model_table;
+use super::signal_model::{GivenSignal, SignalModel};
+use crate::kitchen::{Kitchen, LocationId};
+
+/// A human model that the program has by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum HumanModelName {
+    /// The program's default.
+    #[default]
+    #[serde(rename = "plain")]
+    Plain,
+    /// The model of Buehler, Adamy and Weisswange (2021), and nothing else.
+    #[serde(rename = "paper-2021")]
+    Paper2021,
+}
+
+impl HumanModelName {
+    /// The name in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            HumanModelName::Plain => "plain",
+            HumanModelName::Paper2021 => "paper-2021",
+        }
+    }
+}
 
 /// All parameters of the human model, and the sample sizes of its inference.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "GivenHumanModel")]
 pub struct HumanModel {
+    /// The named model on top of which the parameters are set.
+    pub model: HumanModelName,
     /// Prior: beliefs before the human has seen anything.
     pub prior: PriorModel,
     /// How gaze near a location becomes knowledge of its content.
@@ -25,111 +52,105 @@ pub struct HumanModel {
     pub decision: ChoiceParameters,
     /// How the human notices and reads signals.
     pub signal: SignalModel,
-    /// What the estimate learns about the person in a trial.
-    #[serde(skip_serializing_if = "AdaptationSettings::is_off")]
-    pub adapt: AdaptationSettings,
     /// Settings of the computation that infers the belief, which are no properties of people.
     pub inference: InferenceSettings,
 }
 
-/// Which parameters the estimate adapts to the person in a trial, press by press.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// What a file gives of a human model: its name, and parameters on top of it.
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct AdaptationSettings {
-    /// Whether the estimate learns how often the person slips.
-    pub lapse: bool,
-    /// Whether the estimate learns how attentive the person is: how fast the person reads, and how often it looks. A
-    /// header without the key means that it does not.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub attention: bool,
+pub struct GivenHumanModel {
+    /// The named model.
+    pub model: HumanModelName,
+    /// Given parameters of the prior.
+    pub prior: GivenPrior,
+    /// Given parameters of perception.
+    pub perception: GivenPerception,
+    /// Given parameters of plausible looking.
+    pub looking: GivenLooking,
+    /// Given parameters of the transition.
+    pub transition: GivenTransition,
+    /// Given parameters of the choice model.
+    pub decision: GivenChoice,
+    /// Given parameters of the comprehension of signals.
+    pub signal: GivenSignal,
+    /// Given settings of the inference.
+    pub inference: GivenInference,
 }
 
-impl AdaptationSettings {
-    /// Everything that can be adapted to the person is.
-    pub const ALL: AdaptationSettings = AdaptationSettings { lapse: true, attention: true };
-
-    /// Whether nothing is adapted to the person, in which case files and headers leave this table out.
-    pub(super) fn is_off(&self) -> bool {
-        *self == AdaptationSettings::default()
+impl GivenHumanModel {
+    /// A model with the given parameters in their places.
+    pub fn on(self, model: HumanModel) -> HumanModel {
+        HumanModel {
+            model: model.model,
+            prior: self.prior.on(model.prior),
+            perception: self.perception.on(model.perception),
+            looking: self.looking.on(model.looking),
+            transition: self.transition.on(model.transition),
+            decision: self.decision.on(model.decision),
+            signal: self.signal.on(model.signal),
+            inference: self.inference.on(model.inference),
+        }
     }
 }
 
-/// The human's belief at the start of a trial (prior).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct PriorModel {
-    /// Expected probability of a location's true content; the remaining probability is spread evenly over the other
-    /// contents.
-    pub location_truth: f64,
-    /// Precision (sum of the alphas) of the Dirichlet about a location's content.
-    pub location_precision: f64,
-    /// Expected probability of a dish's true recipe.
-    pub recipe_truth: f64,
-    /// Share of the remaining probability that goes to variants which look like the true recipe, where there are any.
-    pub recipe_look_alike: f64,
-    /// Precision (sum of the alphas) of the Dirichlet about a recipe: small where people are certain of one variant from
-    /// the start, large where they are not before they recall it ([`TransitionModel::recall_precision`]).
-    pub recipe_precision: f64,
+/// What a gaze sample tells about a location near the gaze.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PerceptionUnit {
+    /// Reading takes time: a sample reads the location with a probability that grows with the time that the sample
+    /// covers, and one look reads the location at most once.
+    Look,
+    /// Every sample is an observation of each location within the radius, and updates the belief by Bayes' rule.
+    Sample,
 }
 
-impl Default for PriorModel {
-    fn default() -> Self {
-        PriorModel {
-            location_truth: 0.9,
-            location_precision: 10.0,
-            recipe_truth: 0.8,
-            recipe_look_alike: 0.6,
-            recipe_precision: 0.6,
-        }
+model_table! {
+    /// The human's belief at the start of a trial (prior).
+    PriorModel, GivenPrior {
+        /// Expected probability of a location's true content; the remaining probability is spread evenly over the other
+        /// contents.
+        location_truth: f64,
+        /// Precision (sum of the alphas) of the Dirichlet about a location's content.
+        location_precision: f64,
+        /// Expected probability of a dish's true recipe.
+        recipe_truth: f64,
+        /// Share of the remaining probability that goes to variants which look like the true recipe, where there are
+        /// any.
+        recipe_look_alike: f64,
+        /// Precision (sum of the alphas) of the Dirichlet about a recipe: small, since people are certain of one
+        /// variant.
+        recipe_precision: f64,
     }
 }
 
 /// Range of confidence over which the time of a gaze sample turns from unknown to known.
 pub const CONFIDENCE_RAMP: f64 = 0.4;
 
-/// Perception as a reading process: a location near the gaze is read at a rate that falls with the location's distance
-/// from the gaze.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct PerceptionModel {
-    /// Reading rate lambda at distance 0 and full confidence, in readings per second.
-    pub reading_rate_hz: f64,
-    /// Time of a look, at distance 0 and full confidence, after which reading begins, in seconds: gaze that only passes
-    /// reads nothing.
-    pub reading_begins_s: f64,
-    /// Radius r of the area around the fixation that is read, in degrees of the visual field.
-    pub radius_deg: f64,
-    /// Distance from the eyes to the display, in metres.
-    pub viewing_distance_m: f64,
-    /// Probability that a reading gives a look-alike of the true content instead of it.
-    pub look_alike: f64,
-    /// Probability that a reading gives any other wrong content.
-    pub anything: f64,
-    /// Confidence at which half of a gaze sample's time counts as known; the share that counts rises linearly over
-    /// [`CONFIDENCE_RAMP`].
-    pub min_confidence: f64,
-    /// Length of the history of displayed states, in seconds; gaze samples taken earlier are not used.
-    pub history_s: f64,
-    /// Longest time that one gaze sample covers, in seconds.
-    pub max_sample_s: f64,
-    /// Time for which the gaze has to be elsewhere until a look at a location ends, in seconds.
-    pub look_ends_s: f64,
-}
-
-impl Default for PerceptionModel {
-    fn default() -> Self {
-        PerceptionModel {
-            reading_rate_hz: 5.0,
-            reading_begins_s: 0.0,
-            radius_deg: 2.0,
-            viewing_distance_m: 2.0,
-            look_alike: 0.04,
-            anything: 0.01,
-            min_confidence: 0.6,
-            history_s: 0.5,
-            max_sample_s: 1.0 / 15.0,
-            look_ends_s: 0.1,
-        }
+model_table! {
+    /// Perception: how gaze near a location becomes an observation of the location's content.
+    PerceptionModel, GivenPerception {
+        /// Whether a look or a gaze sample is one observation.
+        observation: PerceptionUnit,
+        /// Reading rate lambda at distance 0 and full confidence, in readings per second, where looks are observations.
+        reading_rate_hz: f64,
+        /// Radius r of the area around the fixation that is perceived, in degrees of the visual field.
+        radius_deg: f64,
+        /// Distance from the eyes to the display, in metres.
+        viewing_distance_m: f64,
+        /// Probability that an observation gives a look-alike of the true content instead of it.
+        look_alike: f64,
+        /// Probability that an observation gives any other wrong content.
+        anything: f64,
+        /// Confidence at which half of a gaze sample's time counts as known; the share that counts rises linearly over
+        /// [`CONFIDENCE_RAMP`]. Where samples are observations: the least confidence of a sample that is used.
+        min_confidence: f64,
+        /// Length of the history of displayed states, in seconds; gaze samples taken earlier are not used.
+        history_s: f64,
+        /// Longest time that one gaze sample covers, in seconds.
+        max_sample_s: f64,
+        /// Time for which the gaze has to be elsewhere until a look at a location ends, in seconds.
+        look_ends_s: f64,
     }
 }
 
@@ -137,6 +158,27 @@ impl PerceptionModel {
     /// Radius, on the display, of the area around the fixation that is read, in metres.
     pub fn radius_m(&self) -> f64 {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
+    }
+
+    /// Probabilities of reading each value of a location's aspect, given that `value` is displayed there.
+    pub fn confusion(&self, kitchen: &Kitchen, location: LocationId, value: usize) -> Vec<f64> {
+        let aspect = &kitchen.aspects[location.index()];
+        let alike: Vec<usize> = kitchen
+            .look_alike_codes(location, aspect.values[value])
+            .into_iter()
+            .filter_map(|code| aspect.index_of(code))
+            .collect();
+        let others = aspect.values.len() - 1 - alike.len();
+        let to_alike = if alike.is_empty() { 0.0 } else { self.look_alike };
+        let to_others = if others == 0 { 0.0 } else { self.anything };
+        let each_alike = to_alike / alike.len().max(1) as f64;
+        let each_other = to_others / others.max(1) as f64;
+        let chance = |other: usize| match other {
+            _ if other == value => 1.0 - to_alike - to_others,
+            _ if alike.contains(&other) => each_alike,
+            _ => each_other,
+        };
+        (0..aspect.values.len()).map(chance).collect()
     }
 
     /// Share of a gaze sample's time in which the gaze is known: v = clamp((c - 0.4) / 0.4) for confidence c and
@@ -157,31 +199,26 @@ impl PerceptionModel {
     }
 }
 
-/// Plausible looking: where people look, in rates. The belief filter uses these rates while the gaze is unknown, the
-/// planner in its rollouts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LookingModel {
-    /// Looks per second at each place that the next press needs; before an item is fetched, also at the robot's hand,
-    /// which may be bringing the item. Measured on unassisted simulated participants: 1.1 and 0.7.
-    pub looks_hz: f64,
-    /// Looks per second at each other place. Unassisted simulated participants look 0.25 to 0.4 times a second at a
-    /// place that has changed more than a second ago and was not seen since.
-    pub other_looks_hz: f64,
-    /// Share of the changes by others that attract the gaze at once. Of simulated participants, beyond the looks above:
-    /// 0.3 at the robot's hand and at places, 0.4 at orders.
-    pub capture: f64,
-    /// Looks per second at each place while the eye tracker does not find the display in its view, which means that the
-    /// head is turned away.
-    pub display_lost_looks_hz: f64,
-    /// Time without known gaze that counts as a blink, in seconds: nothing is read during a blink, and its time does
-    /// not count as unknown.
-    pub blink_s: f64,
-}
-
-impl Default for LookingModel {
-    fn default() -> Self {
-        LookingModel { looks_hz: 1.0, other_looks_hz: 0.25, capture: 0.35, display_lost_looks_hz: 0.05, blink_s: 0.3 }
+model_table! {
+    /// Plausible looking: where people look, in rates. The belief filter uses these rates while the gaze is unknown,
+    /// the planner in its rollouts.
+    LookingModel, GivenLooking {
+        /// Whether the belief filter marginalises over plausible looks while the gaze is unknown; otherwise it assumes
+        /// that nothing is seen then.
+        marginalised: bool,
+        /// Looks per second at each place that the next press needs; before an item is fetched, also at the robot's
+        /// hand, which may be bringing the item.
+        looks_hz: f64,
+        /// Looks per second at each other place.
+        other_looks_hz: f64,
+        /// Share of the changes by others that attract the gaze at once.
+        capture: f64,
+        /// Looks per second at each place while the eye tracker does not find the display in its view, which means that
+        /// the head is turned away.
+        display_lost_looks_hz: f64,
+        /// Time without known gaze that counts as a blink, in seconds: nothing is read during a blink, and its time
+        /// does not count as unknown.
+        blink_s: f64,
     }
 }
 
@@ -203,73 +240,31 @@ impl LocationReadingRate {
     }
 }
 
-/// Transition model: how the human's belief changes without new evidence.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct TransitionModel {
-    /// Half-life with which a belief about a recipe decays to what is left of a forgotten one, in seconds: of how many
-    /// people still hold it, or, where recipes are recalled, of its distance from that while the dish is not ordered.
-    pub recipe_half_life_s: f64,
-    /// Expected probability of the true recipe in what is left of a forgotten recipe: beliefs decay to it. Absent: that of
-    /// the prior ([`PriorModel::recipe_truth`]), as if nothing of the instruction before the trial were forgotten.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub forgotten_truth: Option<f64>,
-    /// Precision with which a recipe is recalled when its dish is ordered: the belief becomes one that is drawn from a
-    /// Dirichlet with the earlier belief as its mean. It is small, since people recall one version. The same happens to
-    /// those who find their version wrong, as it could not be served. Absent: orders do not change what is held of
-    /// recipes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub recall_precision: Option<f64>,
-    /// Half-life of a recalled recipe while its dish is ordered, in seconds: then the recipe is recalled anew from what is
-    /// left of it. It has an effect only where `recall_precision` is set.
-    pub recall_half_life_s: f64,
-    /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
-    /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
-    pub foresight: f64,
-}
-
-impl Default for TransitionModel {
-    fn default() -> Self {
-        TransitionModel {
-            recipe_half_life_s: 200.0,
-            forgotten_truth: None,
-            recall_precision: None,
-            recall_half_life_s: 20.0,
-            foresight: 0.2,
-        }
+model_table! {
+    /// Transition model: how the human's belief changes without new evidence.
+    TransitionModel, GivenTransition {
+        /// Half-life with which beliefs about a recipe decay to the prior, in seconds: of how many people still hold
+        /// what they have learned.
+        recipe_half_life_s: f64,
+        /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
+        /// unchanged.
+        foresight: f64,
     }
 }
 
-/// Settings of the inference of the belief: from which evidence, and with which sample sizes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct InferenceSettings {
-    /// Number of belief samples drawn from the estimate at a press.
-    pub beliefs: usize,
-    /// Number of worlds (state and recipes) drawn from each belief sample.
-    pub states: usize,
-    /// Effective sample size below which the number of belief samples is doubled.
-    pub min_effective: f64,
-    /// Largest number of belief samples in an update by a press.
-    pub max_beliefs: usize,
-    /// Number of worlds from which the effect of a robot press on the belief is predicted.
-    pub predictions: usize,
-    /// Whether waiting is evidence: a human who waits believes that no press is useful now; a human who presses
-    /// believes that some press is.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub waiting: bool,
-}
-
-impl Default for InferenceSettings {
-    fn default() -> Self {
-        InferenceSettings {
-            beliefs: 256,
-            states: 32,
-            min_effective: 32.0,
-            max_beliefs: 512,
-            predictions: 64,
-            waiting: false,
-        }
+model_table! {
+    /// Sample sizes of the inference of the belief.
+    InferenceSettings, GivenInference {
+        /// Number of belief samples drawn from the estimate at a press.
+        beliefs: usize,
+        /// Number of worlds (state and recipes) drawn from each belief sample.
+        states: usize,
+        /// Effective sample size below which the number of belief samples is doubled.
+        min_effective: f64,
+        /// Largest number of belief samples in an update by a press.
+        max_beliefs: usize,
+        /// Number of worlds from which the effect of a robot press on the belief is predicted.
+        predictions: usize,
     }
 }
 

@@ -79,11 +79,6 @@ pub enum ObservedEvidence {
     /// The display proposes presses. A proposal reveals nothing about contents and recipes; it changes what the next
     /// presses reveal about beliefs.
     Proposed(ProposedPresses),
-    /// The human has not pressed for longer than usual.
-    Waited {
-        /// Share of the human's own intervals between presses that are longer than the present silence.
-        longer: f64,
-    },
     /// The trial is paused: nothing is read or forgotten until it resumes.
     Paused,
     /// The trial resumes after a pause.

@@ -1,72 +1,35 @@
 //! The comprehension of signals: whether a signal is noticed, when it is read, and whether it is understood.
 
-use serde::{Deserialize, Serialize};
-
-use crate::base::number_range::is_zero;
+use super::model_table::model_table;
 use crate::kitchen::LocationKind;
 
 /// Upper bound of probabilities that a signal is noticed where signals take time: a signal certain to be noticed could
 /// not be missed.
 const MOST_NOTICED: f64 = 0.999;
 
-/// The effect of a signal on the human.
-///
-/// With `delay_s` = 0 a signal is believed at once with the probability `noticed`; this is so in recordings whose
-/// header lacks the key. Otherwise a signal is read while it stands on the display, and may be missed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SignalModel {
-    /// Probability that a signal is noticed. Where signals take time: that a signal which stands for long is noticed
-    /// under unknown gaze.
-    pub noticed: f64,
-    /// Probability that a highlight is noticed, if it differs from that of a shown recipe.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub highlight_noticed: Option<f64>,
-    /// Mean time until somebody who notices a signal reads it, in seconds after its beginning; 0: signals are believed
-    /// at once.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub delay_s: f64,
-    /// Readings per second of a signal while the gaze is known to be at its place, at distance 0 and with full
-    /// confidence.
-    #[serde(skip_serializing_if = "is_usual_reading")]
-    pub reading_rate_hz: f64,
-    /// Probability that somebody who reads a signal takes it for any of the other values.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub misread: f64,
-    /// Precision of the prior for learning how often this person notices signals: `noticed` counts as this number of
-    /// signals; 0: nothing is learned.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub noticed_precision: f64,
-    /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured this
-    /// probability; the default stands for a person who notices most proposals and makes most of them.
-    #[serde(skip_serializing_if = "is_usual_following")]
-    pub follows: f64,
-}
-
-/// The default of [`SignalModel::follows`]. Files and headers leave out a value equal to the default.
-const FOLLOWS: f64 = 0.7;
-/// The default of [`SignalModel::reading_rate_hz`]. Files and headers leave out a value equal to the default.
-const READING_RATE_HZ: f64 = 3.0;
-
-fn is_usual_following(follows: &f64) -> bool {
-    *follows == FOLLOWS
-}
-
-fn is_usual_reading(rate_hz: &f64) -> bool {
-    *rate_hz == READING_RATE_HZ
-}
-
-impl Default for SignalModel {
-    fn default() -> Self {
-        SignalModel {
-            noticed: 1.0,
-            highlight_noticed: None,
-            delay_s: 0.0,
-            reading_rate_hz: READING_RATE_HZ,
-            misread: 0.0,
-            noticed_precision: 0.0,
-            follows: FOLLOWS,
-        }
+model_table! {
+    /// The effect of a signal on the human.
+    ///
+    /// With `delay_s` = 0 a signal is believed at once with the probability `noticed`. Otherwise a signal is read while
+    /// it stands on the display, and may be missed.
+    SignalModel, GivenSignal {
+        /// Probability that a signal is noticed. Where signals take time: that a signal which stands for long is
+        /// noticed under unknown gaze.
+        noticed: f64,
+        /// Probability that a highlight is noticed, if it differs from that of a shown recipe.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        highlight_noticed: Option<f64>,
+        /// Mean time until somebody who notices a signal reads it, in seconds after its beginning; 0: signals are
+        /// believed at once.
+        delay_s: f64,
+        /// Readings per second of a signal while the gaze is known to be at its place, at distance 0 and with full
+        /// confidence.
+        reading_rate_hz: f64,
+        /// Probability that somebody who reads a signal takes it for any of the other values.
+        misread: f64,
+        /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured
+        /// this probability; 0.7 stands for a person who notices most proposals and makes most of them.
+        follows: f64,
     }
 }
 
@@ -76,17 +39,11 @@ impl SignalModel {
         self.delay_s > 0.0
     }
 
-    /// Expected probability that a signal about a location of this kind is noticed, once `read` of `shown` signals have
-    /// been read: the mean of a Beta distribution with the prior precision `noticed_precision`; read signals of both
-    /// kinds count as the same evidence.
-    pub fn expected_noticed(&self, kind: LocationKind, read: f64, shown: f64) -> f64 {
-        let before = match kind {
+    /// Probability that a signal about a location of this kind is noticed.
+    pub fn noticed_at(&self, kind: LocationKind) -> f64 {
+        match kind {
             LocationKind::Order => self.noticed,
             _ => self.highlight_noticed.unwrap_or(self.noticed),
-        };
-        match self.noticed_precision > 0.0 {
-            true => (self.noticed_precision * before + read) / (self.noticed_precision + shown),
-            false => before,
         }
     }
 

@@ -11,7 +11,7 @@ use crate::gaze::GazeSample;
 /// Gaze samples per second, as a Pupil Core eye tracker delivers them.
 pub const RATE_HZ: u64 = 120;
 /// Time from the start of a fixation until its location has been read, in seconds: about half of a usual fixation.
-pub const READING_S: f64 = 0.14;
+const READING_S: f64 = 0.14;
 /// Shortest duration of a fixation, in seconds.
 const SHORTEST_FIXATION_S: f64 = 0.16;
 /// Standard deviations in metres on the display: of a saccade's landing point, and of the gaze's jitter during a
@@ -136,12 +136,6 @@ impl Eyes {
         let read = now + SessionTime::from_secs_f64(READING_S);
         self.reads = Some(read);
         self.ends = self.ends.max(read);
-    }
-
-    /// Puts the eyes to a point of the display, where a recording shows them, without a saccade.
-    pub fn rest_at(&mut self, now: SessionTime, point: [f64; 2]) {
-        (self.from, self.goal, self.leaves, self.lands) = (point, point, now, now);
-        self.blink = (SessionTime::ZERO, SessionTime::ZERO);
     }
 
     /// Keeps the present fixation until `until`; the participant reads nothing more during the fixation.

@@ -30,13 +30,6 @@ impl Habits {
         Habits { last, ..self.clone() }
     }
 
-    /// These habits, but with the rank of each content from `other` where `takes` of its index is true.
-    pub fn mixed(&self, other: &Habits, mut takes: impl FnMut(usize) -> bool) -> Habits {
-        let ranks = self.ranks.iter().zip(&other.ranks).enumerate();
-        let ranks = ranks.map(|(index, (&own, &rank))| if takes(index) { rank } else { own });
-        Habits { ranks: ranks.collect(), last: self.last }
-    }
-
     /// The rank of an ingredient in the participant's habitual order.
     pub fn rank(&self, ingredient: ContentId) -> u8 {
         self.ranks[ingredient.index()]

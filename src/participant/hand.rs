@@ -121,7 +121,7 @@ impl SimulatedParticipant {
     }
 
     /// Waits while no press is useful: the participant looks around, then doubts the recipes, and at last tries a
-    /// press.
+    /// press. Who does not know how to go on only looks around.
     fn wait(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
         let since = *self.idle_since.get_or_insert(now);
@@ -137,6 +137,9 @@ impl SimulatedParticipant {
         stale.sort_by_key(|location| self.attention.read_at[location.index()]);
         for &location in stale.iter().take(3) {
             self.attention.later(location);
+        }
+        if self.stuck_in.is_some() {
+            return None;
         }
         if standstill_s >= self.person.patience_s
             && let Some(action) = self.press_urgently(now, state, Impatience::Impatient)

@@ -84,34 +84,6 @@ impl RecipeMemory {
         RecipeMemory { random, faded, corrected, learned, left, half_life_s, last }
     }
 
-    /// Takes over what another person remembers of a dish's recipe, `theirs`, faded up to the same time.
-    pub fn take_recipe(
-        &mut self,
-        kitchen: &Kitchen,
-        beliefs: &mut ParticipantBeliefs,
-        (other, theirs): (&RecipeMemory, &ParticipantBeliefs),
-        dish: DishId,
-    ) {
-        let index = dish.index();
-        for (own, others) in [
-            (&mut self.faded, &other.faded),
-            (&mut self.corrected, &other.corrected),
-            (&mut self.learned, &other.learned),
-            (&mut self.left, &other.left),
-        ] {
-            own[index].clone_from(&others[index]);
-        }
-        let aspect = kitchen.aspect_of_dish(dish);
-        beliefs.replace(aspect, theirs.distribution(aspect));
-        let lost = 1.0 - 0.5_f64.powf(self.last.secs_since(other.last) / other.half_life_s);
-        beliefs.mix(aspect, &self.faded[index], lost);
-    }
-
-    /// Gives the memory another random stream, from which later recalls draw.
-    pub fn reseed(&mut self, random: Stream) {
-        self.random = random;
-    }
-
     /// Lets the memory of recipes fade for dishes that are not in preparation.
     pub fn fade(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, now: SessionTime, in_use: &[DishId]) {
         let lost = 1.0 - 0.5_f64.powf(now.secs_since(self.last) / self.half_life_s);

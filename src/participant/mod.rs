@@ -14,7 +14,6 @@
 //! - Errors of the hand: [`slips`] (which other button is hit).
 //! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`,
 //!   `acting`, `answering`.
-//! - Following a recording: [`recorded_eyes`] (fixations in recorded gaze), `shadowing`.
 
 mod acting;
 mod answering;
@@ -32,8 +31,6 @@ mod looking;
 mod memory;
 mod planning;
 pub mod population;
-pub mod recorded_eyes;
-mod shadowing;
 mod signal_sense;
 mod signals;
 mod simulated;

@@ -28,31 +28,9 @@ const ANSWER_S: TraitSpread = TraitSpread::from_median(3.0, 0.3);
 /// people.
 const FOLLOWS_PROPOSAL: TraitSpread = TraitSpread::from_median(0.9, 0.4);
 
-// A default setting of how participants answer probes is not written to recordings.
-fn is_usual_wrong(value: &TraitSpread) -> bool {
-    *value == ANSWERS_WRONG
-}
-
-fn is_usual_from(value: &f64) -> bool {
-    *value == ANSWERS_FROM
-}
-
-fn is_usual_following(value: &TraitSpread) -> bool {
-    *value == FOLLOWS_PROPOSAL
-}
-
-fn is_usual_time(value: &TraitSpread) -> bool {
-    *value == ANSWER_S
-}
-
 impl TraitSpread {
     const fn from_median(median: f64, sigma: f64) -> TraitSpread {
         TraitSpread { median, sigma }
-    }
-
-    /// Whether the trait is 0 for everybody; recordings leave such a trait out.
-    fn is_never(&self) -> bool {
-        *self == NEVER
     }
 
     /// Draws a positive trait of a person: log-normal, truncated at three sigma.
@@ -68,8 +46,7 @@ impl TraitSpread {
 }
 
 /// Parameters of the simulated population. The defaults of planning and slips are calibrated to the paper's participants
-/// (study, "Simulated participants", steps A and B). Step C, their beliefs over two trials, is in `sessions/paper.toml`;
-/// the default beliefs are those to which the human model of `sessions/default.toml` was fitted.
+/// (study, "Simulated participants", steps A and B). Step C, their beliefs over two trials, is in `sessions/paper.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Population {
@@ -154,14 +131,14 @@ pub struct Population {
     /// Probability of misreading a recipe that a signal shows.
     pub misreads_signal: f64,
     /// Probability that the participant keeps the own version of a recipe when a signal shows another version.
-    #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub keeps_own_recipe: TraitSpread,
     /// Probability, for each recipe, that the participant is sure of a wrong version after the instruction.
-    #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub misremembers: TraitSpread,
     /// Probability that the participant guesses rightly what the robot did by a press that the participant did not see.
-    #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub guesses_robot: TraitSpread,
+    /// Probability that the participant, after an own press, does not know how to go on: the participant waits until
+    /// something changes in what the participant believes, or a signal is read.
+    pub gets_stuck: TraitSpread,
     /// Factor, per earlier trial, on the odds of knowing a recipe (1: no learning between trials).
     pub recipes_gained: f64,
     /// Share of the presses in earlier trials that count as practice (0: earlier trials give no practice).
@@ -171,18 +148,14 @@ pub struct Population {
     /// Whether all participants know the state and all recipes, and so make only planning errors and slips.
     pub all_knowing: bool,
     /// Probability of a wrong answer to a question of a freeze probe, whatever the participant believes.
-    #[serde(skip_serializing_if = "is_usual_wrong")]
     pub answers_wrong: TraitSpread,
     /// Least probability of a belief's most probable value from which the value is given as the answer to a probe;
     /// below it, the answer is "I don't know".
-    #[serde(skip_serializing_if = "is_usual_from")]
     pub answers_from: f64,
     /// Time that a participant takes to answer a question of a freeze probe, in seconds.
-    #[serde(skip_serializing_if = "is_usual_time")]
     pub answer_s: TraitSpread,
     /// Probability that the participant, having read a proposal, makes the proposed presses at the next decision,
     /// whatever the participant believes.
-    #[serde(skip_serializing_if = "is_usual_following")]
     pub follows_proposal: TraitSpread,
 }
 
@@ -240,6 +213,7 @@ impl Default for Population {
             keeps_own_recipe: NEVER,
             misremembers: NEVER,
             guesses_robot: NEVER,
+            gets_stuck: NEVER,
             recipes_gained: 1.0,
             practice_kept: 0.0,
             tracker_offset_m: 0.02,
@@ -325,6 +299,8 @@ pub struct ParticipantTraits {
     pub answer_s: f64,
     /// Probability of making proposed presses that the participant has read.
     pub follows_proposal: f64,
+    /// Probability of not knowing how to go on after an own press.
+    pub gets_stuck: f64,
 }
 
 /// Least and largest number of own presses that a participant thinks through (study, "Simulated participants").
@@ -382,6 +358,7 @@ impl Population {
             answers_wrong: self.answers_wrong.draw_chance(random),
             answer_s: self.answer_s.draw(random),
             follows_proposal: self.follows_proposal.draw_chance(random),
+            gets_stuck: self.gets_stuck.draw_chance(random),
         }
     }
 }

@@ -62,7 +62,7 @@ impl SimulatedParticipant {
         let is_due = self.signals.pending.as_ref().is_some_and(|(time, _, _)| now >= *time);
         let Some((_, location, signal)) = self.signals.pending.take_if(|_| is_due) else { return };
         let kitchen = self.kitchen.clone();
-        self.rethink = true;
+        (self.rethink, self.stuck_in) = (true, None);
         let point = location.map_or_else(|| roomiest(&kitchen), |location| kitchen.location(location).display.centre());
         self.eyes.look_at(now, point);
         self.attention.looking_at = location;

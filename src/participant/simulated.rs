@@ -14,7 +14,7 @@ use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::{Stream, of_trial, stream};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
+use crate::kitchen::{ButtonId, Kitchen, LocationId, State, World};
 use crate::mind::RecordedBelief;
 
 /// Probability with which the simulated participant believes that the kitchen is empty at the start of a trial.
@@ -66,6 +66,8 @@ pub struct SimulatedParticipant {
     /// The button that the participant intended, if the last press was a slip that went unnoticed; else `None`.
     pub(super) meant: Option<ButtonId>,
     pub(super) signals: SignalSense,
+    /// What the participant believed when the participant no longer knew how to go on; `None` if the participant knows.
+    pub(super) stuck_in: Option<World>,
     /// Seed of the random numbers with which the participant answers probes.
     pub(super) answer_seed: u64,
     /// Served orders, each with the session time at which the participant expects the order to disappear.
@@ -117,6 +119,7 @@ impl SimulatedParticipant {
             robot_pressed_at: SessionTime::ZERO,
             meant: None,
             signals: SignalSense::default(),
+            stuck_in: None,
             answer_seed: of_trial(seed, trial),
             clearing: Vec::new(),
             kitchen,

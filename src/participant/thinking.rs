@@ -2,7 +2,7 @@
 //! on next presses.
 
 use super::decision::{DecisionContext, Impatience};
-use super::draws::chance;
+use super::draws::{chance, rare_chance};
 use super::habits::Lapses;
 use super::learning;
 use super::simulated::SimulatedParticipant;
@@ -108,19 +108,26 @@ impl SimulatedParticipant {
                 false => {}
             }
         }
+        let is_stuck = rare_chance(&mut self.mind, self.person.gets_stuck);
+        self.stuck_in = is_stuck.then(|| self.beliefs.point(&kitchen));
         self.rethink = true;
     }
 
     /// Decides on the participant's next presses and queues looks at their locations. A proposal that the participant
-    /// follows replaces the decision.
+    /// follows replaces the decision. A participant who does not know how to go on decides on nothing.
     pub(super) fn think(&mut self, now: SessionTime) {
         self.rethink = false;
         if !self.population.all_knowing {
             self.pass_time(now);
         }
+        let world = self.beliefs.point(&self.kitchen);
+        self.stuck_in = self.stuck_in.filter(|stuck| *stuck == world);
+        if self.stuck_in.is_some() {
+            return self.intent.plan.clear();
+        }
         self.intent.order = self.intent.order.filter(|&(_, until)| now < until);
         let before = self.intent.plan.front().copied();
-        let resolution = self.decision(Impatience::Calm).resolve(&self.beliefs.point(&self.kitchen));
+        let resolution = self.decision(Impatience::Calm).resolve(&world);
         let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
         let kept = self.intent.order.filter(|&(order, _)| Some(order) == resolution.order);
         self.intent.order = kept.or(resolution.order.map(|order| (order, now + commitment)));

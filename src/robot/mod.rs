@@ -1,5 +1,6 @@
 //! The robot: its task policy, and its recorded activity. The robot arms that carry the policy out are in `crate::arm`.
 
+pub mod initiative;
 pub mod moment;
 pub mod policy;
 pub mod safety;
@@ -15,7 +16,7 @@ use crate::kitchen::ButtonId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AbortReason {
-    /// When the arm was about to touch the button, a press of the button no longer brought the orders nearer.
+    /// When the arm was about to touch the button, a press of the button was no longer useful.
     NoLongerUseful,
     /// The wizard stopped the robot.
     Stopped,
@@ -85,7 +86,8 @@ impl AbortReason {
 pub enum IdleReason {
     /// No order is shown, so the robot has nothing to do.
     NoOrder,
-    /// No press of the robot reduces the cost to go; the human has to act.
+    /// The robot leaves the next press to the human: no press of its own reduces the cost to go and, if the human is
+    /// passive, every way needs the human next.
     HumanTurn,
     /// The only useful press of the robot is left out for the moment: it failed, or the wizard skipped it.
     Skipped,
@@ -106,7 +108,12 @@ pub enum RobotEvent {
     /// The robot abandons the press of this button, for this reason.
     Abort(ButtonId, AbortReason),
     /// The robot becomes idle, or stays idle for another reason.
-    Idle(IdleReason),
+    Idle {
+        /// Why the robot is idle.
+        reason: IdleReason,
+        /// The human's presses for one of which the robot waits, as a bit set of the human's buttons.
+        waits_for: u64,
+    },
     /// A sample of the arm's motion.
     Move(ArmSample),
     /// The safety mode of the arm changed.

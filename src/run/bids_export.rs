@@ -189,7 +189,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
     for one in planned {
         let spec = &one.header.session;
         let consent = consents::read(&one.recording)?;
-        let consent = consent.map(|given| [given.place().map(str::to_string), given.started, given.digest]);
+        let consent = consent.map(|given| [Some(given.place().to_string()), given.started, Some(given.digest)]);
         match rows.iter_mut().find(|row| row.label == one.label) {
             Some(row) => {
                 row.recordings += 1;

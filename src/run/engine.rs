@@ -201,19 +201,12 @@ impl SessionEngine {
         SessionEngine { follower, wizard: None, ..self }
     }
 
-    /// The engine for the session of a recording's header, without features that the recording's format lacks.
+    /// The engine for the session of a recording's header.
     ///
     /// # Panics
     /// The panics of [`Self::new`].
     pub fn for_header(kitchen: Arc<Kitchen>, header: &LogHeader, cost: CostToGo) -> SessionEngine {
-        let engine = SessionEngine::new(kitchen, header.session.clone(), header.trial, cost);
-        if header.has_offers() { engine } else { engine.without_offers() }
-    }
-
-    /// This engine without offers to the wizard, for recordings that have none.
-    pub fn without_offers(mut self) -> SessionEngine {
-        self.follower.session.makes_offers = false;
-        self
+        SessionEngine::new(kitchen, header.session.clone(), header.trial, cost)
     }
 
     /// The follower of the engine's session, after the end of the session.
@@ -281,9 +274,7 @@ impl SessionEngine {
     fn let_wizard_act(&mut self, now: SessionTime) {
         let state = self.session().state;
         let event = match self.wizard.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost)) {
-            Some(WizardAction::Send(signal)) => {
-                Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None })
-            }
+            Some(WizardAction::Send(signal)) => Some(Event::SignalShown { by: Sender::Wizard, signal, offer: None }),
             Some(WizardAction::TakeOffer(offer)) => offers::script_takes(self.session(), now, offer),
             None => None,
         };
@@ -295,7 +286,6 @@ impl SessionEngine {
     /// Applies the immediate consequences of an event, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
-        self.note_unawareness(now);
         self.review_offer(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
             let request = AdviceRequest::from_follower(&mut self.follower, seq, time);

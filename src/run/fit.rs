@@ -18,7 +18,6 @@ use crate::mind::observation::Observation;
 use crate::session::Event;
 use crate::session::probe_sampling;
 use crate::session::probes::{ProbeEvent, ProbeQuestion};
-use crate::session::settings::ParticipantKind;
 
 /// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]
@@ -31,9 +30,6 @@ pub struct FitTrials {
     pub differ: bool,
     /// Observations of the belief filter in each trial, to which the human model is fitted.
     pub observations: Vec<FitObservations>,
-    /// For each trial, the participant's code (with the seed in front where simulated participants have several seeds)
-    /// and the trial's number, which grows from trial to trial of a participant in a plan.
-    pub people: Vec<(String, u64)>,
 }
 
 impl FitTrials {
@@ -45,17 +41,13 @@ impl FitTrials {
     pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
         let recordings = &recordings.paths;
         let (mut one_kitchen, mut observations, mut models) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
-        let mut people = Vec::new();
         for recording in recordings {
             let mut replay = RecordingReplay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
             models.push(replay.session().spec.human.clone());
-            let (participant, trial) = (&replay.session().spec.participant, replay.session().trial);
-            people.push((participant.kind, participant.code.clone(), replay.session().spec.seed, trial));
             let own = read_trial(&mut replay)?;
             observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
         }
-        let people = names(&people);
         if probes && observations.iter().all(|one| one.answers.is_empty()) {
             let first = recordings.first().map_or(Path::new("."), PathBuf::as_path);
             let found = "no answer to a freeze probe in any of the recordings".to_string();
@@ -67,7 +59,7 @@ impl FitTrials {
         }
         let kitchen = one_kitchen.kitchen()?;
         let differ = models.windows(2).any(|pair| pair[0] != pair[1]);
-        Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations, people })
+        Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
     }
 
     /// The trials of this fit without answers to freeze probes.
@@ -76,20 +68,6 @@ impl FitTrials {
         trials.observations.iter_mut().for_each(|one| one.answers.clear());
         trials
     }
-}
-
-/// Names of the participants of trials, from their kinds, codes, seeds and numbers. Simulated participants of another
-/// seed are other people.
-fn names(trials: &[(ParticipantKind, String, u64, u64)]) -> Vec<(String, u64)> {
-    let is_simulated = |kind: ParticipantKind| kind == ParticipantKind::Simulated;
-    let mut seeds = trials.iter().filter(|(kind, ..)| is_simulated(*kind)).map(|(_, _, seed, _)| seed);
-    let first = seeds.next();
-    let several = seeds.any(|seed| Some(seed) != first);
-    let name = |(kind, code, seed, trial): &(ParticipantKind, String, u64, u64)| {
-        let name = if is_simulated(*kind) && several { format!("seed{seed}-{code}") } else { code.clone() };
-        (name, *trial)
-    };
-    trials.iter().map(name).collect()
 }
 
 /// Observations and probe answers of a recorded trial, without answers about what comes next.

@@ -26,7 +26,6 @@ mod event_loop;
 #[cfg(feature = "cli")]
 pub mod fit;
 #[cfg(feature = "cli")]
-pub mod fit_people;
 #[cfg(feature = "cli")]
 pub mod gathered;
 pub mod headless;

@@ -155,6 +155,9 @@ impl Review {
     fn take_message(&mut self, message: ConsoleMessage) -> Result<bool, ReviewError> {
         self.dirty = true;
         self.tick();
+        // Keys can come faster than frames: a code is for the error that the key before it went to.
+        let event = self.film.position;
+        self.playback(|playback| playback.event = event);
         match update(&mut self.model, &self.film.session, message) {
             Some(ConsoleCommand::Move(to)) => {
                 if !matches!(to, ReplayAction::PlayPause | ReplayAction::Faster | ReplayAction::Slower) {

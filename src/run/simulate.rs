@@ -94,7 +94,6 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
         (spec.trial.condition, spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
     }
     spec.participant.code = format!("S{:03}", trial + 1);
-    spec.adopt_person();
     spec
 }
 

@@ -16,7 +16,7 @@ use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSum
 use crate::base::path_text::PathText;
 use crate::base::words::decimal;
 use crate::communication::concept::ConceptName;
-use crate::communication::settings::{AssistantSpec, ShadowMode};
+use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
 use crate::edge::log::RecordingWriteError;
 use crate::edge::overwrite;
@@ -46,14 +46,10 @@ enum Knob {
     Radius,
     /// The swept setting is whether the assistant uses gaze to estimate beliefs.
     Gaze,
-    /// The swept setting is when the assistant is asked for advice, besides after presses and changes of the task.
-    Asks,
-    /// The swept setting is whether waiting without a press counts as evidence about the human's belief.
-    Waiting,
 }
 
 /// The settings that can be swept, by name.
-const KNOBS: [(&str, Knob); 9] = [
+const KNOBS: [(&str, Knob); 7] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),
     ("horizon", Knob::Horizon),
@@ -61,13 +57,7 @@ const KNOBS: [(&str, Knob); 9] = [
     ("tau", Knob::Tau),
     ("radius", Knob::Radius),
     ("gaze", Knob::Gaze),
-    ("asks", Knob::Asks),
-    ("waiting", Knob::Waiting),
 ];
-
-/// Values of the setting `asks`: name, whether the assistant is asked in unusual silence, whether it is asked by gaze.
-const MOMENTS: [(&str, [bool; 2]); 4] =
-    [("presses", [false, false]), ("silence", [true, false]), ("gaze", [false, true]), ("silence+gaze", [true, true])];
 
 /// A swept setting with its values, as in `cost=0.5,1,1.5`.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,8 +78,7 @@ impl FromStr for ParameterSweepAxis {
         let (name, knob) = *KNOBS.iter().find(|(known, _)| *known == name).ok_or_else(right)?;
         let values: Vec<String> = values.split(',').map(str::to_string).collect();
         let is_right = |value: &String| match knob {
-            Knob::Gaze | Knob::Waiting => value == "on" || value == "off",
-            Knob::Asks => MOMENTS.iter().any(|(name, _)| name == value),
+            Knob::Gaze => value == "on" || value == "off",
             Knob::Horizon | Knob::Rollouts => value.parse::<usize>().is_ok(),
             _ => value.parse::<f64>().is_ok_and(f64::is_finite),
         };
@@ -101,22 +90,13 @@ impl FromStr for ParameterSweepAxis {
             None => Ok(ParameterSweepAxis { name, knob, values }),
             Some(wrong) => {
                 let right = match knob {
-                    Knob::Gaze | Knob::Waiting => "on and off".to_string(),
-                    Knob::Asks => MOMENTS.map(|(name, _)| name).join(", "),
-                    Knob::Horizon | Knob::Rollouts => "whole numbers".to_string(),
-                    _ => "numbers".to_string(),
+                    Knob::Gaze => "on and off",
+                    Knob::Horizon | Knob::Rollouts => "whole numbers",
+                    _ => "numbers",
                 };
                 Err(format!("\"{wrong}\": {name} takes {right}"))
             }
         }
-    }
-}
-
-/// Gives everybody this parameter of the human model, also persons who have a fitted value of their own.
-fn set_for_all(spec: &mut SessionSpec, parameter: HumanModelParameter, value: f64) {
-    parameter.set(&mut spec.human, value);
-    if let Some(people) = &mut spec.people {
-        people.forget(parameter);
     }
 }
 
@@ -133,16 +113,10 @@ impl ParameterSweepAxis {
                 spec.assistant.rollout.rollouts = whole;
                 spec.assistant.rollout.least_rollouts = spec.assistant.rollout.least_rollouts.min(whole);
             }
-            Knob::Tau => set_for_all(spec, HumanModelParameter::Tau, number),
-            Knob::Radius => set_for_all(spec, HumanModelParameter::RadiusDeg, number),
+            Knob::Tau => HumanModelParameter::Tau.set(&mut spec.human, number),
+            Knob::Radius => HumanModelParameter::RadiusDeg.set(&mut spec.human, number),
             Knob::Gaze if value == "off" => spec.participant.gaze = GazeSource::None,
             Knob::Gaze => {}
-            Knob::Asks => {
-                let moments = MOMENTS.iter().find(|(name, _)| *name == value).map(|(_, moments)| *moments);
-                let AssistantSpec { asks_in_silence, asks_by_gaze, .. } = &mut spec.assistant;
-                [*asks_in_silence, *asks_by_gaze] = moments.unwrap_or_default();
-            }
-            Knob::Waiting => spec.human.inference.waiting = value == "on",
         }
     }
 }
@@ -247,7 +221,7 @@ fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), Run
     let of = |knob: Knob| match knob {
         Knob::Cost | Knob::Horizon | Knob::Rollouts => Some(ConceptName::TomCom),
         Knob::Threshold => Some(ConceptName::Tom),
-        Knob::Tau | Knob::Radius | Knob::Gaze | Knob::Asks | Knob::Waiting => None,
+        Knob::Tau | Knob::Radius | Knob::Gaze => None,
     };
     for axis in axes {
         let Some(concept) = of(axis.knob).filter(|concept| decides != Some(*concept)) else { continue };

@@ -50,7 +50,7 @@ pub fn train(lesson: &WizardTrainingRequest) -> Result<(WizardTrainingRecord, Pa
     let minutes = (began.elapsed().as_secs_f64() / 0.6).round() / 100.0;
     let is_complete = recordings.len() == lesson.recordings.len() && recordings.iter().all(|one| one.complete);
     let met = is_complete && lesson.criterion.is_met(&WizardMeasures::sum(recordings.iter().map(|one| &one.measures)));
-    let (wizard, criterion, speed) = (lesson.wizard.clone(), lesson.criterion, Some(SPEEDS[lesson.speed]));
+    let (wizard, criterion, speed) = (lesson.wizard.clone(), lesson.criterion, SPEEDS[lesson.speed]);
     let record = WizardTrainingRecord { wizard, at, minutes, speed, criterion, met, recordings };
     let path = training::write(&lesson.out, &record)
         .map_err(|reason| ReviewError::Training { path: lesson.out.clone(), reason })?;

@@ -46,8 +46,7 @@ impl PreparedSession {
         match beginning {
             SessionStart::New { files, trial, out } => {
                 let kitchen = Arc::new(files.kitchen.kitchen);
-                let mut spec = files.spec;
-                spec.adopt_person();
+                let spec = files.spec;
                 let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
                 let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();

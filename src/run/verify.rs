@@ -17,7 +17,6 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogEnding, LogLine, LogReader, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
-use crate::session::header::PEOPLE_SINCE;
 use crate::session::{Event, TimestampedEvent};
 
 /// Whether a recording verifies: the result of `tomcom replay RECORDING --verify`.
@@ -31,10 +30,6 @@ pub struct Verification {
     pub cut: bool,
     /// Whether the recording's session is still running.
     pub running: bool,
-    /// Version of the program since which simulated participants decide differently than in this recording; null if
-    /// they decide as in the recording.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub people_changed: Option<&'static str>,
     /// First difference between the recorded events and those of running the session again; null without a difference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<VerificationDifference>,
@@ -65,8 +60,7 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
     let (cut, running) = (log.is_cut(), log.ending() == LogEnding::Running);
-    let people_changed = log.header.has_earlier_people().then_some(PEOPLE_SINCE);
-    Ok(Verification { verified, events: log.events(), cut, running, people_changed, difference })
+    Ok(Verification { verified, events: log.events(), cut, running, difference })
 }
 
 /// A recording whose session was run again to the end.
@@ -168,22 +162,14 @@ pub fn describe(found: &Verification) -> String {
         (false, true) => ", up to where the recording was cut",
         (false, false) => "",
     };
-    match (&found.difference, found.people_changed) {
-        (None, _) if found.verified => {
+    match &found.difference {
+        None if found.verified => {
             let events = count(found.events, "event", "events");
             let come = if found.events == 1 { "comes" } else { "come" };
             format!("verified: {events} {come} out the same again{until}\n")
         }
-        (None, _) => "not verified: when the recording is run again, the session ends in another state\n".to_string(),
-        (Some(difference), Some(since)) => format!(
-            "not verified: simulated participants decide otherwise since version {since}, and an earlier version made \
-             this recording; all events of the recording can be applied, but from event {} ({}:{}) on the session \
-             does not come out the same again\n",
-            difference.seq,
-            difference.log.display(),
-            difference.line,
-        ),
-        (Some(difference), None) => format!(
+        None => "not verified: when the recording is run again, the session ends in another state\n".to_string(),
+        Some(difference) => format!(
             "not verified: event {} ({}:{}) differs when the recording is run again\n  recorded: {}\n  again:    {}\n",
             difference.seq,
             difference.log.display(),

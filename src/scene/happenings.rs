@@ -31,7 +31,7 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let line = |entity: String, name: String, colour: SceneColour| {
         EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name, colour }))
     };
-    let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.signals.own_hand)
+    let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.highlights(kitchen))
         .iter()
         .map(|(_, signal)| {
             let place = signal.location(kitchen);

@@ -12,7 +12,7 @@ use super::{accuracy_check, interventions, probes, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::communication::{self, Sender, Signal};
-use crate::kitchen::{Agent, LocationKind};
+use crate::kitchen::Agent;
 
 /// Whether the session accepts this event now (admits it).
 ///
@@ -65,9 +65,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
             refuse_if(!is_open, "the event names an offer that is not open")
         }
-        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {
-            refuse_if(phase != TrialPhase::Running, "no trial runs")
-        }
+        Event::HumanWaits { .. } => refuse_if(phase != TrialPhase::Running, "no trial runs"),
         Event::Advised(_) => {
             refuse_if(phase != TrialPhase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
@@ -103,9 +101,9 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     if matches!(signal, Signal::Propose(_)) && by != Sender::Assistant {
         return Err("proposed presses are sent by the assistant");
     }
-    let target = signal.location(&session.kitchen).map(|id| session.kitchen.location(id).kind);
-    if target == Some(LocationKind::Hand(Agent::Human)) && !session.spec.signals.own_hand {
-        return Err("the session does not allow highlighting the human's own hand");
+    let highlighted = signal.location(&session.kitchen).filter(|_| matches!(signal, Signal::Highlight(_)));
+    if highlighted.is_some_and(|location| !session.highlights().holds(location)) {
+        return Err("the session does not highlight this location");
     }
     match communication::unavailable(&session.kitchen, session.state, signal) {
         Some(reason) => Err(reason),
@@ -191,7 +189,6 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::OrderShown { .. }
         | Event::OrderCleared { .. }
         | Event::HumanWaits { .. }
-        | Event::SeemsUnaware { .. }
         | Event::RobotIntends { .. }
         | Event::RobotAborts { .. }
         | Event::RobotIdles { .. }

@@ -93,7 +93,11 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             named.button(Agent::Robot, button)?;
             session.robot.gives_up(*reason);
         }
-        Event::RobotIdles { reason } => session.robot.idle = Some(*reason),
+        Event::RobotIdles { reason, waits_for } => {
+            let waits_for =
+                waits_for.iter().map(|button| named.button(Agent::Human, button)).collect::<Result<_, _>>()?;
+            session.robot.idle = Some((*reason, waits_for));
+        }
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
             robot_changes::arm(session, now, &stamped.event);
         }
@@ -141,7 +145,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::Protocol(event) => protocol::apply(session, event, now),
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Screen(_) => session.has_console = true,
-        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {}
+        Event::HumanWaits { .. } => await_press(session, now, &mut effects),
         Event::Preflight { .. } | Event::Display(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
@@ -239,7 +243,14 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
     for &order in &session.kitchen.orders {
         effects.push(SessionEffect::At { time: now, timer: Timer::NewOrder(order) });
     }
+    await_press(session, now, effects);
     KitchenChange::TrialStarted { before, after }
+}
+
+/// Sets the timer for the event that the human has still not pressed after an unusually long time.
+fn await_press(session: &Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
+    let time = now + silence::unusual(session);
+    effects.push(SessionEffect::At { time, timer: Timer::HumanWaits });
 }
 
 fn pause(session: &mut Session, now: SessionTime) {
@@ -344,10 +355,9 @@ fn press(
     session.presses[agent.index()] += 1;
     let Press { before, after, .. } = press;
     session.note(now, TimelineEvent::Press { agent, button, before, after, no_effect });
-    if agent == Agent::Human && session.spec.notes_silence() {
+    if agent == Agent::Human {
         effects.push(SessionEffect::Cancel(Timer::HumanWaits));
-        let waits = |after| SessionEffect::At { time: now + after, timer: Timer::HumanWaits };
-        effects.extend(silence::unusual_after(session).map(waits));
+        await_press(session, now, effects);
     }
     if press.effective {
         update(session, now, |state| *state = press.after);

@@ -15,7 +15,6 @@ pub struct ConsoleSpec {
     /// Colour theme of the console: for a dark or a light terminal background.
     pub theme: ColourTheme,
     /// Whether a mouse click on a signal or on the offer sends the signal at once, without a question.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub click_sends: bool,
     /// Path of the file with the wizard's key bindings, relative to the session file; without a path the default keys
     /// apply.

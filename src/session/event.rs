@@ -101,17 +101,11 @@ pub enum Event {
         /// Name of the order's location.
         order: String,
     },
-    /// The human has not pressed for unusually long, compared with the human's own intervals between presses. Recorded
-    /// only where it has consequences: where the assistant is then asked for advice, or where waiting is evidence.
+    /// The human has not pressed for unusually long, compared with the human's own intervals between presses, and may be
+    /// stuck.
     HumanWaits {
         /// Time since the human's last press, without pauses.
         silent_ns: SessionTime,
-    },
-    /// Judged by the gaze, the human seems to have a false belief about an aspect. Recorded only where the assistant is
-    /// then asked for advice.
-    SeemsUnaware {
-        /// Name of the state aspect.
-        aspect: String,
     },
     /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
@@ -131,6 +125,9 @@ pub enum Event {
     RobotIdles {
         /// Why the robot is idle.
         reason: IdleReason,
+        /// Names of the human's buttons for a press of one of which the robot waits.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        waits_for: Vec<String>,
     },
     /// Recorded only (witness): a sample of the simulated arm's motion, about 12 per second while it moves.
     RobotMoves(ArmSample),
@@ -192,10 +189,6 @@ pub enum Event {
         by: Sender,
         /// The signal that is shown on the participant's display.
         signal: Signal,
-        /// The accepted recommendation, in logs of format 1, which has no offers: sequence number of the event whose
-        /// recommendation the wizard accepted, if any.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        accepted: Option<u64>,
         /// Sequence number of the `offer_opened` whose offer the wizard took, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         offer: Option<u64>,
@@ -284,7 +277,6 @@ impl Event {
             Event::OrderShown { .. } => "order_shown",
             Event::OrderCleared { .. } => "order_cleared",
             Event::HumanWaits { .. } => "human_waits",
-            Event::SeemsUnaware { .. } => "seems_unaware",
             Event::RobotIntends { .. } => "robot_intends",
             Event::RobotAborts { .. } => "robot_aborts",
             Event::RobotIdles { .. } => "robot_idles",

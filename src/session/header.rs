@@ -3,17 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::code_correction::CodeCorrection;
-use super::settings::{ParticipantKind, SessionSpec};
+use super::settings::SessionSpec;
 use crate::base::time::SessionTime;
 
 /// The name of the log's format, as every log's header has it.
 pub const FORMAT: &str = "tomcom-session";
-/// The version of the log's format that this program writes. The program reads all versions from 1 on.
-pub const VERSION: u32 = 2;
-/// The version of the log's format since which recommendations become offers to the wizard.
-const OFFERS_SINCE: u32 = 2;
-/// The first version of the program whose simulated participants decide as they do now.
-pub const PEOPLE_SINCE: &str = "0.3.0";
+/// The version of the log's format that this program writes and reads.
+pub const VERSION: u32 = 3;
 
 /// The header of a log: its first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +35,8 @@ pub struct LogHeader {
     pub redoes: Option<String>,
     /// All settings of the session in use, including the seed.
     pub session: SessionSpec,
+    /// What differs from the named human model, in words: `decision.tau = 8.0, not 4.0`.
+    pub human_model_differs: Vec<String>,
     /// The layout file of the kitchen, with its text.
     pub layout: RecordedFile,
     /// The recipe file of the kitchen, with its text.
@@ -75,22 +73,9 @@ pub struct RecordedFile {
 }
 
 impl LogHeader {
-    /// Whether a simulated participant of an earlier program version took part, whose decisions were different.
-    pub fn has_earlier_people(&self) -> bool {
-        let numbers =
-            |version: &str| version.split('.').map(|part| part.parse::<u64>().ok()).collect::<Option<Vec<_>>>();
-        let is_earlier = numbers(&self.program).is_some_and(|program| Some(program) < numbers(PEOPLE_SINCE));
-        self.session.participant.kind == ParticipantKind::Simulated && is_earlier
-    }
-
     /// The participant's code as the log has it, without corrections.
     pub fn recorded_code(&self) -> &str {
         self.correction.as_ref().map_or(&self.session.participant.code, |correction| &correction.before)
-    }
-
-    /// Whether recommendations became offers to the wizard in the recording.
-    pub fn has_offers(&self) -> bool {
-        self.version >= OFFERS_SINCE
     }
 
     /// The header for the log of a session that this program runs.
@@ -105,6 +90,7 @@ impl LogHeader {
             started: None,
             continues: None,
             redoes: None,
+            human_model_differs: session.human.differences(),
             session,
             layout,
             recipes,

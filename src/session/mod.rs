@@ -14,7 +14,7 @@
 //! - Preconditions and effects of events: `session_effect`, `trial_clock`, [`silence`], `unseen_changes`, `robot_changes`,
 //!   [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
 //!   `interventions`; [`admit`] and [`mod@apply`], all of them together. These are used by the rules of [`offers`],
-//!   [`proposals`], [`advice_moments`] and [`gaze_awareness`]. Further files: [`preflight_checks`], and the [`timers`]
+//!   [`proposals`] and [`advice_moments`]. Further files: [`preflight_checks`], and the [`timers`]
 //!   that [`apply()`] sets.
 
 pub mod accuracy_check;
@@ -27,8 +27,6 @@ pub mod code_correction;
 mod condition;
 mod console_settings;
 pub mod event;
-pub mod fitted_parameters;
-pub mod gaze_awareness;
 mod gaze_check;
 pub mod gaze_samples;
 mod gaze_status;

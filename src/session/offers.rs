@@ -21,7 +21,7 @@ use crate::kitchen::OrderContent;
 /// Whether the recommendations of a session become offers to the wizard. An assistant that acts by itself sends its
 /// recommendation at once.
 pub fn are_made(session: &Session) -> bool {
-    session.makes_offers && session.spec.trial.condition != Condition::Assistant
+    session.spec.trial.condition != Condition::Assistant
 }
 
 /// The event by which an offer to the wizard opens or closes now: `offer_opened`, `offer_closed`, or none.
@@ -189,5 +189,5 @@ pub fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<E
 /// The event that sends the signal of an offer; `None` if the offer proposes presses.
 fn take(offer: &Offer) -> Option<Event> {
     let signal = offer.signal()?.clone();
-    Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: Some(offer.seq) })
+    Some(Event::SignalShown { by: Sender::Wizard, signal, offer: Some(offer.seq) })
 }

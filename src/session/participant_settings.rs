@@ -21,13 +21,11 @@ pub struct ParticipantSpec {
     /// UDP and TCP port of the JSON gaze input.
     pub gaze_port: u16,
     /// Address at which the JSON gaze input listens; this computer's own (localhost) by default.
-    #[serde(skip_serializing_if = "is_localhost")]
     pub gaze_listen: IpAddr,
     /// Addresses of other computers from which gaze is read; if empty, other computers need the pairing code.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gaze_from: Vec<IpAddr>,
     /// Addresses from which the JSON gaze input reads datagrams.
-    #[serde(skip_serializing_if = "GazeSenders::is_first")]
     pub gaze_senders: GazeSenders,
     /// Population from which simulated participants are drawn; `None` for the default population.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,10 +46,6 @@ impl Default for ParticipantSpec {
             population: None,
         }
     }
-}
-
-fn is_localhost(address: &IpAddr) -> bool {
-    *address == LOCALHOST
 }
 
 impl ParticipantSpec {
@@ -101,10 +95,4 @@ pub enum GazeSenders {
     First,
     /// Gaze datagrams from every address are accepted.
     Any,
-}
-
-impl GazeSenders {
-    fn is_first(&self) -> bool {
-        *self == GazeSenders::First
-    }
 }

@@ -1,7 +1,6 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::condition::Condition;
-use super::fitted_parameters::ParameterSource;
 use super::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
@@ -11,6 +10,7 @@ use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use crate::gaze::recorded_gaze::RecordedGazeSummary;
+use crate::mind::model::HumanModel;
 
 /// Sampling rate of the gaze below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;
@@ -56,17 +56,11 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Says whose parameters the human model has (the participant's or the population's), if its file has some of persons.
+/// Says which human model the session has, and what differs from the named model, unless it is the default.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
-    let spec = &session.spec;
-    let file = spec.human_model.as_deref().unwrap_or("its file");
-    let found = match spec.parameters_of? {
-        ParameterSource::Person => format!("parameters of the person {}, from {file}", spec.participant.code),
-        ParameterSource::Population => {
-            format!("parameters of the population: {file} has none of {}", spec.participant.code)
-        }
-    };
-    Some(PreflightCheck::ok("human model", found))
+    let human = &session.spec.human;
+    let told = [vec![human.model.name().to_string()], human.differences()].concat().join("; ");
+    (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", told))
 }
 
 /// A sender of gaze that was rejected.
@@ -78,7 +72,7 @@ pub struct RejectedGaze {
     pub remedy: String,
 }
 
-/// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a
+/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a
 /// gaze accuracy check, `rejected` the sender of gaze that was rejected since the last gaze sample arrived.
 pub fn participant(
     session: &Session,

@@ -52,14 +52,11 @@ pub enum ProtocolEvent {
     ConsentGiven {
         /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
         /// it on the console.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        on: Option<AnswerDevice>,
+        on: AnswerDevice,
         /// The text to which the participant consented.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        text: Option<String>,
+        text: String,
         /// Digest of the consent text.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        digest: Option<String>,
+        digest: String,
     },
     /// The next phase of the recording begins.
     PhaseStarted {

@@ -22,27 +22,24 @@ impl ArmKind {
             ArmKind::Physics => "physics",
         }
     }
-
-    fn is_timed(&self) -> bool {
-        *self == ArmKind::Timed
-    }
 }
 
-/// Settings of the robot: its arm and the duration of its presses.
+/// Settings of the robot: its arm, the duration of its presses, and its initiative.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {
-    /// Kind of the arm; `timed` by default and in recordings made before the simulated arm existed.
-    #[serde(skip_serializing_if = "ArmKind::is_timed")]
+    /// Kind of the arm.
     pub arm: ArmKind,
     /// Timed arm: median duration of a press, in seconds.
     pub press_s: f64,
     /// Timed arm: standard deviation of the logarithm of a press's duration.
     pub press_spread: f64,
+    /// Time without a press of the human after which the robot takes the initiative, in seconds.
+    pub initiative_s: f64,
 }
 
 impl Default for RobotSpec {
     fn default() -> Self {
-        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15 }
+        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15, initiative_s: 6.0 }
     }
 }

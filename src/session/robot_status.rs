@@ -17,8 +17,8 @@ pub struct RobotStatus {
     pub held: bool,
     /// The press that the wizard chose for the robot, until the robot has made or aborted that press.
     pub driven_to: Option<ButtonId>,
-    /// Why the robot is idle, if it is.
-    pub idle: Option<IdleReason>,
+    /// Why the robot is idle, if it is, and the human's buttons for a press of one of which it waits.
+    pub idle: Option<(IdleReason, Vec<ButtonId>)>,
     /// State of the simulated robot arm.
     pub arm: ArmStatus,
 }

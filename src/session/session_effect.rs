@@ -40,6 +40,6 @@ pub enum Timer {
     EndTrialByOrders,
     /// The rules of offers have to be asked whether an offer to the wizard opens or closes.
     ReviewOffer,
-    /// The human has not pressed for unusually long.
+    /// The human has still not pressed after an unusually long time.
     HumanWaits,
 }

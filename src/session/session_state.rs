@@ -16,7 +16,7 @@ use crate::base::rng::of_trial;
 use crate::base::time::SessionTime;
 use crate::communication::offer::OfferHistory;
 use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, Signal};
+use crate::communication::{HighlightSet, Sender, Signal};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{DishId, Kitchen, LocationId, State};
 use crate::wizard::settings::WizardKind;
@@ -59,8 +59,6 @@ pub struct Session {
     pub shown: Option<ShownSignal>,
     /// The assistant's latest recommendation in the running trial.
     pub advice: Option<Recommendation>,
-    /// Whether recommendations become offers to the wizard: not in recordings of format 1.
-    pub makes_offers: bool,
     /// The open offer to the wizard, and the offers that have closed.
     pub offers: OfferHistory,
     /// Whether a console shows the session to a person (the wizard).
@@ -124,6 +122,11 @@ impl Session {
         times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
     }
 
+    /// The locations that signals may highlight in this session.
+    pub fn highlights(&self) -> HighlightSet {
+        self.spec.highlights(&self.kitchen)
+    }
+
     /// The state of a session before its first event.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64) -> Session {
         let state = kitchen.empty_state();
@@ -145,7 +148,6 @@ impl Session {
             robot: RobotStatus::default(),
             shown: None,
             advice: None,
-            makes_offers: true,
             offers: OfferHistory::default(),
             has_console: false,
             cue: None,

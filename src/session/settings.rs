@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
-use super::fitted_parameters::ParameterSource;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::person_code;
@@ -16,9 +15,10 @@ pub use super::setting_checks::{SettingError, is_code};
 use super::stream_settings::RerunSpec;
 use super::tracker::TrackerSpec;
 use super::wall_display::DisplaySpec;
+use crate::communication::HighlightSet;
 use crate::communication::settings::{AssistantSpec, ShadowMode};
-use crate::mind::fitted_people::FittedPeople;
-use crate::mind::model::HumanModel;
+use crate::kitchen::{Kitchen, LocationKind};
+use crate::mind::model::{HumanModel, HumanModelName};
 use crate::participant::population::Population;
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
@@ -38,13 +38,13 @@ pub struct SessionSpec {
     #[serde(default)]
     pub participant: ParticipantSpec,
     /// Settings of the eye tracker.
-    #[serde(default, skip_serializing_if = "TrackerSpec::is_default")]
+    #[serde(default)]
     pub tracker: TrackerSpec,
     /// Settings of the robot's arm and its timing.
     #[serde(default)]
     pub robot: RobotSpec,
     /// Settings of the wizard: a person, or a script.
-    #[serde(default, skip_serializing_if = "WizardSpec::is_default")]
+    #[serde(default)]
     pub wizard: WizardSpec,
     /// How long signals are shown, and which are allowed.
     #[serde(default)]
@@ -75,14 +75,6 @@ pub struct SessionSpec {
     /// Parameters of the assistant's human model; in a recording, the parameters in use.
     #[serde(default)]
     pub human: HumanModel,
-    /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons. Written by the
-    /// program, not allowed in session files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub parameters_of: Option<ParameterSource>,
-    /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never
-    /// recorded.
-    #[serde(skip)]
-    pub people: Option<FittedPeople>,
     /// Study plan with several participants and trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanSpec>,
@@ -110,25 +102,6 @@ impl SessionSpec {
                 person_code::REMEDY,
             ));
         }
-        self.check_rules()
-    }
-
-    /// Checks the settings in the header of a recording, whose numbers may have the wider ranges of earlier versions, and
-    /// whose participant may have a code that new sessions must not have.
-    ///
-    /// # Errors
-    /// An error names the first invalid setting.
-    pub fn check_recorded(&self) -> Result<(), SettingError> {
-        ranges::check_recorded(self)?;
-        let code = &self.participant.code;
-        if !is_code(code) {
-            return Err(SettingError::new("participant.code", format!("code = \"{code}\""), person_code::REMEDY));
-        }
-        self.check_rules()
-    }
-
-    /// Checks the session's settings except for the ranges of numbers.
-    fn check_rules(&self) -> Result<(), SettingError> {
         if let Some(plan) = &self.plan {
             plan.check()?;
             if self.wizard.kind == WizardKind::Person {
@@ -168,34 +141,44 @@ impl SessionSpec {
         self.lsl.as_ref().map_or(Ok(()), LslSpec::check)
     }
 
-    /// Gives the human model the fitted parameters of the participant of this recording, whose code is known now.
-    /// Without parameters of persons nothing changes.
-    pub fn adopt_person(&mut self) {
-        let Some(people) = self.people.take() else { return };
-        let is_known = people.apply(&self.participant.code, &mut self.human);
-        self.parameters_of = Some(if is_known { ParameterSource::Person } else { ParameterSource::Population });
-    }
-
     /// Whether the session needs the library of the Lab Streaming Layer.
     pub fn uses_lsl(&self) -> bool {
         let sends = self.lsl.as_ref().is_some_and(|lsl| !lsl.outlets.is_empty());
         sends || self.participant.gaze == GazeSource::Lsl
     }
 
+    /// The locations that signals may highlight. By default all shared places and the robot's hand, and with the human
+    /// model of the paper those that the paper names.
+    pub fn highlights(&self, kitchen: &Kitchen) -> HighlightSet {
+        match (&self.signals.highlights, self.human.model) {
+            (Some(names), _) => HighlightSet::named(kitchen, names.iter().map(String::as_str)),
+            (None, HumanModelName::Paper2021) => HighlightSet::of_paper(kitchen),
+            (None, HumanModelName::Plain) => HighlightSet::usual(kitchen),
+        }
+    }
+
+    /// Checks that the kitchen has what these settings name.
+    ///
+    /// # Errors
+    /// The first setting that does not fit the kitchen.
+    pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
+        let is_place = |name: &String| {
+            let location = kitchen.location_named(name);
+            location.is_some_and(|location| kitchen.location(location).kind != LocationKind::Order)
+        };
+        let mut names = self.signals.highlights.iter().flatten();
+        if let Some(name) = names.find(|name| !is_place(name)) {
+            let found = format!("highlights = \"{name}\", which is no place and no hand of the kitchen");
+            let places = kitchen.locations.iter().filter(|location| location.kind != LocationKind::Order);
+            let places: Vec<&str> = places.map(|location| &*location.name).collect();
+            return Err(SettingError::new("signals.highlights", found, format!("some of: {}", places.join(", "))));
+        }
+        self.probes.as_ref().map_or(Ok(()), |probes| probes.check_kitchen(kitchen))
+    }
+
     /// Whether the assistant computes recommendations: in the assistant condition, and with `shadow = "on"`.
     pub fn asks_assistant(&self) -> bool {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == ShadowMode::On
-    }
-
-    /// Whether unusually long silence of the human is recorded: where the assistant is then asked for advice, or where
-    /// waiting is evidence about the human's beliefs.
-    pub fn notes_silence(&self) -> bool {
-        self.human.inference.waiting || self.assistant.asks_in_silence && self.asks_assistant()
-    }
-
-    /// Whether false beliefs that the gaze alone suggests are recorded, so that the assistant is then asked for advice.
-    pub fn notes_unawareness(&self) -> bool {
-        self.assistant.asks_by_gaze && self.asks_assistant()
     }
 
     /// Whether the signals come from a scripted wizard.
@@ -250,14 +233,16 @@ impl Default for TrialSpec {
 pub struct SignalSpec {
     /// Time for which a signal is shown on the display, in seconds.
     pub shown_s: f64,
-    /// Whether a signal may highlight the human's own hand.
-    pub own_hand: bool,
+    /// Names of the locations that signals may highlight; `None`: those of the human model (see
+    /// [`SessionSpec::highlights`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub highlights: Option<Vec<String>>,
     /// Least time between two signals of the wizard, in seconds.
     pub cool_down_s: f64,
 }
 
 impl Default for SignalSpec {
     fn default() -> Self {
-        SignalSpec { shown_s: 4.0, own_hand: false, cool_down_s: 0.5 }
+        SignalSpec { shown_s: 4.0, highlights: None, cool_down_s: 0.5 }
     }
 }

@@ -1,32 +1,28 @@
-//! Unusual silence: the human has not pressed for longer than most of the human's own intervals between presses in this
-//! trial.
+//! Unusual silence: the human has not pressed for three of the human's own usual intervals between presses, and may be
+//! stuck.
 //!
-//! [`apply()`](super::apply()) sets a timer at every counted press of the human where
-//! [`SessionSpec::notes_silence`](super::SessionSpec::notes_silence); the running session then records the event
-//! `human_waits`, at most once between two presses.
+//! [`apply()`](super::apply()) sets a timer at the start of the trial, at every counted press of the human and at every
+//! event `human_waits`, by which the running session records that the timer is due. So the event comes once for every
+//! such time that passes without a press.
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use crate::base::time::SessionTime;
 use crate::kitchen::Agent;
 
-/// Share of the human's intervals between presses that are at most as long as the usual silence.
-pub const USUAL_SHARE: f64 = 0.8;
-/// Least number of intervals between presses from which the usual silence is computed; with fewer, no silence is
-/// unusual.
-const LEAST_INTERVALS: usize = 8;
+/// Number of the human's usual intervals between presses after which silence is unusual.
+const INTERVALS: u64 = 3;
+/// Least unusual silence, in nanoseconds: 6 s, three usual intervals of the paper's participants.
+const LEAST: SessionTime = SessionTime(6_000_000_000);
 
-/// The longest usual silence after a press that has just been applied: the 80th percentile (nearest rank) of the
-/// human's own intervals in this trial, without pauses. `None`: too few intervals are known.
-pub(super) fn unusual_after(session: &Session) -> Option<SessionTime> {
+/// The time without a press after which silence is unusual: three of the human's usual intervals in this trial (the
+/// median of the intervals between counted presses, without pauses), and at least 6 s.
+pub(super) fn unusual(session: &Session) -> SessionTime {
     let times: Vec<SessionTime> = own_presses(session).collect();
     let mut intervals: Vec<SessionTime> = times.windows(2).map(|pair| session.age(pair[1], pair[0])).collect();
-    if intervals.len() < LEAST_INTERVALS {
-        return None;
-    }
     intervals.sort_unstable();
-    let rank = (USUAL_SHARE * intervals.len() as f64).ceil() as usize;
-    Some(intervals[rank - 1])
+    let usual = intervals.get(intervals.len() / 2).copied().unwrap_or_default();
+    SessionTime(INTERVALS * usual.0).max(LEAST)
 }
 
 /// For how long the human has not pressed at `now`, without pauses; before the human's first press, the time since the

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::participant_settings::GazeSource;
 use super::setting_checks::SettingError;
-use crate::base::number_range::is_zero;
 use crate::base::time::SessionTime;
 use crate::gaze::quality::DroppedInputCounts;
 use crate::gaze::stamp_check::StampFault;
@@ -33,10 +32,8 @@ pub struct TrackerSpec {
     pub file: Option<String>,
     /// Time in the replayed gaze file at which the trial starts, in seconds after the file's first sample; negative:
     /// the trial starts before the first sample.
-    #[serde(skip_serializing_if = "is_zero")]
     pub file_start_s: f64,
     /// How gaze samples without a confidence are taken: in lines of JSON, in gaze files, and where Pupil Capture sends NaN.
-    #[serde(skip_serializing_if = "MissingConfidence::is_default")]
     pub missing_confidence: MissingConfidence,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
@@ -58,10 +55,6 @@ pub enum MissingConfidence {
 }
 
 impl MissingConfidence {
-    fn is_default(&self) -> bool {
-        *self == MissingConfidence::default()
-    }
-
     /// The confidence with which such samples are recorded.
     pub fn confidence(self) -> f64 {
         match self {
@@ -115,10 +108,6 @@ impl TrackerSpec {
             found: format!("corners = {corners:?}"),
             remedy: "a convex quadrangle".to_string(),
         })
-    }
-
-    pub(super) fn is_default(&self) -> bool {
-        *self == TrackerSpec::default()
     }
 
     pub(super) fn check(&self, gaze: GazeSource) -> Result<(), SettingError> {

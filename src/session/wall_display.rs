@@ -31,26 +31,20 @@ pub struct DisplaySpec {
     /// Whether the page shows the robot's next press. The paper does not show it, since a shown intention is
     /// communication.
     pub intention: bool,
-    /// How the page shows a robot that the participant cannot see otherwise. A session file without this setting means
-    /// a hand; a recording without this setting was made when the page showed no robot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub arm: Option<RobotDepiction>,
+    /// How the page shows a robot that the participant cannot see otherwise.
+    pub arm: RobotDepiction,
     /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
     pub tags: bool,
     /// Whether a square on the page flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
-    /// Whether the page says why a press has no effect. A session file without this setting means yes; a recording
-    /// without this setting was made when the page gave no reasons.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reasons: Option<bool>,
+    /// Whether the page says why a press has no effect.
+    pub reasons: bool,
     /// Whether the page plays a tone at a press without effect, and another one at a signal.
     pub sound: bool,
     /// Whether the page shows the time that the trial still has.
     pub clock: bool,
-    /// Whether the page shows the number of served orders. A session file without this setting means no; a recording
-    /// without it was made when the number was always shown.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub served: Option<bool>,
+    /// Whether the page shows the number of served orders.
+    pub served: bool,
     /// Where questionnaires are answered: on the display or at the console.
     pub questionnaire: AnswerDevice,
 }
@@ -65,13 +59,13 @@ impl Default for DisplaySpec {
             names: DisplayedNames::Orders,
             keys: true,
             intention: false,
-            arm: None,
+            arm: RobotDepiction::Hand,
             tags: true,
             flash: true,
-            reasons: None,
+            reasons: true,
             sound: false,
             clock: false,
-            served: None,
+            served: false,
             questionnaire: AnswerDevice::Console,
         }
     }
@@ -81,11 +75,6 @@ impl DisplaySpec {
     /// Whether other computers can open the display's page.
     pub fn is_open(&self) -> bool {
         !self.listen.is_loopback()
-    }
-
-    /// Whether the display's page shows the number of served orders.
-    pub fn shows_served(&self) -> bool {
-        self.served != Some(false)
     }
 
     /// Language code of the display's page; a file with words contains its own language code.

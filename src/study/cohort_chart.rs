@@ -1,9 +1,9 @@
 //! Chart of the robustness table, as an SVG file: what the assistant saves for each cohort and how well the estimate
-//! finds false beliefs, without and, where measured, with adaptation to the person.
+//! finds false beliefs.
 
 use super::report::STYLE;
 use super::svg::{PlotAxis, SvgChart, document};
-use crate::analysis::cohort_table::{CohortPerformance, CohortRow, RobustnessTable};
+use crate::analysis::cohort_table::{CohortRow, RobustnessTable};
 
 /// Width of a cohort's column, and of the rest of the chart, in pixels.
 const WIDTHS: [f64; 2] = [94.0, 230.0];
@@ -11,11 +11,9 @@ const WIDTHS: [f64; 2] = [94.0, 230.0];
 const HEIGHT: f64 = 460.0;
 /// Largest number of characters in a line of a cohort's name, and of lines.
 const NAME: [usize; 2] = [13, 3];
-/// Distance of the marks of both estimates from the middle of a cohort's column, in columns.
-const BESIDE: f64 = 0.14;
 
 /// A measure of the chart: its name, its value, and the ends of its interval.
-type ChartedMeasure = (&'static str, fn(&CohortPerformance) -> (Option<f64>, Option<[f64; 2]>));
+type ChartedMeasure = (&'static str, fn(&CohortRow) -> (Option<f64>, Option<[f64; 2]>));
 
 const MEASURES: [ChartedMeasure; 3] = [
     ("ROC, places", |of| (of.detection.auc_locations, of.auc_locations_interval)),
@@ -23,10 +21,10 @@ const MEASURES: [ChartedMeasure; 3] = [
     ("errors saved", |of| (of.saved, of.saved_interval)),
 ];
 
-/// The chart of robustness: for each cohort and each measure a point with its interval, without and, where measured, with adaptation.
+/// The chart of robustness: for each cohort and each measure a point with its interval.
 pub fn robustness(table: &RobustnessTable) -> String {
     let names: Vec<String> = table.cohorts.iter().map(|row| wrapped(&row.cohort)).collect();
-    let lows = table.cohorts.iter().flat_map(both).flat_map(|(_, _, of)| {
+    let lows = table.cohorts.iter().flat_map(|of| {
         MEASURES.into_iter().filter_map(move |(_, measure)| match measure(of) {
             (_, Some([low, _])) => Some(low),
             (value, None) => value,
@@ -34,48 +32,30 @@ pub fn robustness(table: &RobustnessTable) -> String {
     });
     let lowest = lows.fold(0.0, f64::min);
     let mut x = PlotAxis::named(&names);
-    // Room for the names of measures and colours at the right.
+    // Room for the names of measures at the right.
     x.to += 1.5;
     let y = PlotAxis::between("share of belief related errors saved; area under the ROC curve", lowest, 1.0);
     let width = WIDTHS[0] * names.len() as f64 + WIDTHS[1];
     let mut chart = SvgChart::new(width, HEIGHT, x, y);
     for (column, row) in table.cohorts.iter().enumerate() {
-        for (class, beside, of) in both(row) {
-            let at = column as f64 + beside;
-            for (name, measure) in MEASURES {
-                let (Some(value), interval) = measure(of) else { continue };
-                if let Some([low, high]) = interval {
-                    chart.line(class, &[(at, low), (at, high)]);
-                }
-                chart.point(class, at, value, &format!("{}: {name} {value:.3}", row.cohort));
+        let at = column as f64;
+        for (name, measure) in MEASURES {
+            let (Some(value), interval) = measure(row) else { continue };
+            if let Some([low, high]) = interval {
+                chart.line("first", &[(at, low), (at, high)]);
             }
+            chart.point("first", at, value, &format!("{}: {name} {value:.3}", row.cohort));
         }
     }
     if let Some(last) = table.cohorts.last() {
         let end = table.cohorts.len() as f64 - 0.6;
         for (name, measure) in MEASURES {
-            if let (Some(value), _) = measure(&last.usual) {
+            if let (Some(value), _) = measure(last) {
                 chart.words("strong", end, value, true, name);
             }
         }
-        let names = ["as in the model", "adapting"];
-        for (line, ((class, _, _), name)) in both(last).zip(names).enumerate() {
-            let y = 0.12 - 0.06 * line as f64;
-            chart.point(class, end + BESIDE, y, name);
-            chart.words("strong", end + BESIDE, y, true, name);
-        }
     }
-    let title = match table.is_adapted() {
-        true => "Estimate and assistant for each cohort, without and with adaptation",
-        false => "Estimate and assistant for each cohort",
-    };
-    document(&chart.finish(title), STYLE)
-}
-
-/// The performances of a cohort, each with its class and its place beside the middle of the column.
-fn both(row: &CohortRow) -> impl Iterator<Item = (&'static str, f64, &CohortPerformance)> {
-    let adapting = row.adapting.iter().map(|adapting| ("second", BESIDE, adapting));
-    std::iter::once(("first", -BESIDE, &row.usual)).chain(adapting)
+    document(&chart.finish("Estimate and assistant for each cohort"), STYLE)
 }
 
 /// A cohort's name in lines that are short enough for its column, where its words are.

@@ -50,8 +50,8 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          belief related errors prevented, of all; a signal prevents the later errors of its own aspect in the same episode, no \
          others, and replayed signals do not change b. False positive rate: useless signals per human press. For DEV, a proposal \
          of k presses after an error is one interruption; it spares the errors of the next k presses and is useless if none of \
-         them would have been an error, belief related or not. Swept: cost 0.5 to 2.4, threshold 0.4 to 0.99, k 1 to 5; cost and \
-         threshold also beyond that, so that all concepts reach the compared numbers of signals. Compared at equal interruptions \
+         them would have been an error, belief related or not. Swept: cost 0.5 to 2.4, threshold 0.4 to 0.99, k 1 to 5; cost \
+         also beyond that, so that ToM-Com reaches the compared numbers of signals. Compared at equal interruptions \
          per 100 presses of the human (linear interpolation between swept points and no signals), and as partial area over the \
          false positive rates that all concepts reach, divided by that range; intervals of 95 % by bootstrap over participants, \
          the area over the common range of each resample.",

@@ -10,20 +10,20 @@ use crate::session::wall_display::AnswerDevice;
 pub struct RecordedConsent {
     /// The code of the participant who consented.
     pub participant: String,
-    /// Where the consent was given (display or console); `None`: the recording does not say.
-    pub on: Option<AnswerDevice>,
+    /// Where the consent was given.
+    pub on: AnswerDevice,
     /// Wall clock time at which the recording that begins with the consent began (UTC, RFC 3339).
     pub started: Option<String>,
     /// Digest of the text to which the participant consented.
-    pub digest: Option<String>,
+    pub digest: String,
 }
 
 impl RecordedConsent {
     /// Where the consent was given, as tables name it.
-    pub fn place(&self) -> Option<&'static str> {
-        self.on.map(|on| match on {
+    pub fn place(&self) -> &'static str {
+        match self.on {
             AnswerDevice::Console => "console",
             AnswerDevice::Display => "display",
-        })
+        }
     }
 }

@@ -252,18 +252,6 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
     (pooled > 0.0).then(|| (ma - mb) / pooled * (1.0 - 3.0 / (4.0 * (df + 2.0) - 9.0)))
 }
 
-/// Mean with its confidence interval by Student's t.
-pub fn mean_interval(values: &[f64], level: f64) -> Option<ConfidenceInterval> {
-    let n = values.len() as f64;
-    if values.len() < 2 {
-        return None;
-    }
-    let estimate = mean(values.iter().copied());
-    let variance = values.iter().map(|value| (value - estimate).powi(2)).sum::<f64>() / (n - 1.0);
-    let reach = StudentsT::new(0.0, 1.0, n - 1.0).ok()?.inverse_cdf(0.5 + level / 2.0) * (variance / n).sqrt();
-    Some(ConfidenceInterval { estimate, low: estimate - reach, high: estimate + reach, level })
-}
-
 /// Proportion `part` / `whole` with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
 pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
     wilson(part as f64 / whole as f64, whole as f64, level)

@@ -86,11 +86,10 @@ pub struct TrialStatistics {
     pub signal_contents: u64,
     /// Number of useful signals, judged by simulating the trial without each signal; `None` where that was not done.
     pub useful_signals: Option<u64>,
-    /// How the participant's display showed the robot; `None` without a display, and in older recordings, which do not
-    /// say how.
+    /// How the participant's display showed the robot; `None` without a display.
     pub display_arm: Option<RobotDepiction>,
-    /// Summary of the offers that a wizard could see; `None` in recordings without offers.
-    pub offers: Option<OfferSummary>,
+    /// Summary of the offers that a wizard could see.
+    pub offers: OfferSummary,
     /// Duration of the trial without pauses, in seconds.
     pub seconds: f64,
     /// Answers to the questionnaires after the trial.

@@ -12,7 +12,7 @@ use super::settings::WizardSpec;
 use super::thought::SuspectedFalseBelief;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
-use crate::communication::{self, Signal};
+use crate::communication::{self, HighlightSet, Signal};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
 
@@ -33,7 +33,7 @@ pub enum WizardAction {
 pub struct ScriptedWizard {
     kitchen: Arc<Kitchen>,
     spec: WizardSpec,
-    own_hand: bool,
+    highlights: HighlightSet,
     random: Stream,
     seen: ParticipantSeenKitchen,
     /// The participant's last presses, newest last.
@@ -50,13 +50,19 @@ pub struct ScriptedWizard {
 
 impl ScriptedWizard {
     /// Creates the scripted wizard of a trial, who reads no offers; its random stream is seeded by (seed, trial).
-    pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
+    pub fn new(
+        kitchen: Arc<Kitchen>,
+        spec: WizardSpec,
+        highlights: HighlightSet,
+        seed: u64,
+        trial: u64,
+    ) -> ScriptedWizard {
         let seen = ParticipantSeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
         let (about_to, watched, signalled_at) = (None, Vec::new(), None);
         let presses = VecDeque::with_capacity(REMEMBERED_PRESSES);
         let reader = None;
-        ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at, reader }
+        ScriptedWizard { kitchen, spec, highlights, random, seen, presses, about_to, watched, signalled_at, reader }
     }
 
     /// Lets the wizard read offers as the settings say, with a random stream of its own for that.
@@ -202,7 +208,7 @@ impl ScriptedWizard {
             OrderContent::Dish(_) if self.kitchen.orders.contains(&at) => true,
             _ => !self.seen.knows(at, state),
         };
-        let others: Vec<LocationId> = communication::signals(&self.kitchen, self.own_hand)
+        let others: Vec<LocationId> = communication::signals(&self.kitchen, self.highlights)
             .into_iter()
             .filter(|(at, signal)| {
                 *at != suspected && communication::unavailable(&self.kitchen, state, signal).is_none()
@@ -243,7 +249,7 @@ impl ScriptedWizard {
             self.about_to = Some((rested, thought));
             return None;
         }
-        let mut signals = communication::signals(&self.kitchen, self.own_hand).into_iter();
+        let mut signals = communication::signals(&self.kitchen, self.highlights).into_iter();
         let (_, signal) = signals.find(|(location, _)| *location == thought.location())?;
         communication::unavailable(&self.kitchen, state, &signal).is_none().then_some(signal)
     }

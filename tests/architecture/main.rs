@@ -1,10 +1,9 @@
-//! The house keeps its own rules: who imports whom, what is not named where, and that ARCHITECTURE.md and the glossary name
+//! The house keeps its own rules: who imports whom, what is not named where, and that ARCHITECTURE.md names
 //! what exists.
 
 mod documents;
 mod imports;
 mod outside;
-mod serial;
 mod sources;
 
 use std::path::Path;

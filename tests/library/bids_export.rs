@@ -39,7 +39,7 @@ fn log(name: &str) -> Vec<Value> {
 
 #[test]
 fn every_event_of_the_golden_recordings_has_its_row() {
-    let names = ["format-1-hand", "format-1-people", "format-1-simulated", "format-2-offers"];
+    let names = ["format-3-hand", "format-3-simulated", "format-3-offers"];
     let out = folder("rows");
     let summary = golden(&names, &out, false);
     assert_eq!(summary.recordings.len(), names.len());
@@ -57,7 +57,7 @@ fn every_event_of_the_golden_recordings_has_its_row() {
             assert_eq!(events[seq]["t_ns"], time);
         }
     }
-    let notes = log("format-1-hand").iter().filter(|event| event["kind"] == "marker").count();
+    let notes = log("format-3-hand").iter().filter(|event| event["kind"] == "marker").count();
     assert!(
         describe(&summary).contains(&format!("left out: {notes} notes, reasons and answers")),
         "{}",
@@ -78,14 +78,14 @@ fn every_kind_of_event_but_samples_has_a_meaning() {
 
 #[test]
 fn events_last_until_what_they_begin_is_over() {
-    let (name, out) = ("format-1-hand", folder("durations"));
+    let (name, out) = ("format-3-hand", folder("durations"));
     let summary = golden(&[name], &out, false);
     let (events, rows) = (log(name), rows(&out.join(format!("{}_events.tsv", summary.recordings[0].place))));
     let time = |event: &Value| event["t_ns"].as_u64().expect("a time");
     for (begins, ends) in [
         ("trial_started", &["trial_ended"][..]),
         ("trial_paused", &["trial_resumed", "trial_ended"]),
-        ("robot_stopped", &["robot_resumed", "trial_ended"]),
+        ("robot_stopped", &["robot_resumed", "trial_ended", "session_ended"]),
         ("signal_shown", &["signal_ended", "signal_shown", "trial_ended"]),
     ] {
         let begun: Vec<&BTreeMap<String, String>> = rows.iter().filter(|row| row["trial_type"] == begins).collect();
@@ -103,7 +103,7 @@ fn events_last_until_what_they_begin_is_over() {
 
 #[test]
 fn what_was_typed_is_exported_only_if_it_is_asked_for() {
-    let name = "format-1-hand";
+    let name = "format-3-hand";
     let note = log(name).iter().find(|event| event["kind"] == "marker").expect("a note")["note"].clone();
     let note = note.as_str().expect("words").split_whitespace().collect::<Vec<&str>>().join(" ");
     let of = |with_words: bool| {
@@ -118,9 +118,9 @@ fn what_was_typed_is_exported_only_if_it_is_asked_for() {
 #[test]
 fn a_folder_with_something_in_it_is_refused() {
     let out = folder("full");
-    golden(&["format-1-people"], &out, false);
+    golden(&["format-3-simulated"], &out, false);
     let error =
-        export(&[PathBuf::from("tests/golden/format-1-people.jsonl")], &out, false, || ()).expect_err("refused");
+        export(&[PathBuf::from("tests/golden/format-3-simulated.jsonl")], &out, false, || ()).expect_err("refused");
     assert!(error.to_string().contains("not empty"), "{error}");
 }
 

@@ -103,7 +103,7 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 }
 
 /// Fields of what the page is told.
-const FIELDS: [&str; 30] = [
+const FIELDS: [&str; 31] = [
     "clock",
     "probe",
     "tutorial",
@@ -116,6 +116,7 @@ const FIELDS: [&str; 30] = [
     "served",
     "presses",
     "intention",
+    "robot_waits",
     "signal",
     "cue",
     "question",
@@ -160,6 +161,7 @@ pub(super) fn check(session: &Session) {
             "stage" => true,
             "clock" => session.spec.display.clock && ["goes", "stands"].contains(&text.as_str()),
             "reason" => words.contains_key(&format!("why {text}")),
+            "robot_waits" => words.contains_key(&format!("robot waits {text}")),
             "contents" => ["empty", "served"].contains(&text.as_str()),
             "item" | "stack" | "dish" => on_display(text),
             "items" => value.pointer("/signal/recipe").is_some(),
@@ -190,13 +192,13 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
             // With both arms: nothing of them is to be seen.
             files.spec.robot.arm = if condition == Condition::Wizard { ArmKind::Timed } else { ArmKind::Physics };
             let mut engine = engine(files);
-            let signals = signals(&engine.session().kitchen.clone(), false);
+            let signals = signals(&engine.session().kitchen.clone(), engine.session().highlights());
             let contents = engine.session().kitchen.contents.len();
             let (mut told, mut looked) = (0, 0);
             let wizard = |step: u32, session: &Session| match step % 41 {
                 7 | 23 if condition == Condition::Wizard => {
                     let signal = signals[(step as usize / 16) % signals.len()].1.clone();
-                    Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None })
+                    Some(Event::SignalShown { by: Sender::Wizard, signal, offer: None })
                 }
                 // Whatever lies there: complete stacks, too, on the menu and not.
                 13 => {
@@ -315,7 +317,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
         (1.02, Event::Display(DisplayEvent::Drawn { cue: 1, at_ns: at(1.015) })),
         (2.0, press("take rice", 1.98)),
         (3.0, press("cooking_pot", 2.995)),
-        (3.5, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None }),
+        (3.5, Event::SignalShown { by: Sender::Wizard, signal, offer: None }),
         (4.0, Event::Display(DisplayEvent::Lost)),
         (5.0, Event::TrialEnded { reason: TrialEndReason::Wizard }),
         (5.0, Event::SessionEnded),

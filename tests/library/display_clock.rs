@@ -14,7 +14,7 @@ fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
     let at = SessionTime::from_secs_f64;
     for shown in [false, true] {
         let mut files = files("sessions/default.toml");
-        (files.spec.display.clock, files.spec.display.served) = (shown, Some(shown));
+        (files.spec.display.clock, files.spec.display.served) = (shown, shown);
         files.spec.trial.seconds = 600.0;
         let mut engine = engine(files);
         let expect = |engine: &SessionEngine, now_s: f64, clock, left_s| {
@@ -37,7 +37,6 @@ fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
         let scene = scene(engine.session());
         assert_eq!((scene.clock, scene.served, scene.sound), (shown, shown, false));
     }
-    // A recording from before these settings was made when the number was shown.
-    let earlier = toml::from_str::<DisplaySpec>("").expect("settings");
-    assert!(earlier.shows_served() && !earlier.clock && !earlier.sound);
+    let usual = toml::from_str::<DisplaySpec>("").expect("settings");
+    assert!(!usual.served && !usual.clock && !usual.sound);
 }

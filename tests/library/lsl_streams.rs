@@ -78,7 +78,7 @@ fn numbers(sample: &StreamSample) -> &[f64] {
 
 #[test]
 fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
-    for name in ["format-1-hand", "format-1-people", "format-2-offers", "format-2-probes"] {
+    for name in ["format-3-hand", "format-3-simulated", "format-3-offers", "format-3-probes"] {
         let (samples, events, _) = sent(name, &LslOutlet::ALL);
         let is_event = |sample: &&StreamSample| match &sample.values {
             LslSampleValues::Texts(texts) => !texts[0].contains(RECORDING),
@@ -110,7 +110,7 @@ fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
 
 #[test]
 fn codes_name_what_an_event_is_about() {
-    let (samples, _, _) = sent("format-2-offers", &[LslOutlet::Markers]);
+    let (samples, _, _) = sent("format-3-offers", &[LslOutlet::Markers]);
     let codes: Vec<&str> = samples.iter().map(|sample| texts(sample)[0].as_str()).collect();
     assert_eq!(codes[..2], [&format!("recording/{RECORDING}"), "trial_started"]);
     for wanted in ["press/human/", "press/robot/", "robot_intends/", "order_shown/", "offer_opened/", "advised"] {
@@ -180,7 +180,7 @@ fn answers_to_probes_and_in_the_tutorial_are_not_sent_nor_whether_somebody_was_u
 
 #[test]
 fn presses_say_whether_they_did_anything_and_were_errors() {
-    let (samples, events, session) = sent("format-2-probes", &[LslOutlet::Presses]);
+    let (samples, events, session) = sent("format-3-probes", &[LslOutlet::Presses]);
     let presses: Vec<&Value> = events.iter().filter(|event| event["kind"] == "press").collect();
     assert_eq!(samples.len(), presses.len());
     let mut counts: BTreeMap<Vec<&str>, usize> = BTreeMap::new();
@@ -207,7 +207,7 @@ fn presses_say_whether_they_did_anything_and_were_errors() {
 
 #[test]
 fn beliefs_and_net_benefits_are_the_logs() {
-    let (samples, events, session) = sent("format-2-offers", &[LslOutlet::Beliefs, LslOutlet::NetBenefit]);
+    let (samples, events, session) = sent("format-3-offers", &[LslOutlet::Beliefs, LslOutlet::NetBenefit]);
     let [beliefs, benefits] = [LslOutlet::Beliefs, LslOutlet::NetBenefit]
         .map(|outlet| describe(&spec(&[outlet]), &session.kitchen).remove(0));
     let labels = |stream: &StreamDescription| -> Vec<String> {
@@ -278,9 +278,10 @@ fn streams_are_named_after_the_participant_and_described_with_the_layout() {
         assert_eq!(locations.inside.len(), kitchen.locations.len());
         assert!(stream.is_text || stream.channels.iter().all(|channel| !channel.unit.is_empty()));
     }
-    let (samples, _, _) = sent("format-1-people", &[LslOutlet::Gaze]);
+    let (samples, _, _) = sent("format-3-simulated", &[LslOutlet::Gaze]);
     assert!(!samples.is_empty() && samples.iter().all(|sample| sample.outlet == LslOutlet::Gaze));
-    let mut session = LogReader::open(Path::new("tests/golden/format-1-people.jsonl")).expect("a recording").session();
+    let mut session =
+        LogReader::open(Path::new("tests/golden/format-3-simulated.jsonl")).expect("a recording").session();
     session.spec.lsl = spec(&[LslOutlet::Markers]).lsl;
     let opening = LslSampleConverter::new(&session, RECORDING).opening(&session, session.time);
     assert_eq!(

@@ -4,7 +4,6 @@ mod arm;
 mod bids_export;
 mod cohort;
 mod connection_table;
-mod considered_orders;
 mod console;
 mod corrections;
 mod cost_to_go;

@@ -61,7 +61,7 @@ fn fits(schema: &Value, value: &Value) -> bool {
 fn every_event_is_a_message_at_its_session_time_and_as_its_schema_says() {
     let schemas: BTreeMap<&str, Value> =
         McapChannel::ALL.into_iter().map(|channel| (channel.topic(), channel.schema())).collect();
-    for name in ["format-1-hand", "format-1-people", "format-2-offers"] {
+    for name in ["format-3-hand", "format-3-simulated", "format-3-offers"] {
         let folder = golden(name, "messages");
         let text = fs::read_to_string(folder.join("events.jsonl")).expect("the log");
         let events: Vec<Value> =
@@ -92,7 +92,7 @@ fn every_event_is_a_message_at_its_session_time_and_as_its_schema_says() {
 
 #[test]
 fn a_file_of_somebody_else_is_left_and_an_own_one_replaced() {
-    let folder = golden("format-1-people", "replaced");
+    let folder = golden("format-3-simulated", "replaced");
     let file = folder.join("recording.mcap");
     fs::write(&file, "not ours").expect("written");
     let error = export(&folder).expect_err("refused").to_string();
@@ -107,7 +107,7 @@ fn a_file_of_somebody_else_is_left_and_an_own_one_replaced() {
     let entries = std::fs::read_dir(&folder).expect("a folder").flatten();
     let begun = entries.filter(|entry| entry.file_name().to_string_lossy().ends_with(".new"));
     assert_eq!(begun.count(), 0, "nothing half is left");
-    let error = export(Path::new("tests/golden/format-1-people.jsonl")).expect_err("no folder").to_string();
+    let error = export(Path::new("tests/golden/format-3-simulated.jsonl")).expect_err("no folder").to_string();
     assert!(error.contains("a log that is not called events.jsonl"), "{error}");
 }
 

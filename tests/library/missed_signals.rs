@@ -10,7 +10,7 @@ use tomcom::communication::reference::ReferencePlanner;
 use tomcom::communication::repeats::SignalRepeatRule;
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::{RobotIntent, Situation};
-use tomcom::communication::{Signal, signals};
+use tomcom::communication::{HighlightSet, Signal, signals};
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
@@ -106,7 +106,7 @@ fn the_planner_and_its_plain_reference_agree_on_a_signal_that_can_be_missed() {
 #[test]
 fn a_signal_that_was_probably_missed_may_be_repeated_and_one_that_was_read_may_not() {
     let WrongRecipe { kitchen, state, belief, signal, recipe } = WrongRecipe::new();
-    let may = |repeats: &SignalRepeatRule| repeats.allowed(&kitchen, false).contains(&signal);
+    let may = |repeats: &SignalRepeatRule| repeats.allowed(&kitchen, HighlightSet::usual(&kitchen)).contains(&signal);
     let location = kitchen.orders[0];
     let mut known = belief.clone();
     known.aspects[recipe.index()] =
@@ -137,5 +137,5 @@ fn a_signal_that_was_probably_missed_may_be_repeated_and_one_that_was_read_may_n
     doubtful.over(location, 0.6);
     doubtful.update(&kitchen, state, &belief);
     assert!(may(&doubtful), "P(truth) never passed 0.9");
-    assert!(signals(&kitchen, false).iter().any(|(_, one)| *one == signal));
+    assert!(signals(&kitchen, HighlightSet::usual(&kitchen)).iter().any(|(_, one)| *one == signal));
 }

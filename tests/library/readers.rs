@@ -35,7 +35,7 @@ fn the_readers_survive_cut_and_changed_files() {
             read(&changed);
         }
     }
-    let log = fs::read("tests/golden/format-1-hand.jsonl").expect("a log");
+    let log = fs::read("tests/golden/format-3-hand.jsonl").expect("a log");
     let events = log.splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header");
     for (name, text) in [("log", &log[..]), ("events", events)] {
         let text = &text[..text.len().min(60_000)];
@@ -72,7 +72,7 @@ const PIECES: [&[u8]; 14] = [
 /// A valid input for this reader.
 fn input(reader: &str) -> Vec<u8> {
     let file = |path: &str| fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    let log = || file("tests/golden/format-1-hand.jsonl");
+    let log = || file("tests/golden/format-3-hand.jsonl");
     let mut bytes = match reader {
         "layout" => file("layouts/sushi.toml"),
         "recipes" => file("recipes/sushi.toml"),

@@ -8,7 +8,7 @@ use tomcom::kitchen::{Agent, ButtonAction, Kitchen};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::wall_display::RobotDepiction;
-use tomcom::session::{Event, Session, SessionSpec, TimelineEvent};
+use tomcom::session::{Event, Session, TimelineEvent};
 
 use super::display::{engine, files};
 
@@ -18,7 +18,7 @@ const STEP_S: f64 = 0.05;
 fn session_with(arm: ArmKind, shown: RobotDepiction) -> SessionEngine {
     let mut files = files("sessions/default.toml");
     files.spec.robot.arm = arm;
-    files.spec.display.arm = Some(shown);
+    files.spec.display.arm = shown;
     engine(files)
 }
 
@@ -133,19 +133,16 @@ fn a_stopped_robot_stands_still_and_goes_on_from_there() {
 
 #[test]
 fn a_session_says_how_the_robot_is_shown() {
-    let shown = |arm: Option<RobotDepiction>| {
+    let shown = |arm: RobotDepiction| {
         let mut files = files("sessions/default.toml");
         files.spec.display.arm = arm;
         let engine = engine(files);
         (RobotHand::new(engine.session()).is_some(), scene(engine.session()).arm)
     };
-    assert_eq!(shown(Some(RobotDepiction::Arm)), (true, "arm"));
-    assert_eq!(shown(Some(RobotDepiction::None)), (false, "none"));
-    assert_eq!(shown(None), (false, "none"), "a recording from before");
+    assert_eq!(shown(RobotDepiction::Arm), (true, "arm"));
+    assert_eq!(shown(RobotDepiction::None), (false, "none"));
     let of_file = |path: &str| read_session(path.as_ref()).expect("a session file").spec.display.arm;
-    assert_eq!(of_file("sessions/default.toml"), Some(RobotDepiction::Hand));
-    assert_eq!(of_file("sessions/burger.toml"), Some(RobotDepiction::Hand), "where the file says nothing");
-    assert_eq!(of_file("sessions/study.toml"), Some(RobotDepiction::None));
-    let recorded: SessionSpec = toml::from_str("layout = \"\"").expect("settings");
-    assert_eq!(recorded.display.arm, None);
+    assert_eq!(of_file("sessions/default.toml"), RobotDepiction::Hand);
+    assert_eq!(of_file("sessions/burger.toml"), RobotDepiction::Hand, "where the file says nothing");
+    assert_eq!(of_file("sessions/study.toml"), RobotDepiction::None);
 }

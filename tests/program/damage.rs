@@ -1,82 +1,46 @@
 //! Damage in place: logs that another program changes under the running session, logs that a power failure left without
-//! their header, pipes in place of logs, and several programs that fill one folder. Without tmux those at the console say that
-//! they were skipped.
+//! their header, pipes in place of logs, and several programs that fill one folder.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use serial_test::serial;
 use tomcom::edge::log::{LOG_NAME, RecordingLock};
 
-use crate::tmux::{PATIENCE, TOMCOM, Terminal, tomcom};
+use crate::program::{PATIENCE, TOMCOM, done, end, folder, json, refused, start, tomcom, verified};
+use crate::pseudo_terminal::Terminal;
 
 /// Length of a log that has a middle, in bytes: its end is compared more often than the rest.
 const LENGTH: usize = 150_000;
 /// The name of a log that was moved aside.
 const ASIDE: &str = "events.jsonl.damaged";
 
-/// A folder of its own, empty.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("damage").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
-}
-
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"))
-}
-
-fn start(arguments: &[&str]) -> Child {
-    let mut command = Command::new(TOMCOM);
-    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.spawn().expect("tomcom runs")
-}
-
-/// What a program said that has to end by itself.
-fn end(what: &str, mut child: Child) -> Output {
-    let began = Instant::now();
-    while child.try_wait().expect("a child").is_none() {
-        if began.elapsed() > PATIENCE {
-            child.kill().expect("killed");
-            panic!("{what} does not end: {:?}", child.wait_with_output());
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    child.wait_with_output().expect("its output")
-}
-
 /// Does something bad to the log of a running session: it is told, and everything that was acknowledged is in the log that
 /// stands in its place; what the other program made of it stands beside that.
 fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
-    let Some(terminal) = Terminal::open(name) else { return };
-    let errors = terminal.folder.join("errors");
-    terminal.operate("default.toml", &format!("2> {}", errors.display()));
-    terminal.start();
-    terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
+    let terminal = Terminal::open(name);
+    terminal.operate("default.toml", &[]);
+    terminal.begin();
+    terminal.gaze(50);
     let recording = terminal.recording();
     terminal.wait("a log of some length", || terminal.log().len() > LENGTH);
     let before = terminal.log();
-    let began = Instant::now();
     bad(&recording.join(LOG_NAME));
     terminal.see("RECORDING LOST");
-    println!("{name}: alarm after {} ms", began.elapsed().as_millis());
     terminal.see("EMERGENCY STOP");
     terminal.see("CLOSED");
     let after = terminal.log();
     let complete = before.rfind('\n').map_or("", |end| &before[..=end]);
     assert!(after.starts_with(complete), "{name}: what was acknowledged is lost");
-    let found = json(&tomcom(&["replay", &recording.display().to_string(), "--verify", "--format", "json"]));
-    assert_eq!((&found["verified"], &found["cut"]), (&true.into(), &true.into()), "{name}: {found}");
+    assert_eq!(verified(&recording)["cut"], true, "{name}");
     assert!(recording.join(ASIDE).exists(), "{name}: the damaged log is kept");
     terminal.key("C-c");
-    terminal.is_whole("1");
-    let told = fs::read_to_string(errors).expect("errors");
-    assert!(told.contains(says) && told.contains("everything recorded until then is in"), "{name}: {told}");
+    terminal.is_whole(1);
+    terminal.see_words(says);
+    terminal.see_words("everything recorded until then is in");
 }
 
 fn opened(log: &Path) -> File {
@@ -84,7 +48,6 @@ fn opened(log: &Path) -> File {
 }
 
 #[test]
-#[serial]
 fn a_log_that_another_program_cuts_is_told_at_once_and_saved() {
     check_damage("cut-to-nothing", |log| opened(log).set_len(0).expect("cut"), "by another program");
     let halve = |log: &Path| {
@@ -96,7 +59,6 @@ fn a_log_that_another_program_cuts_is_told_at_once_and_saved() {
 }
 
 #[test]
-#[serial]
 fn a_log_that_another_program_overwrites_is_told_at_once_and_saved() {
     let write = |log: &Path, at: SeekFrom| {
         let mut log = opened(log);
@@ -109,7 +71,6 @@ fn a_log_that_another_program_overwrites_is_told_at_once_and_saved() {
 }
 
 #[test]
-#[serial]
 fn a_log_that_an_editor_saves_again_is_told_at_once_and_saved() {
     let save = |log: &Path| {
         let edited = log.with_extension("edited");
@@ -149,32 +110,28 @@ fn lasting(mut figures: Value) -> Value {
 }
 
 #[test]
-#[serial]
 fn two_programs_simulate_into_one_folder_and_print_the_same_figures() {
-    let home = folder("two-simulations");
+    let home = folder("damage-two-simulations");
     let [session, out] = short_session(&home);
-    let arguments = ["simulate", &session, "--trials", "12", "--out", &out, "--format", "json"];
-    let both = [start(&arguments), start(&arguments)].map(|child| end("a simulation", child));
-    for output in &both {
-        assert!(output.status.success(), "{output:?}");
-    }
-    let [first, second] = both.map(|output| json(&output));
+    let arguments = ["simulate", &session, "--trials", "12", "--out", &out];
+    let [first, second] = std::thread::scope(|scope| {
+        [(); 2].map(|()| scope.spawn(|| json(&arguments))).map(|program| program.join().expect("a simulation"))
+    });
     let (found, trials) = (first["found"].as_u64().zip(second["found"].as_u64()), first["trials"].as_u64());
     assert!(found.is_some_and(|(first, second)| first + second <= 12), "{first} {second}");
     assert_eq!(trials, Some(12));
     assert_eq!(lasting(first), lasting(second.clone()));
     let together = logs(&out);
     fs::remove_dir_all(&out).expect("recordings");
-    let alone = json(&tomcom(&arguments));
+    let alone = json(&arguments);
     assert_eq!(alone["found"], 0);
     assert_eq!(lasting(alone), lasting(second));
     assert!(together == logs(&out), "the recordings are those of one program");
 }
 
 #[test]
-#[serial]
 fn a_trial_that_another_program_simulates_is_waited_for_and_the_others_are_made_meanwhile() {
-    let home = folder("waits");
+    let home = folder("damage-waits");
     let [session, out] = short_session(&home);
     let recording = |trial: u32| Path::new(&out).join(format!("seed3-S{trial:03}"));
     fs::create_dir_all(recording(1)).expect("a folder");
@@ -197,13 +154,11 @@ fn a_trial_that_another_program_simulates_is_waited_for_and_the_others_are_made_
 }
 
 #[test]
-#[serial]
 fn a_log_without_its_header_is_moved_aside_and_made_again() {
     let home = folder("power-failure");
     let [session, out] = short_session(&home);
     let arguments = ["simulate", &session, "--trials", "5", "--out", &out];
-    let first = tomcom(&arguments);
-    assert!(first.status.success(), "{first:?}");
+    done(&arguments);
     let whole = logs(&out);
     let recording = |trial: u32| Path::new(&out).join(format!("seed3-S{trial:03}"));
     let header = &whole[1].1.as_bytes()[..200];
@@ -211,9 +166,7 @@ fn a_log_without_its_header_is_moved_aside_and_made_again() {
     for (trial, bytes) in (1..).zip(damaged) {
         fs::write(recording(trial).join(LOG_NAME), bytes).expect("written");
     }
-    let again = tomcom(&arguments);
-    let told = String::from_utf8_lossy(&again.stdout).into_owned();
-    assert!(again.status.success(), "{again:?}");
+    let told = done(&arguments);
     assert!(told.contains(", 2 of them in an earlier run"), "{told}");
     assert!(logs(&out) == whole, "the same recordings again");
     for (trial, bytes) in (1..).zip(damaged) {
@@ -231,31 +184,29 @@ fn a_log_without_its_header_is_moved_aside_and_made_again() {
     assert_eq!(fs::read_to_string(recording(4).join(LOG_NAME)).expect("left alone"), "notes of mine");
     fs::remove_file(recording(4).join(LOG_NAME)).expect("removed");
     fs::write(recording(1).join(LOG_NAME), "{").expect("written");
-    assert!(tomcom(&arguments).status.success());
+    done(&arguments);
     assert_eq!(fs::read(recording(1).join(ASIDE)).expect("kept"), b"");
     assert_eq!(fs::read_to_string(recording(1).join(format!("{ASIDE}2"))).expect("moved"), "{");
     assert!(logs(&out) == whole, "the same recordings again");
     // They are the participant's, too.
-    let forgotten = tomcom(&["forget", "S001", "--in", &out, "--yes"]);
-    assert!(forgotten.status.success() && !recording(1).exists(), "{forgotten:?}");
+    done(&["forget", "S001", "--in", &out, "--yes"]);
+    assert!(!recording(1).exists());
+}
+
+fn pipe(path: &Path) {
+    let made = Command::new("mkfifo").arg(path).status().expect("mkfifo");
+    assert!(made.success(), "{made}");
 }
 
 #[test]
-#[serial]
 fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
-    let home = folder("pipe");
+    let home = folder("damage-pipe");
     let recording = home.join("recordings").join("2026-03-14-P01-1");
     fs::create_dir_all(&recording).expect("a folder");
-    for name in [LOG_NAME, "lock", "exclusion.toml", "recording.rrd"] {
-        let made = Command::new("mkfifo").arg(recording.join(name)).status();
-        if !made.is_ok_and(|status| status.success()) {
-            eprintln!("skipped: pipes need mkfifo");
-            return;
-        }
-    }
+    [LOG_NAME, "lock", "exclusion.toml", "recording.rrd"].iter().for_each(|name| pipe(&recording.join(name)));
     let [folder, all, log] =
         [&recording, &home.join("recordings"), &recording.join(LOG_NAME)].map(|path| path.display().to_string());
-    let refused: [&[&str]; 12] = [
+    let readers: [&[&str]; 12] = [
         &["replay", &folder],
         &["replay", &log],
         &["replay", &folder, "--verify"],
@@ -269,11 +220,8 @@ fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
         &["operate", "--continue", &folder],
         &["fit", &folder],
     ];
-    for arguments in refused {
-        let output = end(&arguments.join(" "), start(arguments));
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-        assert!(told.contains("it is no regular file"), "{arguments:?}: {told}");
+    for arguments in readers {
+        refused(arguments, "it is no regular file");
     }
     // Who looks through a folder finds no recording in it.
     let looked: [&[&str]; 3] =
@@ -285,22 +233,16 @@ fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
 }
 
 #[test]
-#[serial]
 fn what_is_no_regular_file_of_usual_size_is_refused_by_every_reader_of_settings() {
     let home = folder("no-file");
-    let pipe = home.join("pipe.toml").display().to_string();
-    if !Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
-        eprintln!("skipped: pipes need mkfifo");
-        return;
-    }
-    let large = home.join("large.toml").display().to_string();
+    pipe(&home.join("pipe.toml"));
+    let [pipe, large] = ["pipe.toml", "large.toml"].map(|name| home.join(name).display().to_string());
     File::create(&large).and_then(|file| file.set_len((16 << 20) + 1)).expect("a sparse file");
     let root = env!("CARGO_MANIFEST_DIR");
     let whole = format!("layout = \"{root}/layouts/sushi.toml\"\n");
     let study = "[plan]\nname = \"study\"\nparticipants = 2\nconditions = [\"none\"]\n";
     let recording = home.join("recording").display().to_string();
-    let simulated = tomcom(&["simulate", &short_session(&home)[0], "--out", &recording]);
-    assert!(simulated.status.success(), "{simulated:?}");
+    done(&["simulate", &short_session(&home)[0], "--out", &recording]);
     let recording = format!("{recording}/seed3-S001");
     let layout = fs::read_to_string(format!("{root}/layouts/sushi.toml")).expect("a layout");
     for (place, says) in [
@@ -340,28 +282,22 @@ fn what_is_no_regular_file_of_usual_size_is_refused_by_every_reader_of_settings(
         .collect();
         for arguments in cases {
             let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-            let output = end(&arguments.join(" "), start(&arguments));
-            let told = String::from_utf8_lossy(&output.stderr).into_owned();
-            assert!(output.status.code() == Some(2) && told.contains(says), "{arguments:?}: {told}");
+            refused(&arguments, says);
         }
     }
     for arguments in [
         &["arms", "sessions/study.toml", "--from", "/dev/zero"][..],
         &["study", "--from", &pipe, "--out", &home.join("study").display().to_string()],
     ] {
-        let output = end(&arguments.join(" "), start(arguments));
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.code() == Some(2) && told.contains("it is no regular file"), "{arguments:?}: {told}");
+        refused(arguments, "it is no regular file");
     }
 }
 
 #[test]
-#[serial]
 fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
-    let home = folder("stream");
+    let home = folder("damage-stream");
     let [session, out] = short_session(&home);
-    let simulated = tomcom(&["simulate", &session, "--out", &out]);
-    assert!(simulated.status.success(), "{simulated:?}");
+    done(&["simulate", &session, "--out", &out]);
     let recording = Path::new(&out).join("seed3-S001");
     let temporary = home.join("temporary");
     fs::create_dir_all(&temporary).expect("a folder");
@@ -397,12 +333,10 @@ fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
 }
 
 #[test]
-#[serial]
 fn an_error_about_codes_names_the_row_that_is_wrong() {
-    let home = folder("codes");
+    let home = folder("damage-codes");
     let [session, out] = short_session(&home);
-    let simulated = tomcom(&["simulate", &session, "--out", &out]);
-    assert!(simulated.status.success(), "{simulated:?}");
+    done(&["simulate", &session, "--out", &out]);
     let recording = Path::new(&out).join("seed3-S001").display().to_string();
     let table = home.join("codes.csv");
     let head = "recording,rater,press,cause,aspect\n";
@@ -417,21 +351,17 @@ fn an_error_about_codes_names_the_row_that_is_wrong() {
     ];
     for (rows, says) in cases {
         fs::write(&table, [head.as_bytes(), rows].concat()).expect("written");
-        let output = tomcom(&["codes", &recording, "--import", &table.display().to_string()]);
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains(says), "{says:?} is not in\n{told}");
+        refused(&["codes", &recording, "--import", &table.display().to_string()], says);
     }
     assert!(!Path::new(&recording).join("codes-R1.csv").exists(), "nothing is taken of a table that is wrong");
 }
 
 #[test]
-#[serial]
 fn who_follows_a_log_that_vanishes_is_told_and_does_not_wait_for_ever() {
     let out = folder("vanished");
     let recording = out.join("running");
     fs::create_dir_all(&recording).expect("a folder");
-    let text = fs::read_to_string("tests/golden/format-1-hand.jsonl").expect("a golden log");
+    let text = fs::read_to_string("tests/golden/format-3-hand.jsonl").expect("a golden log");
     let lines: Vec<&str> = text.lines().collect();
     fs::write(recording.join(LOG_NAME), lines[..lines.len() - 1].join("\n") + "\n").expect("written");
     let mut child = start(&["replay", &recording.display().to_string(), "--follow"]);

@@ -3,10 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use serial_test::serial;
 use tomcom::edge::log::LOG_NAME;
 
-use crate::tmux::tomcom;
+use crate::program::{done, folder, tomcom};
 
 /// Clears the screen, and begins a sequence in one byte (as it stands in a text, and in JSON).
 const HOSTILE: &str = "a\x1b[2J\u{9b}31mb\u{202e}";
@@ -25,11 +24,8 @@ fn check(arguments: &[&str]) -> String {
 
 /// A recording in a folder of a hostile name, with a hostile note in its log.
 fn recording(home: &Path) -> PathBuf {
-    let _ = fs::remove_dir_all(home);
-    fs::create_dir_all(home).expect("a folder");
     let out = home.display().to_string();
-    let simulated = tomcom(&["simulate", "sessions/default.toml", "--seed", "7", "--arm", "timed", "--out", &out]);
-    assert!(simulated.status.success(), "{simulated:?}");
+    done(&["simulate", "sessions/default.toml", "--seed", "7", "--arm", "timed", "--out", &out]);
     let recording = home.join(HOSTILE);
     fs::rename(home.join("seed7-S001"), &recording).expect("renamed");
     let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
@@ -42,7 +38,6 @@ fn recording(home: &Path) -> PathBuf {
 }
 
 #[test]
-#[serial]
 fn wrong_arguments_are_told_with_control_characters_written_out() {
     let option = format!("--{HOSTILE}");
     let arguments: [&[&str]; 8] = [
@@ -62,9 +57,8 @@ fn wrong_arguments_are_told_with_control_characters_written_out() {
 }
 
 #[test]
-#[serial]
 fn recordings_are_told_with_control_characters_written_out() {
-    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("escapes");
+    let home = folder("escapes");
     let recording = recording(&home);
     let place = recording.display().to_string();
     assert!(check(&["replay", &place]).contains(&format!("marker: {WRITTEN_OUT}\n")));
@@ -80,9 +74,8 @@ fn recordings_are_told_with_control_characters_written_out() {
 }
 
 #[test]
-#[serial]
 fn errors_show_excerpts_and_names_with_control_characters_written_out() {
-    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("escapes-in-errors");
+    let home = folder("escapes-in-errors");
     let recording = recording(&home);
     let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
     fs::write(recording.join(LOG_NAME), log.replacen("\"kind\":\"marker\"", "\"kind\":\"\x1b[31mmarker\"", 1))

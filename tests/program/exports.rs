@@ -1,11 +1,8 @@
 //! `tomcom export`: what it tells, what it refuses, and what `tomcom forget` says of an export.
 
-use serial_test::serial;
-
 use crate::forgetting::RecordingsFolder;
 
 #[test]
-#[serial]
 fn an_export_is_told_and_goes_into_an_empty_folder_only() {
     let lab = RecordingsFolder::of_two_people("export");
     lab.give("seed1-P01-2", "P-01");
@@ -24,7 +21,6 @@ fn an_export_is_told_and_goes_into_an_empty_folder_only() {
 }
 
 #[test]
-#[serial]
 fn a_data_set_with_somebody_who_is_forgotten_is_named_and_left() {
     let lab = RecordingsFolder::of_two_people("exported");
     let root = lab.root.display().to_string();

@@ -5,12 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::RecordingLock;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 
-use crate::tmux::TOMCOM;
+use crate::program::TOMCOM;
 
 /// A folder with recordings, and the folder that the program takes for the system's one for temporary files.
 pub struct RecordingsFolder {
@@ -54,7 +53,7 @@ impl RecordingsFolder {
         fs::read_to_string(self.at(path)).expect(path)
     }
 
-    /// Makes a recording one of somebody with another code, as an earlier version would have written it.
+    /// Makes a recording one of somebody with another code.
     pub fn give(&self, recording: &str, code: &str) {
         let (log, settings) = (format!("{recording}/events.jsonl"), format!("{recording}/session.toml"));
         let old = if recording.contains("P01") { "P01" } else { "P02" };
@@ -109,20 +108,19 @@ impl RecordingsFolder {
 fn record(wizard: &str, recordings: &[&str]) -> String {
     let judged = |name: &&str| {
         format!(
-            "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
+            "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"beliefs\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
             serde_json::to_string(&tomcom::measures::wizard_performance::WizardMeasures::from_signals(&[], None))
                 .expect("JSON")
         )
     };
     let judged: Vec<String> = recordings.iter().map(judged).collect();
     format!(
-        "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
+        "{{\"wizard\":\"{wizard}\",\"at\":\"2026-03-14T10:00:00Z\",\"minutes\":1.0,\"speed\":1.0,\"criterion\":{{\"hits\":0.6,\"wrong\":0.4}},\"met\":true,\"recordings\":[{}]}}",
         judged.join(",")
     )
 }
 
 #[test]
-#[serial]
 fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     let lab = RecordingsFolder::of_two_people("asks");
     lab.put("training/W1-1.json", record("W1", &["seed1-P01-1", "seed9-S001"]));
@@ -144,8 +142,22 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     assert_eq!(lab.forget(&["Jane Doe", "--yes"]).0, Some(2));
 }
 
+/// Tables that were made before the correction have the old code.
 #[test]
-#[serial]
+fn rows_from_before_a_code_was_corrected_go_with_the_recording() {
+    let lab = RecordingsFolder::of_two_people("corrected");
+    lab.study();
+    let recording = lab.at("seed1-P01-1").display().to_string();
+    let (code, told) = lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(lab.forget(&["P88", "--yes"]).0, Some(0));
+    for table in ["actions", "trials"] {
+        let left = lab.text(&format!("study/{table}.csv"));
+        assert!(!left.contains("seed1-P01-1") && left.contains("seed1-P01-2"), "{table}: {left}");
+    }
+}
+
+#[test]
 fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     let lab = RecordingsFolder::of_two_people("everywhere");
     lab.study();
@@ -190,7 +202,6 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
 }
 
 #[test]
-#[serial]
 fn nothing_goes_while_a_recording_is_being_written() {
     let lab = RecordingsFolder::of_two_people("locked");
     lab.study();
@@ -216,11 +227,10 @@ fn nothing_goes_while_a_recording_is_being_written() {
 }
 
 #[test]
-#[serial]
 fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
     let lab = RecordingsFolder::of_two_people("json");
     lab.study();
-    lab.put("seed1-P01-1.zip", "of another program");
+    lab.put("seed1-P01-1/notes.txt", "of another program");
     let listed = |arguments: &[&str]| {
         let root = lab.root.to_str().expect("UTF-8");
         let mut command = Command::new(TOMCOM);
@@ -242,6 +252,9 @@ fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
     assert_eq!(deleted["files"][0], path("study/report.html"));
     let tables = deleted["tables"].as_array().expect("a list");
     assert_eq!(tables.last(), Some(&serde_json::json!([path("study/trials.csv"), 2])));
-    assert_eq!(deleted["left"][0]["path"], path("seed1-P01-1.zip"));
-    assert!(deleted["left"][0]["reason"].as_str().is_some_and(|reason| reason.contains("name of one of")), "{deleted}");
+    assert_eq!(deleted["left"][0]["path"], path("seed1-P01-1/notes.txt"));
+    assert!(
+        deleted["left"][0]["reason"].as_str().is_some_and(|reason| reason.contains("tomcom did not write it")),
+        "{deleted}"
+    );
 }

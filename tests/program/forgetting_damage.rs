@@ -2,12 +2,9 @@
 
 use std::fs;
 
-use serial_test::serial;
-
 use crate::forgetting::RecordingsFolder;
 
 #[test]
-#[serial]
 fn bytes_that_are_no_utf_8_stay_as_they_are() {
     let lab = RecordingsFolder::of_two_people("latin-1");
     lab.study();
@@ -25,8 +22,7 @@ fn bytes_that_are_no_utf_8_stay_as_they_are() {
 }
 
 #[test]
-#[serial]
-fn a_damaged_table_is_told_and_those_beside_it_stay_until_it_is_gone() {
+fn a_damaged_table_stays_and_is_told_until_it_is_mended() {
     for (name, damage) in [
         ("header", (|text: &str| text.replacen("participant", "part", 1)) as fn(&str) -> String),
         ("no-header", |text| text.split_once('\n').expect("lines").1.to_string()),
@@ -38,30 +34,63 @@ fn a_damaged_table_is_told_and_those_beside_it_stay_until_it_is_gone() {
         let text = lab.text("study/trials.csv");
         assert_ne!(damage(&text), text, "{name}");
         lab.put("study/trials.csv", damage(&text));
-        let before = lab.files();
         let (code, told) = lab.forget(&["P01", "--yes"]);
         assert!(code == Some(1) && told.contains("study/trials.csv: ") && told.contains(" damaged"), "{name}: {told}");
-        let after = lab.files();
+        assert_eq!(lab.text("study/trials.csv"), damage(&text), "{name}");
         assert!(!lab.at("seed1-P01-1").exists() && !lab.at("seed1-P01-2").exists(), "{told}");
-        for (path, bytes) in before.iter().filter(|(path, _)| path.ends_with(".csv")) {
-            assert_eq!(after.get(path), Some(bytes), "{name}: {path}");
-        }
-        if name == "short-row" {
-            assert!(
-                told.contains("study/participants.csv: 1 row is about the participant; this table is changed together"),
-                "{told}"
-            );
-            let (code, told) = lab.forget(&["P01", "--yes"]);
-            assert!(code == Some(1) && told.contains("study/participants.csv: "), "it is told again: {told}");
-            lab.put("study/trials.csv", &text);
-            assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0), "mended, it is changed with the others");
-            assert!(lab.files().values().all(|bytes| !String::from_utf8_lossy(bytes).contains("P01")));
-        }
+        let (code, told) = lab.forget(&["P01", "--yes"]);
+        assert!(code == Some(1) && told.contains("study/trials.csv: "), "{name}: it is told again: {told}");
+        lab.put("study/trials.csv", &text);
+        assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0), "mended, it is changed");
+        assert!(lab.files().values().all(|bytes| !String::from_utf8_lossy(bytes).contains("P01")));
     }
 }
 
 #[test]
-#[serial]
+fn the_table_of_trials_tells_whose_the_recordings_are_until_all_tables_beside_it_are_changed() {
+    let lab = RecordingsFolder::of_two_people("trials-last");
+    lab.study();
+    let actions = lab.text("study/actions.csv");
+    lab.put("study/actions.csv", actions.replacen("seed1-P02-1,", "", 1));
+    let (code, told) = lab.forget(&["P01", "--yes"]);
+    assert!(code == Some(1) && told.contains("actions.csv: line ") && told.contains("trials.csv: rows are"), "{told}");
+    // No recording says any more whose the rows are.
+    assert!(!lab.at("seed1-P01-1").exists() && lab.text("study/trials.csv").contains(",P01,"));
+    lab.put("study/actions.csv", &actions);
+    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    assert!(lab.files().values().all(|bytes| !String::from_utf8_lossy(bytes).contains("P01")));
+}
+
+#[test]
+fn what_a_kill_in_the_middle_leaves_is_gone_on_with() {
+    let lab = RecordingsFolder::of_two_people("killed");
+    lab.study();
+    let (rows, trials) = (lab.text("study/participants.csv"), lab.text("study/trials.csv"));
+    let log = lab.at("seed1-P01-2/events.jsonl");
+    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    let done = lab.files();
+    // Some tables are changed, with a new one beside its old one, and of a recording only the settings are left.
+    for settings_alone in [true, false] {
+        let again = RecordingsFolder::of_two_people("killed");
+        again.study();
+        fs::remove_file(lab.at("study/report.html")).expect("deleted");
+        lab.put("study/actions.csv", &done["study/actions.csv"]);
+        lab.put("study/trials.csv.tomcom-a1B2c3.new", &done["study/trials.csv"]);
+        fs::remove_file(&log).expect("deleted");
+        if !settings_alone {
+            fs::remove_file(lab.at("seed1-P01-2/session.toml")).expect("deleted");
+        }
+        assert!(lab.text("study/trials.csv") == trials && lab.text("study/participants.csv") == rows);
+        let (code, told) = lab.forget(&["P01", "--yes"]);
+        assert_eq!(code, Some(0), "{told}");
+        fs::remove_file(lab.at("study/trials.csv.tomcom-a1B2c3.new")).expect("a table without the participant");
+        let after: Vec<String> = lab.files().into_keys().collect();
+        assert_eq!(after, done.keys().cloned().collect::<Vec<String>>());
+        assert!(lab.files().values().all(|bytes| !String::from_utf8_lossy(bytes).contains("P01")));
+    }
+}
+
+#[test]
 fn a_header_says_whose_a_recording_is_and_else_the_settings() {
     let lab = RecordingsFolder::of_two_people("headers");
     let damage = |recording: &str| {
@@ -99,7 +128,6 @@ fn a_header_says_whose_a_recording_is_and_else_the_settings() {
 }
 
 #[test]
-#[serial]
 fn a_link_leads_nowhere_and_a_pipe_is_not_waited_for() {
     let lab = RecordingsFolder::of_two_people("links");
     std::os::unix::fs::symlink(lab.at("seed1-P02-1"), lab.at("seed1-P01-1/linked")).expect("linked");

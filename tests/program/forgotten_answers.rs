@@ -4,7 +4,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serial_test::serial;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
@@ -103,7 +102,6 @@ fn with_words(folder: &Path, words: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-#[serial]
 fn answers_reach_the_tables_with_their_scores_and_are_forgotten_with_the_participant() {
     let folder = RecordingsFolder::empty("answers");
     record(&folder.root, 0, WORDS);

@@ -1,5 +1,5 @@
-//! The program as people and scripts run it. Its tests use terminals, ports, disks and times, so that each is `#[serial]`: they
-//! run one after another.
+//! The program as people and scripts run it. Its tests run side by side: each has folders, ports and terminals of its own, and
+//! waits for what must appear, however busy the machine is.
 
 mod commands;
 mod damage;
@@ -15,8 +15,9 @@ mod overwriting;
 mod path_bytes;
 mod plan;
 mod power;
+mod program;
+mod pseudo_terminal;
 mod stuck_terminal;
 mod study_parts;
 mod survival;
 mod terminal;
-mod tmux;

@@ -4,13 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
 use tomcom::session::LogHeader;
 
 use crate::forgetting::RecordingsFolder;
-use crate::tmux::TOMCOM;
+use crate::program::TOMCOM;
 
 /// The header of a trial of the default session.
 fn header() -> LogHeader {
@@ -19,7 +18,6 @@ fn header() -> LogHeader {
 }
 
 #[test]
-#[serial]
 fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
     let lab = RecordingsFolder::of_two_people("overwriting");
     let root = lab.root.display().to_string();
@@ -78,7 +76,6 @@ fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
 }
 
 #[test]
-#[serial]
 fn a_stream_that_is_saved_elsewhere_overwrites_nothing_whatever_its_name_is() {
     let lab = RecordingsFolder::of_two_people("stream-elsewhere");
     let recording = lab.at("seed1-P01-1").display().to_string();
@@ -108,7 +105,6 @@ fn run_on_a_full_disk(arguments: &[&str]) -> String {
 
 #[cfg(unix)]
 #[test]
-#[serial]
 fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
     let lab = RecordingsFolder::of_two_people("full-disk");
     let recording = lab.at("seed1-P01-1").display().to_string();
@@ -129,9 +125,8 @@ fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
 
 #[cfg(unix)]
 #[test]
-#[serial]
 fn results_go_where_a_link_leads_and_into_a_pipe() {
-    let lab = RecordingsFolder::of_two_people("links");
+    let lab = RecordingsFolder::of_two_people("links-and-pipes");
     let recording = lab.at("seed1-P01-1").display().to_string();
     lab.put("codes.csv", "");
     std::os::unix::fs::symlink("codes.csv", lab.at("link.csv")).expect("a link");
@@ -143,7 +138,6 @@ fn results_go_where_a_link_leads_and_into_a_pipe() {
 }
 
 #[test]
-#[serial]
 fn the_next_part_of_a_recording_overwrites_nothing() {
     let lab = RecordingsFolder::of_two_people("parts");
     let (header, recording) = (header(), lab.at("seed1-P01-1"));
@@ -168,7 +162,6 @@ fn the_next_part_of_a_recording_overwrites_nothing() {
 /// Whatever name a recording's files have while they are written: a link of that name is not followed.
 #[cfg(unix)]
 #[test]
-#[serial]
 fn no_file_of_a_recording_goes_where_a_link_leads() {
     use std::os::unix::fs::symlink;
     let lab = RecordingsFolder::of_two_people("no-link-followed");
@@ -217,7 +210,6 @@ fn rescued(lab: &RecordingsFolder, root: &str) -> PathBuf {
 
 #[cfg(unix)]
 #[test]
-#[serial]
 fn a_recording_is_saved_among_the_temporary_files_into_a_folder_of_its_own_that_others_cannot_read() {
     use std::os::unix::fs::PermissionsExt;
     let lab = RecordingsFolder::of_two_people("saved");

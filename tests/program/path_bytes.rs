@@ -3,14 +3,13 @@
 use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
-use serial_test::serial;
 use tomcom::edge::log::LOG_NAME;
 
-use crate::tmux::TOMCOM;
+use crate::program::{self, TOMCOM};
 
 /// Runs a command and demands the exit code; the JSON that it prints.
 fn json(code: i32, arguments: &[&OsStr]) -> Value {
@@ -20,19 +19,11 @@ fn json(code: i32, arguments: &[&OsStr]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {output:?}"))
 }
 
-/// A folder of a name that is not UTF-8; `None` where the file system has no such names.
-fn folder() -> Option<PathBuf> {
-    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("path-bytes");
-    let _ = fs::remove_dir_all(&home);
-    let folder = home.join(OsStr::from_bytes(b"lab \xff\xfe"));
-    fs::create_dir_all(&folder).ok()?;
-    Some(folder)
-}
-
 #[test]
-#[serial]
 fn every_command_works_in_a_folder_whose_name_is_no_text() {
-    let Some(folder) = folder() else { return };
+    let home = program::folder("path-bytes");
+    let folder = home.join(OsStr::from_bytes(b"lab \xff\xfe"));
+    fs::create_dir(&folder).expect("a file system with names that are no text");
     let at = |name: &str| folder.join(name).into_os_string();
     let word = OsString::from;
     let run = |code: i32, words: &[OsString]| {
@@ -41,7 +32,7 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
         json(code, &words)
     };
     let shown = folder.display().to_string();
-    let session = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("path-bytes").join("short.toml");
+    let session = home.join("short.toml");
     let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
     let settings = "seed = 7\n[trial]\npresses = 20\n[robot]\narm = \"timed\"\n";
     fs::write(&session, format!("layout = \"{}\"\n{settings}", layout.display())).expect("written");
@@ -68,7 +59,7 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
         (&["exclude"], &[word("--reason"), word("noise")]),
     ];
     for (command, options) in of_recording {
-        let command: Vec<OsString> = command.iter().map(word_of).collect();
+        let command: Vec<OsString> = command.iter().map(OsString::from).collect();
         run(0, &[&command[..], std::slice::from_ref(&recording), options].concat());
     }
     run(0, &[word("list"), all.clone()]);
@@ -91,16 +82,10 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
     assert_eq!(forgotten["deleted"], true, "{forgotten}");
 }
 
-fn word_of(word: &&str) -> OsString {
-    OsString::from(word)
-}
-
 #[test]
-#[serial]
 fn a_gaze_file_whose_path_is_no_text_is_refused_before_the_session() {
-    let Some(folder) = folder() else { return };
     let mut command = Command::new(TOMCOM);
-    command.args(["operate", "--participant", "keyboard", "--gaze-file"]).arg(folder.join("gaze.csv"));
+    command.args(["operate", "--participant", "keyboard", "--gaze-file"]).arg(OsStr::from_bytes(b"lab \xff/gaze.csv"));
     let output = command.stdin(Stdio::null()).output().expect("the program starts");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(2) && told.contains("no UTF-8"), "{output:?}");

@@ -4,15 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use serial_test::serial;
 
-use crate::tmux::{done, refused, tomcom};
+use crate::program::{self, done, json, refused, tomcom};
 
 /// An empty folder for the test of this name, with the paper's plan and short trials in it.
 fn folder(name: &str) -> (PathBuf, String) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("power-program").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = program::folder(&format!("power-{name}"));
     let text = fs::read_to_string("sessions/paper.toml").expect("the paper's session");
     let root = format!("\"{}/", env!("CARGO_MANIFEST_DIR"));
     // As tomcom simulate sets them, so that recordings have the digest of the plan.
@@ -25,7 +22,6 @@ fn folder(name: &str) -> (PathBuf, String) {
 }
 
 #[test]
-#[serial]
 fn shards_of_a_pool_are_joined_and_answer_as_the_whole() {
     let (folder, plan) = folder("shards");
     let at = |name: &str| folder.join(name).display().to_string();
@@ -66,7 +62,6 @@ fn shards_of_a_pool_are_joined_and_answer_as_the_whole() {
 }
 
 #[test]
-#[serial]
 fn the_type_i_error_needs_unassisted_trials_alone() {
     let (folder, plan) = folder("null");
     let pool = folder.join("null.jsonl").display().to_string();
@@ -75,35 +70,19 @@ fn the_type_i_error_needs_unassisted_trials_alone() {
     let lines = fs::read_to_string(&pool).expect("a pool");
     assert_eq!(lines.lines().count(), 1 + 16);
     assert!(lines.lines().skip(1).all(|line| line.contains("\"arm\":\"none\"") && line.contains("\"signals\":0")));
-    let strong = done(&[
-        "power",
-        &plan,
-        "--from",
-        &pool,
-        "--effect",
-        "0.2",
-        "--studies",
-        "40",
-        "--sizes",
-        "8",
-        "--format",
-        "json",
-    ]);
-    let strong: Value = serde_json::from_str(&strong).expect("one JSON object");
+    let of_fifth = ["--effect", "0.2", "--studies", "40", "--sizes", "8"];
+    let strong = json(&[&["power", &plan, "--from", &pool], &of_fifth[..]].concat());
     assert_eq!(strong["ratio"].as_f64(), Some(0.2));
     refused(&["power", &plan, "--from", &pool], "a pool that has only unassisted trials");
     refused(&["arms", &plan, "--from", &pool], "a pool that has only unassisted trials");
 }
 
 #[test]
-#[serial]
 fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
     let (folder, plan) = folder("frozen");
     let at = |name: &str| folder.join(name).display().to_string();
     let (file, out, recordings) = (at("short.frozen"), at("none-yet"), at("recordings"));
-    let frozen: Value =
-        serde_json::from_str(&done(&["plan", &plan, "--out", &out, "--freeze", &file, "--format", "json"]))
-            .expect("one JSON object");
+    let frozen = json(&["plan", &plan, "--out", &out, "--freeze", &file]);
     let digest = frozen["digest"].as_str().expect("a digest").to_string();
     refused(&["plan", &plan, "--out", &out, "--freeze", &file], "a file that is there already");
     done(&["simulate", &plan, "--out", &recordings]);

@@ -3,18 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use serial_test::serial;
-
-use crate::tmux::{done, refused, tomcom};
+use crate::program::{self, done, refused, tomcom};
 
 /// Number of parts, and of trials.
 const PARTS: u64 = 8;
 
 /// An empty folder for the test of this name, with a plan of short trials in it.
 fn folder(name: &str) -> (PathBuf, String) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-parts").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(folder.join("parts")).expect("a folder");
+    let folder = program::folder(&format!("parts-{name}"));
+    fs::create_dir(folder.join("parts")).expect("a folder");
     let text = fs::read_to_string("sessions/paper.toml").expect("the paper's session");
     let text =
         text.replace("\"../", &format!("\"{}/", env!("CARGO_MANIFEST_DIR"))).replace("seed = 1 ", "seed = 9813 ");
@@ -44,7 +41,6 @@ fn changed(part: &str, to: &Path, change: impl Fn(&str) -> String) -> String {
 }
 
 #[test]
-#[serial]
 fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analysis() {
     let (folder, plan) = folder("joined");
     let at = |name: &str| folder.join(name).display().to_string();
@@ -106,7 +102,6 @@ fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analys
 }
 
 #[test]
-#[serial]
 fn parts_that_do_not_make_one_study_are_refused() {
     let (folder, plan) = folder("refused");
     let at = |name: &str| folder.join(name).display().to_string();

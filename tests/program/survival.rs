@@ -1,23 +1,22 @@
 //! Recordings survive: the real program is killed, its disk fills up, its folder vanishes, its clock stands still, and what
-//! was acknowledged is there and goes on. Without tmux the tests say that they were skipped.
+//! was acknowledged is there and goes on.
 //!
 //! `TOMCOM_KILLS=200 cargo test --release --test program survival` kills that often, and demands times that only an idle machine
 //! keeps: nothing older than 100 ms is lost, and the wizard is told within a second.
 
 use std::fs;
 use std::io::Write;
-use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rand::RngExt;
-use serde_json::Value;
-use serial_test::serial;
+use rustix::process::Signal;
 use tomcom::base::rng::stream;
 use tomcom::edge::log::{LOG_NAME, RRD_NAME};
 
-use crate::tmux::{TOMCOM, Terminal, tiny_plan, tomcom};
+use crate::program::{TOMCOM, done, json, refused, session_with_tracker, tiny_plan, verified};
+use crate::pseudo_terminal::Terminal;
 
 /// How old the newest lost sample may be after a kill, and how soon the wizard is told that something is wrong, on an idle machine.
 const LOST: Duration = Duration::from_millis(100);
@@ -34,34 +33,9 @@ fn took(what: &str, time: Duration, limit: Duration) {
     assert!(kills().is_none() || time <= limit, "{what} {time:?}");
 }
 
-fn signal(pid: &str, signal: &str) {
-    let done = Command::new("kill").args([&format!("-{signal}"), pid.trim()]).status().expect("kill runs");
-    assert!(done.success(), "kill -{signal} {pid}");
-}
-
-/// What `tomcom replay RECORDING --verify` finds.
-fn verified(recording: &Path) -> Value {
-    let output = tomcom(&["replay", &recording.display().to_string(), "--verify", "--format", "json"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
-    assert_eq!(found["verified"], true, "{}: {found}", recording.display());
-    found
-}
-
-/// A session file with gaze over TCP on a port of its own; the port.
-fn json_session(folder: &Path) -> (PathBuf, u16) {
-    let free = TcpListener::bind(("127.0.0.1", 0)).and_then(|listener| listener.local_addr());
-    let port = free.expect("a free port").port();
-    let root = env!("CARGO_MANIFEST_DIR");
-    let text = fs::read_to_string("sessions/default.toml").expect("the default session");
-    let text = text.replace("../layouts", &format!("{root}/layouts")).replace("50021", &port.to_string());
-    let session = folder.join("session.toml");
-    fs::write(&session, text).expect("written");
-    (session, port)
-}
-
 /// Takes a cut recording up, lets its trial run on, and ends it; the new part.
 fn goes_on(terminal: &Terminal, recording: &Path) -> PathBuf {
-    terminal.run(&format!("{TOMCOM} operate --continue {}", recording.display()));
+    terminal.run(&["operate", "--continue", &recording.display().to_string()]);
     terminal.see("PAUSED");
     terminal.key(".");
     terminal.see("RUNNING");
@@ -74,16 +48,15 @@ fn goes_on(terminal: &Terminal, recording: &Path) -> PathBuf {
 
 /// One session with gaze from outside, killed at a random moment. What is recorded is the beginning of what was sent.
 fn check_kill(number: u64) {
-    let Some(terminal) = Terminal::open(&format!("kill-{number}")) else { return };
+    let terminal = Terminal::open(&format!("kill-{number}"));
     let mut random = stream(number, "kills", 0);
-    let (session, port) = json_session(&terminal.folder);
-    let out = terminal.folder.join("recordings");
-    terminal.run(&format!("{TOMCOM} operate {} --out {} --gaze json", session.display(), out.display()));
+    let (session, connect) = session_with_tracker(&terminal.folder);
+    let out = terminal.recordings();
+    terminal.run(&["operate", &session, "--out", &out, "--gaze", "json"]);
     // Every fourth is killed on its way to the first frame.
     if number % 4 == 3 {
-        terminal.wait("a process", || terminal.read("pid").ends_with('\n'));
         std::thread::sleep(Duration::from_millis(random.random_range(0..60)));
-        signal(&terminal.read("pid"), "KILL");
+        terminal.kill();
         let recordings = fs::read_dir(&out).into_iter().flatten().flatten().map(|entry| entry.path());
         recordings.filter(|folder| folder.join(LOG_NAME).exists()).for_each(|folder| {
             assert_eq!(verified(&folder)["cut"], true);
@@ -91,8 +64,8 @@ fn check_kill(number: u64) {
         return;
     }
     terminal.see("READY");
-    terminal.start();
-    let mut tracker = TcpStream::connect(("127.0.0.1", port)).expect("it listens");
+    terminal.begin();
+    let mut tracker = connect();
     tracker.set_nodelay(true).expect("a socket");
     let length = Duration::from_millis(random.random_range(200..3000));
     let began = Instant::now();
@@ -104,9 +77,8 @@ fn check_kill(number: u64) {
         sent.push((Instant::now(), (taken_s * 1e3).round() as u64));
         std::thread::sleep(Duration::from_micros(random.random_range(7_000..9_700)));
     }
-    let pid = terminal.read("pid");
     let killed = Instant::now();
-    signal(&pid, "KILL");
+    terminal.kill();
     let recording = terminal.recording();
     assert_eq!(verified(&recording)["cut"], true);
     let log = terminal.log();
@@ -116,61 +88,50 @@ fn check_kill(number: u64) {
     assert!(!is_gap, "kill {number}: a sample after {} others is lost, and a later one is not", there.len());
     let age = lost.first().map_or(Duration::ZERO, |(at, _)| killed - *at);
     took(&format!("kill {number}: {} samples, the oldest lost one has an age of", sent.len()), age, LOST);
-    let Some(other) = Terminal::open(&format!("kill-{number}-goes-on")) else { return };
-    let part = goes_on(&other, &recording);
-    let found = verified(&part);
+    let found = verified(&goes_on(&terminal, &recording));
     assert_eq!(found["cut"], false, "{found}");
     assert!(found["events"].as_u64() > verified(&recording)["events"].as_u64(), "{found}");
 }
 
 #[test]
-#[serial]
 fn a_kill_at_any_moment_loses_nothing_and_the_session_goes_on_in_a_new_part() {
-    (0..kills().unwrap_or(6)).for_each(check_kill);
+    match kills() {
+        Some(kills) => (0..kills).for_each(check_kill),
+        None => std::thread::scope(|scope| (0..6).for_each(|number| drop(scope.spawn(move || check_kill(number))))),
+    }
 }
 
 #[test]
-#[serial]
 fn a_recording_is_written_by_one_program_and_continued_once() {
-    let Some(terminal) = Terminal::open("one-writer") else { return };
-    terminal.operate("default.toml", "");
-    terminal.start();
+    let terminal = Terminal::open("one-writer");
+    terminal.operate("default.toml", &[]);
+    terminal.begin();
     let recording = terminal.recording();
-    let refused = |recording: &Path, says: &str| {
-        let output = tomcom(&["operate", "--continue", &recording.display().to_string()]);
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains(says), "{says:?} is not in\n{told}");
+    let name = recording.file_name().expect("a name").to_string_lossy().into_owned();
+    let part = |number: u32| recording.with_file_name(format!("{name}-part{number}"));
+    let no_further = |recording: &Path, says: &str| {
+        refused(&["operate", "--continue", &recording.display().to_string()], says);
     };
-    let pid = terminal.read("pid");
-    refused(&recording, &format!("another program (process {}) writes this recording", pid.trim()));
+    no_further(&recording, &format!("another program (process {}) writes this recording", terminal.pid()));
     // Read it may be, by everybody.
     assert_eq!(verified(&recording)["cut"], true);
-    signal(&pid, "KILL");
-    terminal.wait("the end", || terminal.folder.join("exit").exists());
+    terminal.kill();
     assert!(recording.join("lock").exists(), "a killed program leaves its lock behind");
-    let Some(second) = Terminal::open("one-writer-goes-on") else { return };
-    let root = recording.parent().expect("a folder");
-    second.run(&format!("{TOMCOM} operate --continue {}", recording.display()));
-    second.see("PAUSED");
-    let part = recording.with_file_name(format!("{}-part2", recording.file_name().expect("a name").to_string_lossy()));
-    second.wait("a part", || part.join(LOG_NAME).exists());
-    signal(&second.read("pid"), "KILL");
-    second.wait("the end", || second.folder.join("exit").exists());
-    refused(&recording, "was continued already");
-    let Some(third) = Terminal::open("one-writer-third") else { return };
-    let last = goes_on(&third, &part);
-    assert!(last.ends_with(format!("{}-part3", recording.file_name().expect("a name").to_string_lossy())));
+    terminal.run(&["operate", "--continue", &recording.display().to_string()]);
+    terminal.see("PAUSED");
+    terminal.wait("a part", || part(2).join(LOG_NAME).exists());
+    terminal.kill();
+    no_further(&recording, "was continued already");
+    let last = goes_on(&terminal, &part(2));
+    assert_eq!(last, part(3));
     assert_eq!(verified(&last)["cut"], false);
-    refused(&last, "brought to its end");
-    assert!(!last.join("lock").exists() && !part.join("lock").exists());
+    no_further(&last, "brought to its end");
+    assert!(!last.join("lock").exists() && !part(2).join("lock").exists());
     // A part tells the whole session, and says which part is missing.
-    let told = tomcom(&["replay", &last.display().to_string()]);
-    assert!(String::from_utf8_lossy(&told.stdout).contains("trial started"), "{told:?}");
-    fs::rename(&recording, root.join("elsewhere")).expect("moved");
-    let output = tomcom(&["replay", &last.display().to_string(), "--verify"]);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.code() == Some(2) && told.contains("a recording that is not there"), "{told}");
+    let last = last.display().to_string();
+    assert!(done(&["replay", &last]).contains("trial started"));
+    fs::rename(&recording, recording.with_file_name("elsewhere")).expect("moved");
+    refused(&["replay", &last, "--verify"], "a recording that is not there");
 }
 
 /// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.
@@ -182,16 +143,16 @@ fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
     assert!(after.starts_with(complete), "what was acknowledged is lost");
     assert_eq!(verified(recording)["cut"], true);
     terminal.key("C-c");
-    terminal.is_whole("1");
+    terminal.is_whole(1);
     terminal.see("a folder that can be written to");
 }
 
 /// Does something bad to the recording of a running session, and demands the alarm.
 fn check_loss(name: &str, bad: impl FnOnce(&Path)) {
-    let Some(terminal) = Terminal::open(name) else { return };
-    terminal.operate("default.toml", "");
-    terminal.start();
-    terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
+    let terminal = Terminal::open(&format!("folder-{name}"));
+    terminal.operate("default.toml", &[]);
+    terminal.begin();
+    terminal.gaze(50);
     let (recording, before) = (terminal.recording(), terminal.log());
     let began = Instant::now();
     bad(&recording);
@@ -201,13 +162,11 @@ fn check_loss(name: &str, bad: impl FnOnce(&Path)) {
 }
 
 #[test]
-#[serial]
 fn a_folder_that_is_deleted_is_told_at_once_and_saved() {
     check_loss("deleted", |recording| fs::remove_dir_all(recording).expect("deleted"));
 }
 
 #[test]
-#[serial]
 fn a_folder_that_is_moved_away_is_told_at_once_and_saved() {
     check_loss("moved", |recording| {
         let away = recording.parent().and_then(Path::parent).expect("a folder").join("away");
@@ -216,7 +175,6 @@ fn a_folder_that_is_moved_away_is_told_at_once_and_saved() {
 }
 
 #[test]
-#[serial]
 fn a_folder_that_becomes_read_only_is_told_at_once() {
     check_loss("read-only", |recording| {
         let mut permissions = fs::metadata(recording).expect("a folder").permissions();
@@ -229,15 +187,12 @@ fn a_folder_that_becomes_read_only_is_told_at_once() {
 struct Disk(PathBuf);
 
 impl Disk {
-    fn mount(folder: PathBuf) -> Option<Disk> {
+    fn mount(folder: PathBuf) -> Disk {
         fs::create_dir_all(&folder).expect("a folder");
         let arguments = ["-t", "tmpfs", "-o", "size=1500k", "tomcom-test"];
-        let mounted = Command::new("mount").args(arguments).arg(&folder).output();
-        if !mounted.is_ok_and(|output| output.status.success()) {
-            eprintln!("skipped: mounting a small disk needs root");
-            return None;
-        }
-        Some(Disk(folder))
+        let mounted = Command::new("mount").args(arguments).arg(&folder).output().expect("mount");
+        assert!(mounted.status.success(), "{mounted:?}");
+        Disk(folder)
     }
 }
 
@@ -248,13 +203,13 @@ impl Drop for Disk {
 }
 
 #[test]
-#[serial]
+#[ignore = "needs root, who mounts a small disk"]
 fn on_a_full_disk_the_stream_goes_first_then_the_session_which_goes_on_when_there_is_room() {
-    let Some(terminal) = Terminal::open("full") else { return };
-    let Some(disk) = Disk::mount(terminal.folder.join("recordings")) else { return };
-    terminal.operate("default.toml", "");
-    terminal.start();
-    terminal.wait("gaze", || terminal.count("\"kind\":\"gaze\"") > 50);
+    let terminal = Terminal::open("full");
+    let disk = Disk::mount(terminal.folder.join("recordings"));
+    terminal.operate("default.toml", &[]);
+    terminal.begin();
+    terminal.gaze(50);
     let recording = terminal.recording();
     let stream = recording.join(RRD_NAME);
     assert!(stream.exists());
@@ -266,44 +221,41 @@ fn on_a_full_disk_the_stream_goes_first_then_the_session_which_goes_on_when_ther
     took("full disk: told after", began.elapsed(), ALARM);
     assert!(!stream.exists(), "the stream made room for the log");
     let before = terminal.count("\"kind\":\"gaze\"");
-    terminal.wait("more gaze in the log", || terminal.count("\"kind\":\"gaze\"") > before + 5);
+    terminal.gaze(before + 5);
     assert!(!terminal.screen().contains("RECORDING LOST"), "{}", terminal.screen());
     let before = terminal.log();
     let _ = fill("filler2");
     terminal.see("RECORDING LOST");
     is_over(&terminal, &before, &recording);
     fs::remove_file(disk.0.join("filler")).expect("room");
-    let Some(other) = Terminal::open("full-goes-on") else { return };
-    assert_eq!(verified(&goes_on(&other, &recording))["cut"], false);
+    assert_eq!(verified(&goes_on(&terminal, &recording))["cut"], false);
 }
 
 #[test]
-#[serial]
 fn a_limit_for_files_is_told_as_a_full_disk_is() {
-    let Some(terminal) = Terminal::open("limit") else { return };
+    let terminal = Terminal::open("limit");
     // In blocks of 512 bytes.
-    terminal.shell("ulimit -f 120");
-    terminal.operate("default.toml", "");
-    terminal.start();
+    let limited = ["-c", "ulimit -f 120; exec \"$@\"", "sh", TOMCOM, "operate", "sessions/default.toml", "--out"];
+    terminal.start(Command::new("sh").args(limited).arg(terminal.recordings()));
+    terminal.see("READY");
+    terminal.begin();
     let before = terminal.log();
     terminal.see("RECORDING LOST");
     is_over(&terminal, &before, &terminal.recording());
 }
 
 #[test]
-#[serial]
 fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
-    let Some(terminal) = Terminal::open("standstill") else { return };
-    // A shell with job control would take the terminal back from a stopped program.
-    terminal.shell("set +m");
-    terminal.operate("default.toml", "");
-    terminal.start();
-    let pid = terminal.read("pid");
+    let terminal = Terminal::open("standstill");
+    terminal.operate("default.toml", &[]);
+    terminal.begin();
+    // It still runs after this.
     let stood_at = Instant::now();
-    signal(&pid, "STOP");
+    terminal.gaze(terminal.count("\"kind\":\"gaze\"") + 50);
+    terminal.signal(Signal::STOP);
     std::thread::sleep(Duration::from_millis(2500));
-    signal(&pid, "CONT");
-    let events = || -> Vec<Value> {
+    terminal.signal(Signal::CONT);
+    let events = || -> Vec<serde_json::Value> {
         terminal.log().lines().skip(1).filter_map(|line| serde_json::from_str(line).ok()).collect()
     };
     // On a busy machine the program stands still at other times, too, but not for so long.
@@ -320,32 +272,25 @@ fn a_program_that_stood_still_goes_on_where_it_was_and_the_log_says_so() {
 }
 
 #[test]
-#[serial]
 fn a_terminal_that_is_fine_is_found_fine() {
-    let Some(terminal) = Terminal::open("doctor") else { return };
-    terminal.run(&format!("{TOMCOM} doctor --out {}/recordings", terminal.folder.display()));
-    terminal.is_whole("0");
+    let terminal = Terminal::open("doctor");
+    terminal.run(&["doctor", "--out", &terminal.recordings()]);
+    terminal.is_whole(0);
     terminal.see("120x40");
     terminal.see("can be written to");
 }
 
-/// The key that goes on in a plan from what is on this screen, if any does; `turn` keeps two presses in a row apart.
-fn onward(screen: &str, turn: u64) -> Option<&'static str> {
+/// The key that goes on in a plan from what is on this screen, if any does.
+fn onward(screen: &str) -> Option<&'static str> {
     let shows = |text: &str| screen.contains(text);
-    let on = if turn.is_multiple_of(2) { "Enter" } else { "." };
+    let advances = ["READY", "PAUSED", ". next recording", ". next phase: questionnaire"];
     match () {
         () if shows("enter waive for this reason") => Some("Enter"),
         () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
-        () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
+        () if shows("0 no answer") => Some("3"),
         () if shows("RUNNING") => None,
-        () if shows("READY")
-            || shows("PAUSED")
-            || shows(". next recording")
-            || shows(". next phase: questionnaire") =>
-        {
-            Some(".")
-        }
-        () if shows("enter ") => Some(on),
+        () if advances.into_iter().any(shows) => Some("."),
+        () if shows("enter ") => Some("Enter"),
         () => None,
     }
 }
@@ -357,48 +302,39 @@ fn logs(out: &Path) -> Vec<(PathBuf, String)> {
 }
 
 #[test]
-#[serial]
 fn a_plan_goes_on_where_it_was_however_often_it_is_killed() {
-    let kills: u64 = std::env::var("TOMCOM_KILLS").ok().and_then(|count| count.parse().ok()).unwrap_or(5);
-    let Some(home) = Terminal::open("plan-kills") else { return };
-    let (session, out) = (tiny_plan(&home.folder), home.folder.join("recordings"));
-    let [session, out_name] = [session.display().to_string(), out.display().to_string()];
+    let kills = kills().unwrap_or(5);
+    let terminal = Terminal::open("plan-kills");
+    let (session, out_name) = (tiny_plan(&terminal.folder), terminal.recordings());
+    let out = Path::new(&out_name);
     let mut done = 0;
     for number in 0..=kills {
-        let Some(terminal) = Terminal::open(&format!("plan-kill-{number}")) else { return };
         if done == 3 && number < kills {
-            fs::remove_dir_all(&out).expect("recordings");
+            fs::remove_dir_all(out).expect("recordings");
             done = 0;
         }
-        let before = logs(&out);
-        terminal.run(&format!("{TOMCOM} operate {session} --code A1 --out {out_name}"));
-        terminal.wait("a process", || terminal.read("pid").ends_with('\n'));
+        let before = logs(out);
+        terminal.run(&["operate", &session, "--code", "A1", "--out", &out_name]);
         let mut random = stream(number, "kills of a plan", 0);
         let until = Instant::now() + Duration::from_millis(random.random_range(100..5000));
-        let mut turn = 0;
-        let mut last = ("", Instant::now());
+        let (mut shown, mut pressed) = (String::new(), Instant::now());
         terminal.wait("the kill, or at last the end", || {
-            // A key that comes again too soon counts as held down.
-            let next = onward(&terminal.screen(), turn);
-            if let Some(key) = next.filter(|&key| key != last.0 || last.1.elapsed() > Duration::from_millis(900)) {
-                terminal.key(key);
-                last = (key, Instant::now());
-                turn += 1;
+            // A key that did nothing is pressed again.
+            let now = terminal.words();
+            if now != shown || pressed.elapsed() > Duration::from_secs(1) {
+                onward(&terminal.screen()).into_iter().for_each(|key| terminal.key(key));
+                (shown, pressed) = (now, Instant::now());
             }
-            std::thread::sleep(Duration::from_millis(200));
-            terminal.folder.join("after").exists() || (number < kills && Instant::now() > until)
+            terminal.has_ended() || (number < kills && Instant::now() > until)
         });
-        if !terminal.folder.join("after").exists() {
-            signal(&terminal.read("pid"), "KILL");
-            terminal.wait("the end", || terminal.folder.join("exit").exists());
+        if !terminal.has_ended() {
+            terminal.kill();
         }
         // What was written before stays as it was, and everything verifies, cut or not.
-        let after = logs(&out);
+        let after = logs(out);
         assert!(before.iter().all(|log| after.contains(log)), "kill {number} changed another recording");
         after.iter().for_each(|(log, _)| drop(verified(log.parent().expect("a folder"))));
-        let plan = tomcom(&["plan", &session, "--out", &out_name, "--format", "json"]);
-        let plan: Value = serde_json::from_slice(&plan.stdout).unwrap_or_else(|_| panic!("{plan:?}"));
-        let first = &plan["participants"][0];
+        let first = json(&["plan", &session, "--out", &out_name])["participants"][0].clone();
         let steps = first["steps"].as_array().expect("steps").iter().filter(|step| step["is_done"] == true).count();
         assert!(steps >= done, "kill {number}: {steps} steps are done, {done} were before: {first}");
         println!("kill {number}: {steps} of 3 steps are done, {} recordings", after.len());

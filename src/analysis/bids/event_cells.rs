@@ -122,10 +122,10 @@ impl EventCells {
                 self.agent = "wizard".to_string();
                 (self.location, self.content) = (location.clone(), content.clone());
             }
-            Event::SignalShown { by, signal, accepted, offer } => {
+            Event::SignalShown { by, signal, offer } => {
                 self.agent = name(by);
                 self.take_signal(signal);
-                self.refers_to = offer.or(*accepted);
+                self.refers_to = *offer;
             }
             Event::SignalDrawn { signal } => self.refers_to = Some(*signal),
             Event::SignalEnded { reason } => self.reason = name(reason),
@@ -133,7 +133,6 @@ impl EventCells {
             Event::HumanWaits { silent_ns } => {
                 (self.agent, self.value) = ("human".to_string(), Some(silent_ns.as_secs_f64()));
             }
-            Event::SeemsUnaware { aspect } => (self.agent, self.item) = ("human".to_string(), aspect.clone()),
             Event::ClockJumped { by_ms } => self.value = Some(*by_ms as f64),
             Event::Screen(screen) => {
                 self.what = name(&screen.visibility);
@@ -152,7 +151,9 @@ impl EventCells {
         match event {
             Event::RobotIntends { button, until_ns } => (self.button, self.at) = (button.clone(), Some(*until_ns)),
             Event::RobotAborts { button, reason } => (self.button, self.reason) = (button.clone(), name(reason)),
-            Event::RobotIdles { reason } => self.reason = name(reason),
+            Event::RobotIdles { reason, waits_for } => {
+                (self.reason, self.button) = (name(reason), waits_for.join(", "))
+            }
             Event::RobotMoves(sample) => (self.what, self.force_n) = (name(&sample.phase), Some(sample.force_n)),
             Event::RobotSafety { mode, force_n, joint } => {
                 (self.what, self.force_n, self.value) = (name(mode), *force_n, joint.map(f64::from));
@@ -206,8 +207,7 @@ impl EventCells {
         self.what = tag(event, "what");
         match event {
             ProtocolEvent::ConsentGiven { on, digest, .. } => {
-                self.reason = on.as_ref().map(name).unwrap_or_default();
-                self.item = digest.clone().unwrap_or_default();
+                (self.reason, self.item) = (name(on), digest.clone());
             }
             ProtocolEvent::PhaseStarted { phase, number } => {
                 (self.item, self.value) = (phase.name().to_string(), Some(*number as f64));

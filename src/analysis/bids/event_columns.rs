@@ -34,7 +34,10 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
     ),
     BidsColumn::new("what", "What exactly happened, for kinds that have several"),
     BidsColumn::of_levels("agent", AGENTS, "Who did it"),
-    BidsColumn::new("button", "Name of the button; several proposed ones are separated by commas"),
+    BidsColumn::new(
+        "button",
+        "Name of the button; several are separated by commas: proposed ones, or those of the participant for which the robot waits",
+    ),
     BidsColumn::of_levels("effective", YES_NO, "Presses: whether the button did anything"),
     BidsColumn::of_levels(
         "error",

@@ -79,21 +79,6 @@ pub struct LikelihoodMaximum {
     pub converged: bool,
 }
 
-/// Maximises a log likelihood within bounds as [`ascend`] does, but without standard errors and intervals.
-pub fn climb(
-    losses: impl FnMut(&[f64]) -> Option<Vec<f64>>,
-    start: &[f64],
-    bounds: &[[f64; 2]],
-    most: usize,
-) -> LikelihoodMaximum {
-    let mut search = SurfaceSearch::begin(losses, start, bounds, most);
-    let free: Vec<usize> = (0..start.len()).collect();
-    let found = [SurfaceSource::Scores, SurfaceSource::Values].map(|source| search.climb(source, &free).is_some());
-    let variable = |&at: &f64| VariableEstimate { at, standard_error: None, end: None, limit: None };
-    let variables = search.at.iter().map(variable).collect();
-    LikelihoodMaximum { variables, evaluations: search.evaluations, converged: found == [true; 2] }
-}
-
 /// Maximises a log likelihood within bounds. `losses` returns the negative log likelihood of each press at a point, in
 /// nats, always of the same presses in the same order; `None` where there is no likelihood. Stops after about `most`
 /// evaluations of `losses`.

@@ -7,18 +7,10 @@
 //! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface and
 //! the outer products of the scores (the "sandwich" of Huber 1967 and White 1982). A parameter whose maximum lies at a
 //! bound, or whose interval reaches one, is not identified; the interval of such a parameter is one-sided.
-//!
-//! [`people_fit`] fits a population of persons with different parameters ([`people_search`], [`population_estimate`]).
 
 pub mod ascent;
-pub mod downhill_simplex;
 pub mod fitted_answers;
-pub mod gaussian_likelihood;
 pub mod parameter_scale;
-pub mod people_fit;
-pub mod people_search;
-pub mod people_summary;
-pub mod population_estimate;
 pub mod response_surface;
 pub mod score_surface;
 pub mod surface_search;

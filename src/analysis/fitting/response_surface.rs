@@ -21,8 +21,6 @@ pub struct QuadraticSurface {
     pub curvature: DMatrix<f64>,
     /// Standard deviation of the residuals between function values and surface.
     pub noise: f64,
-    /// Covariance of the surface's first derivatives that follows from the residuals.
-    pub slope_covariance: DMatrix<f64>,
 }
 
 /// Number of function values that [`surface`] needs for this number of variables.
@@ -60,13 +58,7 @@ pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &
     }
     let residuals = values - design * &found;
     let variance = residuals.norm_squared() / residuals.len().saturating_sub(count).max(1) as f64;
-    Some(QuadraticSurface {
-        value: found[0],
-        slope: found.rows(1, n).into_owned(),
-        curvature,
-        noise: variance.sqrt(),
-        slope_covariance: inverse.view((1, 1), (n, n)) * variance,
-    })
+    Some(QuadraticSurface { value: found[0], slope: found.rows(1, n).into_owned(), curvature, noise: variance.sqrt() })
 }
 
 /// Inverse of a symmetric matrix; `None` if the matrix is not positive definite beyond rounding.

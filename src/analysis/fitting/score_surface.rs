@@ -6,10 +6,8 @@
 //! press is that given all earlier presses, hence the scores at the true parameters are uncorrelated with mean 0, and the
 //! sum of their outer products estimates the covariance of the log likelihood's slope, which is the information if the
 //! model is right. Noise of the likelihood makes products of a score with itself too large. The regression's residuals
-//! tell of noise that differs from point to point, but not of noise that neighbouring points share. In a fit of one set
-//! of parameters, surfaces from scores therefore lead the search, and do not give standard errors by themselves. In a fit
-//! of persons they also give what is known of each person ([`super::people_search`]): there are too few presses for the
-//! curvature of the values.
+//! tell of noise that differs from point to point, but not of noise that neighbouring points share. Surfaces from scores
+//! therefore lead the search, and do not give standard errors by themselves.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -95,12 +93,10 @@ impl ScoreRegression {
         };
         let unbent = DVector::from_fn(self.losses.nrows(), |row, _| self.losses.row(row).sum() - bend(row));
         let found = &self.inverse * self.design.tr_mul(&unbent);
-        let variance = (unbent - &self.design * &found).norm_squared() / self.freedom();
         QuadraticSurface {
             value: found[0],
             slope: found.rows(1, curvature.nrows()).into_owned(),
             noise: press_noise.sqrt(),
-            slope_covariance: self.of_slopes() * variance,
             curvature,
         }
     }

@@ -119,7 +119,7 @@ fn channel(label: impl ToString, unit: &'static str) -> StreamChannel {
 
 /// All signals that can be sent in a session, in the order of their channels.
 pub(super) fn session_signals(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<Signal> {
-    signals(kitchen, spec.signals.own_hand).into_iter().map(|(_, signal)| signal).collect()
+    signals(kitchen, spec.highlights(kitchen)).into_iter().map(|(_, signal)| signal).collect()
 }
 
 fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {

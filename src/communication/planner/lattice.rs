@@ -19,9 +19,6 @@ const NUMBERS: usize = 2 + PER_DECISION * DECISIONS;
 /// The generalised golden ratio: the root above 1 of x^(NUMBERS + 1) = x + 1.
 const RATIO: f64 = 1.085_070_245_491_450_8;
 
-/// The golden ratio less 1, the step of the quasi-random numbers of the order focus.
-const FOCUS_STEP: f64 = 0.618_033_988_749_894_9;
-
 /// Quasi-random points of the unit cube, one point per rollout.
 #[derive(Clone, Debug)]
 pub struct QuasiRandomLattice {
@@ -41,10 +38,5 @@ impl QuasiRandomLattice {
             step /= RATIO;
             (shift + number as f64 * step).fract()
         })
-    }
-
-    /// Quasi-random number of the order focus in the rollout with this number, from 0 to below 1.
-    pub fn focus(&self, number: usize) -> f64 {
-        (self.shift[0] + number as f64 * FOCUS_STEP).fract()
     }
 }

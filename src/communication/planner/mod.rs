@@ -2,10 +2,11 @@
 //!
 //! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
 //! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
-//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that
-//! changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped. Where signals take time, a
-//! rollout reads its signal after the mean delay, and its saving is multiplied by the probability that the signal is
-//! read: a human who misses the signal continues like the baseline.
+//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A wait of the
+//! human counts as a press as long as something is wanted: else a human who believes that nothing is worth doing would lose
+//! nothing by waiting for the horizon. A signal that changes none of a sample's worlds saves exactly nothing in its
+//! rollout, which is skipped. Where signals take time, a rollout reads its signal after the mean delay, and its saving is
+//! multiplied by the probability that the signal is read: a human who misses the signal continues like the baseline.
 
 mod lattice;
 mod rollout;
@@ -31,8 +32,7 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, WeightedWorlds};
 use crate::mind::ChoiceModel;
-use crate::mind::filter::order_focus::OrderFocus;
-use crate::mind::filter::urn::value_at;
+use crate::mind::choice::HumanChoice;
 use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::recorded_estimate::rounded;
 
@@ -48,8 +48,6 @@ pub struct Planner {
     seed: u64,
     choice: ChoiceModel,
     foresight: f64,
-    /// Which orders humans consider who choose anew.
-    focus: OrderFocus,
     /// Looking model of the rollouts: where, and how often, the human looks.
     looking: LookingModel,
     involved: Vec<Vec<AspectId>>,
@@ -87,7 +85,6 @@ impl Planner {
         Planner {
             choice: ChoiceModel::up_to_draws(&kitchen, &human.decision, spec.rollout.states),
             foresight: human.transition.foresight,
-            focus: OrderFocus::new(&kitchen, human.decision.one_order),
             looking: spec.rollout.looking(&human.looking),
             involved: buttons.clone().map(|button| aspects(button).collect()).collect(),
             watched: buttons.map(watched).collect(),
@@ -129,7 +126,7 @@ impl Planner {
         candidates: &mut [Candidate],
         number: usize,
         lattice: &QuasiRandomLattice,
-        [random, turns]: [&mut Stream; 2],
+        random: &mut Stream,
     ) {
         let model = &self.spec.rollout;
         self.samples.draw(&self.kitchen, situation.state, number, random, &mut self.believed);
@@ -141,9 +138,7 @@ impl Planner {
         for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
             draws.begin_with(first);
         }
-        let focus = value_at(situation.focus, lattice.focus(number));
-        self.draws.iter_mut().for_each(|draws| draws.draw_focus(turns));
-        let attended_s = model.human_press_s * situation.attention;
+        let looks = |rate_hz: f64| -(-rate_hz * model.human_press_s).exp_m1();
         let context = RolloutContext {
             kitchen: &self.kitchen,
             recipes: self.kitchen.true_recipes(),
@@ -153,10 +148,9 @@ impl Planner {
             model,
             robot_press_s: situation.robot_press_s,
             foresight: self.foresight,
-            looks: -(-self.looking.looks_hz * attended_s).exp_m1(),
-            other_looks: -(-self.looking.other_looks_hz * attended_s).exp_m1(),
+            looks: looks(self.looking.looks_hz),
+            other_looks: looks(self.looking.other_looks_hz),
             capture: self.looking.capture,
-            focus: &self.focus,
         };
         let read_s = situation.forecast.delay_s;
         let mut rollout =
@@ -169,7 +163,7 @@ impl Planner {
                 continue;
             }
             if !is_baseline_known {
-                self.state.begin(&self.kitchen, situation, &self.believed, focus, sees);
+                self.state.begin(&self.kitchen, situation, &self.believed, sees);
                 rollout.baseline(&mut self.state, &mut self.baseline);
                 is_baseline_known = true;
             }
@@ -205,8 +199,7 @@ impl Planner {
         proceed: &mut dyn FnMut() -> bool,
     ) -> Vec<Candidate> {
         let situation = &moment.situation;
-        let [mut random, mut turns] =
-            ["communication", "order focus"].map(|of| stream(self.seed, of, u64::from(moment.presses)));
+        let mut random = stream(self.seed, "communication", u64::from(moment.presses));
         let rollouts = self.spec.rollout.rollouts;
         self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
         let lattice = QuasiRandomLattice::shifted(&mut random);
@@ -214,7 +207,7 @@ impl Planner {
             if !proceed() {
                 break;
             }
-            self.roll_out(cost, situation, &mut candidates, number, &lattice, [&mut random, &mut turns]);
+            self.roll_out(cost, situation, &mut candidates, number, &lattice, &mut random);
             if (number + 1) % BATCH == 0 && self.is_decided(&mut candidates, number + 1) {
                 break;
             }
@@ -232,10 +225,11 @@ impl Planner {
         let reason = candidates.first().filter(|candidate| candidate.tally.mean() > 0.0).and_then(|candidate| {
             let mut reason =
                 SignalReason::for_signal(&self.kitchen, situation.state, situation.belief, &candidate.signal)?;
-            if let Some((prevents, instead)) = candidate.tally.turning_point() {
-                let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
-                reason.prevents = Some(name(prevents));
-                reason.instead = instead.map(name);
+            if let Some(choices) = candidate.tally.turning_point() {
+                [reason.prevents, reason.instead] = choices.map(|choice| match choice {
+                    HumanChoice::Press(button) => Some(self.kitchen.button(Agent::Human, button).name.clone()),
+                    HumanChoice::Wait => None,
+                });
             }
             Some(reason)
         });

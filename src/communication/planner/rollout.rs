@@ -15,7 +15,6 @@ use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State, WeightedWorlds};
 use crate::mind::choice::{ChoiceModel, HumanChoice};
-use crate::mind::filter::order_focus::{OrderFocus, RETURNING, is_on_changed};
 
 /// Number of robot presses between two decisions of the human that have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
@@ -29,8 +28,6 @@ pub struct DecisionDraws {
     choices: [f64; ROBOT_DRAWS],
     predictions: [f64; ROBOT_DRAWS],
     captures: [f64; ROBOT_DRAWS],
-    /// Whether the human may turn to another order after the decision, and to which.
-    turn: [f64; 2],
 }
 
 impl DecisionDraws {
@@ -42,11 +39,6 @@ impl DecisionDraws {
         draws.predictions.iter_mut().for_each(|draw| *draw = random.random());
         draws.captures.iter_mut().for_each(|draw| *draw = random.random());
         draws
-    }
-
-    /// Draws the random numbers of the order focus.
-    pub fn draw_focus(&mut self, random: &mut Stream) {
-        self.turn = [random.random(), random.random()];
     }
 
     /// Replaces three random numbers: of the decision, of the robot's first choice before the decision, and of whether
@@ -82,8 +74,6 @@ pub struct RolloutContext<'a> {
     pub capture: f64,
     /// Probability that the human infers the consequences of a robot press that the human did not see.
     pub foresight: f64,
-    /// Which orders a human considers who chooses anew.
-    pub focus: &'a OrderFocus,
 }
 
 /// State of a rollout before a decision of the human.
@@ -93,11 +83,10 @@ pub struct RolloutState {
     pub kitchen: State,
     /// The weighted worlds that represent the human's belief.
     pub worlds: WeightedWorlds<u32>,
-    /// Which orders the human considers.
-    focus: u8,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
-    presses: i32,
+    /// Number of presses of both agents since the start of the rollout, and of waits of the human while something is wanted.
+    spent: i32,
     now_s: f64,
 }
 
@@ -112,31 +101,24 @@ pub struct BaselineRollout {
     reading_before: usize,
     /// State of the rollout after the last decision that a signal cannot change.
     unread: RolloutState,
-    /// Number of presses of both agents up to the horizon, plus the cost to go from there.
+    /// Number of presses of both agents and waits of the human up to the horizon, plus the cost to go from there.
     pub value: i32,
 }
 
 /// Result of a rollout with a signal, paired with the baseline without one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
-    /// Number of presses of both agents in the rollout, plus the cost to go at its end.
+    /// Number of presses of both agents and waits of the human in the rollout, plus the cost to go at its end.
     pub value: i32,
     /// The first choice of the human that differs between the two rollouts: in the baseline, and with the signal.
     pub diverged: Option<(HumanChoice, HumanChoice)>,
 }
 
 impl RolloutState {
-    /// Starts a rollout of a human with these worlds as the belief, and with this order focus. `sees` says whether the
-    /// latest change attracts the human's gaze.
-    pub fn begin(
-        &mut self,
-        kitchen: &Kitchen,
-        situation: &Situation,
-        worlds: &WeightedWorlds<u32>,
-        focus: u8,
-        sees: bool,
-    ) {
-        (self.kitchen, self.focus) = (situation.state, focus);
+    /// Starts a rollout of a human with these worlds as the belief. `sees` says whether the latest change attracts the
+    /// human's gaze.
+    pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, worlds: &WeightedWorlds<u32>, sees: bool) {
+        self.kitchen = situation.state;
         self.worlds.copy_from(worlds);
         for &aspect in situation.changed.iter().filter(|_| sees) {
             self.worlds.learn(kitchen, aspect, self.kitchen);
@@ -148,7 +130,7 @@ impl RolloutState {
             }
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        (self.presses, self.now_s) = (0, 0.0);
+        (self.spent, self.now_s) = (0, 0.0);
     }
 
     /// The human looks at every location whose content has just changed.
@@ -160,18 +142,15 @@ impl RolloutState {
 
     fn copy_from(&mut self, other: &RolloutState) {
         self.worlds.copy_from(&other.worlds);
-        (self.kitchen, self.focus) = (other.kitchen, other.focus);
+        self.kitchen = other.kitchen;
         self.ongoing = other.ongoing;
         self.is_still = other.is_still;
-        (self.presses, self.now_s) = (other.presses, other.now_s);
+        (self.spent, self.now_s) = (other.spent, other.now_s);
     }
 
     /// Whether this rollout continues exactly like another rollout that is in the state `other` at the same time.
     fn continues_like(&self, other: &RolloutState) -> bool {
-        self.kitchen == other.kitchen
-            && self.ongoing == other.ongoing
-            && self.focus == other.focus
-            && self.worlds == other.worlds
+        self.kitchen == other.kitchen && self.ongoing == other.ongoing && self.worlds == other.worlds
     }
 }
 
@@ -229,7 +208,7 @@ impl Rollout<'_> {
             self.until_decision(state, step, &mut unread);
             let unsignalled = &baseline.states[step];
             if state.continues_like(unsignalled) {
-                return RolloutOutcome { value: baseline.value + state.presses - unsignalled.presses, diverged };
+                return RolloutOutcome { value: baseline.value + state.spent - unsignalled.spent, diverged };
             }
             let choice = self.decide(state, step);
             let unsignalled = baseline.choices[step];
@@ -241,7 +220,7 @@ impl Rollout<'_> {
     }
 
     fn value(&mut self, state: &RolloutState) -> i32 {
-        state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
+        state.spent + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
     /// Time of a decision of the human, in seconds since the start of the rollout.
@@ -278,8 +257,7 @@ impl Rollout<'_> {
                 let before = state.kitchen;
                 state.kitchen =
                     rollout_robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
-                state.presses += 1;
-                self.turn_from_changed(state, before, step);
+                state.spent += 1;
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
                 if draw < self.context.foresight {
                     let draw = draw / self.context.foresight;
@@ -322,7 +300,7 @@ impl Rollout<'_> {
                 state.worlds.learn(context.kitchen, AspectId(index as u8), state.kitchen);
             }
         }
-        let weights = choice_weights(context.choice, context.kitchen, self.cost, &state.worlds, state.focus);
+        let weights = choice_weights(context.choice, self.cost, &state.worlds);
         let mut intended = context.choice.intended(&weights, draws.decision);
         if let HumanChoice::Press(button) = intended {
             let mut is_new = false;
@@ -332,31 +310,21 @@ impl Rollout<'_> {
                 }
             }
             if is_new {
-                let weights = choice_weights(context.choice, context.kitchen, self.cost, &state.worlds, state.focus);
+                let weights = choice_weights(context.choice, self.cost, &state.worlds);
                 intended = context.choice.intended(&weights, draws.decision);
             }
         }
         let choice = context.choice.executed(intended, draws.slip);
+        let before = state.kitchen;
+        // A wait counts as a press as long as something is wanted: after that there is nothing to lose by waiting.
+        if matches!(choice, HumanChoice::Press(_)) || context.kitchen.wanted(before).next().is_some() {
+            state.spent += 1;
+        }
         if let HumanChoice::Press(button) = choice {
-            let before = state.kitchen;
             let after = context.kitchen.press(before, &context.recipes, Agent::Human, button);
             state.kitchen = after.unwrap_or(before);
-            state.presses += 1;
             state.worlds.pressed(context.kitchen, button, &context.involved[button.index()], before, after);
-            let [turns, to] = draws.turn;
-            if turns < RETURNING {
-                state.focus = context.focus.chosen_anew(to);
-            }
-            self.turn_from_changed(state, before, step);
         }
         choice
-    }
-
-    /// Lets the human choose anew which orders to consider, if only one was considered, and that one has changed.
-    fn turn_from_changed(&self, state: &mut RolloutState, before: State, step: usize) {
-        let RolloutContext { kitchen, focus, .. } = self.context;
-        if is_on_changed(kitchen, state.focus, before, state.kitchen) {
-            state.focus = focus.chosen_anew(self.draws[step].turn[1]);
-        }
     }
 }

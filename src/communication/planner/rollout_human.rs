@@ -10,7 +10,6 @@ use crate::kitchen::{
     WeightedWorld, WeightedWorlds, World,
 };
 use crate::mind::choice::{ChoiceModel, ChoiceWeights};
-use crate::mind::filter::order_focus::considered;
 
 /// Worlds that are drawn less than once in this many draws use the lower bound of their cost to go.
 const FEW_DRAWS: u32 = 8;
@@ -107,19 +106,12 @@ fn fidelity(count: u32, n: u32) -> Fidelity {
     if count * FEW_DRAWS >= n { Fidelity::PlanBound } else { Fidelity::LowerBound }
 }
 
-/// Softmax weights of the choices of a human with this order focus, under a belief given by weighted worlds.
-pub fn choice_weights(
-    model: &ChoiceModel,
-    kitchen: &Kitchen,
-    cost: &mut CostToGo,
-    worlds: &WeightedWorlds<u32>,
-    focus: u8,
-) -> ChoiceWeights {
+/// Softmax weights of the choices of a human whose belief is given by weighted worlds.
+pub fn choice_weights(model: &ChoiceModel, cost: &mut CostToGo, worlds: &WeightedWorlds<u32>) -> ChoiceWeights {
     let mut sums = [0u32; MAX_BUTTONS];
     let n = worlds.draws();
     let mut here = 0u32;
-    for &WeightedWorld { world, weight } in &worlds.all {
-        let World { state, recipes } = considered(kitchen, world, focus);
+    for &WeightedWorld { world: World { state, recipes }, weight } in &worlds.all {
         let decision = cost.decision_with(fidelity(weight, n), state, &recipes, Agent::Human);
         here += weight * u32::from(decision.here);
         for (sum, &after) in sums.iter_mut().zip(&decision.after) {

@@ -1,6 +1,5 @@
 //! Statistics of the differences between paired rollouts, one with and one without a signal.
 
-use crate::kitchen::ButtonId;
 use crate::mind::choice::HumanChoice;
 
 /// Running statistics of the differences between paired rollouts, one with and one without a signal.
@@ -78,17 +77,10 @@ impl PairedDifferences {
         (spread / (n - 1.0) / n).sqrt()
     }
 
-    /// The press that the signal prevents with the largest saving, and the press that replaces it (`None` for waiting).
-    pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
-        let presses =
-            self.divergences.iter().filter_map(|divergence| match (divergence.baseline, divergence.signalled) {
-                (HumanChoice::Press(baseline), HumanChoice::Press(signalled)) => {
-                    Some((baseline, Some(signalled), divergence))
-                }
-                (HumanChoice::Press(baseline), HumanChoice::Wait) => Some((baseline, None, divergence)),
-                (HumanChoice::Wait, _) => None,
-            });
-        let most = presses.reduce(|best, one| if one.2.surely_saved() > best.2.surely_saved() { one } else { best })?;
-        (most.2.sum > 0.0).then_some((most.0, most.1))
+    /// The choice that the signal prevents with the largest saving, and the choice that replaces it.
+    pub fn turning_point(&self) -> Option<[HumanChoice; 2]> {
+        let all = self.divergences.iter();
+        let most = all.reduce(|best, one| if one.surely_saved() > best.surely_saved() { one } else { best })?;
+        (most.sum > 0.0).then_some([most.baseline, most.signalled])
     }
 }

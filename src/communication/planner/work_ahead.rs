@@ -16,7 +16,6 @@ use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use crate::mind::choice::HumanChoice;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::filter::urn::value_at;
 
 /// Number of belief samples that say which presses of the human are likely.
 const SAMPLES: usize = 32;
@@ -86,8 +85,7 @@ impl Planner {
                 return Vec::new();
             }
             self.samples.draw(&self.kitchen, moment.situation.state, number, &mut random, &mut self.believed);
-            let focus = value_at(moment.situation.focus, lattice.focus(number));
-            let weights = choice_weights(&self.choice, &self.kitchen, cost, &self.believed, focus);
+            let weights = choice_weights(&self.choice, cost, &self.believed);
             let [draw, ..] = lattice.point(number);
             if let HumanChoice::Press(button) = self.choice.intended(&weights, draw) {
                 counts[button.index()] += 1;

@@ -93,7 +93,7 @@ impl ShownOffer<'_> {
     }
 
     /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
-    /// and for how long, and the wrong press that is expected.
+    /// and for how long, and the wrong press or the press that is left out.
     fn because(&self, session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
             return Vec::new();
@@ -109,7 +109,11 @@ impl ShownOffer<'_> {
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
         let thinks = if p >= 0.5 { "thinks" } else { "may think" };
         let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{}{age}", percent(p))];
-        said.extend(reason.prevents.as_ref().map(|button| format!("next error: {}", wording::location(button))));
+        said.extend(match (&reason.prevents, &reason.instead) {
+            (Some(button), _) => Some(format!("next error: {}", wording::location(button))),
+            (None, Some(button)) => Some(format!("waits instead of: {}", wording::location(button))),
+            (None, None) => None,
+        });
         said
     }
 }

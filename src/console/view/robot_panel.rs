@@ -12,7 +12,6 @@ use crate::console::key_action::ManualAction;
 use crate::console::text_columns::width;
 use crate::history::wording;
 use crate::kitchen::Agent;
-use crate::robot::IdleReason;
 use crate::robot::moment::ArmSample;
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 use crate::session::settings::ArmKind;
@@ -135,14 +134,16 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         return;
     }
     let Some((button, since, until)) = session.robot.intention else {
-        let why = match session.robot.idle {
-            _ if session.robot.held => "",
-            Some(IdleReason::NoOrder) => "waits: there is no order",
-            Some(IdleReason::HumanTurn) => "waits: only the human can act",
-            Some(IdleReason::Skipped) => "waits: its press was skipped",
-            None => "no press planned",
+        let why = match &session.robot.idle {
+            _ if session.robot.held => String::new(),
+            Some((reason, waits_for)) => {
+                let human = &session.kitchen.buttons[Agent::Human.index()];
+                let names: Vec<&str> = waits_for.iter().map(|button| human[button.index()].name.as_str()).collect();
+                wording::idle(*reason, &names)
+            }
+            None => "no press planned".to_string(),
         };
-        brush.parts(x, y, columns, &[(why, TextRole::Quiet)]);
+        brush.parts(x, y, columns, &[(&why, TextRole::Quiet)]);
         return;
     };
     let now = if session.is_running() { model.now } else { session.paused_at };

@@ -6,9 +6,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::participant_data::{ParticipantData, find, others, training};
-use super::walk::RetainedFile;
-use crate::analysis::training_record::WizardTrainingRecord;
+use super::{ParticipantData, RetainedFile, find};
 use crate::edge::file_error::FileError;
 use crate::edge::log::{LOG_NAME, RecordingLock, RecordingWriteError, SETTINGS_NAME};
 use crate::edge::replace_file::Replacement;
@@ -44,7 +42,8 @@ pub enum ParticipantDeletionError {
 
 /// Deletes the participant's data that were found. Files that could not be deleted in the end are listed in the result.
 /// Nothing is deleted if one of the recordings is being written, if a file has changed since it was found, or if a
-/// folder cannot be written to.
+/// folder cannot be written to. If the program is killed, the command can be run again: what says whose something is
+/// goes last.
 ///
 /// # Errors
 /// Nothing was deleted, for one of these reasons.
@@ -56,20 +55,16 @@ pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDele
     if again != found {
         return Err(ParticipantDeletionError::Changed { folder: found.root });
     }
-    let unwritable = |path: &Path| {
-        let path = path.to_path_buf();
-        |reason| ParticipantDeletionError::Unwritable { path, reason }
-    };
     let mut replacements = Vec::new();
-    for (path, cut) in &found.cuts {
-        replacements.push(written(path, |new| copy_without(path, cut, new)).map_err(unwritable(path))?);
+    for (path, cut) in &found.tables {
+        replacements.push(written(path, |new| copy_without(path, cut, new))?);
     }
-    for path in &found.trainings {
-        replacements.push(written(path, |new| write_others(path, &found, new)).map_err(unwritable(path))?);
+    for (path, text) in &found.trainings {
+        replacements.push(written(path, |new| new.write_all(text.as_bytes()))?);
     }
     for path in &found.files {
         // Whether a folder can be written to is known only after writing a file into the folder.
-        written(path, |_| Ok(())).map_err(unwritable(path))?;
+        written(path, |_| Ok(()))?;
     }
     Ok(commit(found, replacements, locks))
 }
@@ -77,61 +72,59 @@ pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDele
 /// Moves the new versions of files into place, and deletes all other found files. Recordings are deleted last, since
 /// other files are recognised by the recordings' names if the command has to be run again.
 fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<RecordingLock>) -> ParticipantData {
-    let mut done =
-        ParticipantData { recording_files: Vec::new(), files: Vec::new(), left: Vec::new(), ..found.clone() };
-    let mut left = found.left;
-    let mut fails = |path: &Path, result: io::Result<()>| match result {
-        Ok(()) => false,
-        Err(reason) => {
-            left.push(RetainedFile::new(path, format!("the file cannot be deleted or written again: {reason}")));
-            true
-        }
+    let mut done = found;
+    let mut left = std::mem::take(&mut done.left);
+    let mut fails = |path: &Path, result: io::Result<()>| {
+        let reason = result.err().map(|reason| format!("the file cannot be deleted or written again: {reason}"));
+        left.extend(reason.iter().map(|reason| RetainedFile { path: path.to_path_buf(), reason: reason.clone() }));
+        reason.is_some()
     };
     for replacement in replacements {
         let path = replacement.path().to_path_buf();
         if fails(&path, replacement.finish()) {
             done.tables.retain(|(table, _)| *table != path);
-            done.trainings.retain(|training| *training != path);
+            done.trainings.retain(|(training, _)| *training != path);
         }
     }
-    for path in found.files {
-        if !fails(&path, fs::remove_file(&path)) {
-            done.files.push(path);
-        }
-    }
-    // A recording's log and settings are deleted last, since they tell to whom the recording belongs if another file
-    // cannot be deleted.
-    let (known_by, mut files): (Vec<PathBuf>, Vec<PathBuf>) =
-        found.recording_files.into_iter().partition(|path| path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME));
-    files.extend(known_by);
+    done.files.retain(|path| !fails(path, fs::remove_file(path)));
+    // A recording's log and settings tell to whom the recording belongs, so they go after all other files, and stay if
+    // one of these cannot be deleted.
+    let is_known_by = |path: &PathBuf| path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME);
+    let (known_by, mut deleted): (Vec<PathBuf>, Vec<PathBuf>) = done.recording_files.into_iter().partition(is_known_by);
     let mut occupied: Vec<PathBuf> = Vec::new();
-    for path in files {
-        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        let is_needed = path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME);
-        let kept = io::Error::other("it says whose the files beside it are, and these files could not be deleted");
-        let result = if is_needed && occupied.contains(&folder) { Err(kept) } else { fs::remove_file(&path) };
-        match fails(&path, result) {
-            true => occupied.push(folder),
-            false => done.recording_files.push(path),
-        }
-    }
+    deleted.retain(|path| {
+        let fails = fails(path, fs::remove_file(path));
+        occupied.extend(path.parent().filter(|_| fails).map(Path::to_path_buf));
+        !fails
+    });
+    let known_by = known_by.into_iter().filter(|path| {
+        let is_needed = path.parent().is_some_and(|folder| occupied.iter().any(|occupied| occupied == folder));
+        let kept = || io::Error::other("it says whose the files beside it are, and these files could not be deleted");
+        !fails(path, if is_needed { Err(kept()) } else { fs::remove_file(path) })
+    });
+    deleted.extend(known_by);
+    deleted.sort();
     // The lock of a recording is a file in its folder, so locks are released before folders are removed.
     drop(locks);
-    for folder in found.folders.iter().rev() {
+    for folder in done.folders.iter().rev() {
         // Folders that are not empty stay: their files are listed as left, or belong to somebody else.
         let _ = fs::remove_dir(folder);
     }
-    done.recording_files.sort();
     left.sort();
-    ParticipantData { left, ..done }
+    ParticipantData { recording_files: deleted, left, ..done }
 }
 
 /// Writes the new content of a file to another file beside it, which is to replace it.
-fn written(path: &Path, write: impl FnOnce(&mut Replacement) -> io::Result<()>) -> io::Result<Replacement> {
-    let mut replacement = Replacement::begin(path)?;
-    write(&mut replacement)?;
-    replacement.complete()?;
-    Ok(replacement)
+fn written(
+    path: &Path,
+    write: impl FnOnce(&mut Replacement) -> io::Result<()>,
+) -> Result<Replacement, ParticipantDeletionError> {
+    let begun = Replacement::begin(path).and_then(|mut new| {
+        write(&mut new)?;
+        new.complete()?;
+        Ok(new)
+    });
+    begun.map_err(|reason| ParticipantDeletionError::Unwritable { path: path.to_path_buf(), reason })
 }
 
 /// Copies a file without the bytes in these ranges.
@@ -143,12 +136,4 @@ fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut Replacement) -> io::R
         from = old.seek(SeekFrom::Start(range.end))?;
     }
     io::copy(&mut old, new).map(drop)
-}
-
-/// Writes a wizard's training record without the forgotten participant's recordings.
-fn write_others(path: &Path, found: &ParticipantData, new: &mut Replacement) -> io::Result<()> {
-    let record = training(path)?.ok_or_else(|| io::Error::other("the file is no record of training any more"))?;
-    let record = WizardTrainingRecord { recordings: others(&record, &found.subject), ..record };
-    let text = serde_json::to_string_pretty(&record).map_err(io::Error::other)? + "\n";
-    new.write_all(text.as_bytes())
 }

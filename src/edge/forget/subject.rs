@@ -1,217 +1,189 @@
-//! Which person a name in a table, report or training record means: the participant whose data are to be deleted, or
-//! another one.
+//! To whom the recording in a folder belongs, and whom a name in a table, report or training record means: the
+//! participant whose data are to be deleted, or another one.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Component, Path, PathBuf};
 
-use crate::session::person_code::{self, without_seed};
+use rustc_hash::FxHashMap;
+use serde_json::Value;
 
-/// Which person a name or a row of a table is about (when a participant's data are to be deleted).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+use crate::edge::file_error::read_regular;
+use crate::edge::log::{LOG_NAME, SETTINGS_NAME, corrected_code, first_line, is_written_settings};
+use crate::session::header::FORMAT;
+use crate::session::person_code::without_seed;
+
+/// Why a file is kept that names a recording, if recordings of several people have this name.
+pub(super) const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
+                         tomcom forget --in the folder with one of them, or delete it by hand";
+
+/// Which participant the recording in a folder belongs to.
+pub(super) enum RecordingOwner {
+    Participant {
+        code: String,
+        /// The code in the log; another one if the code was corrected.
+        recorded_as: String,
+        /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable
+        /// header.
+        began: Option<String>,
+    },
+    /// A recording whose participant cannot be determined, with the reason.
+    Unknown(&'static str),
+    NoRecording,
+}
+
+impl RecordingOwner {
+    /// Determines the participant of the recording in a folder from the header of its log. If the header is damaged or
+    /// the log is gone, the settings beside it tell the participant's code. A settings file alone counts as a recording
+    /// only if this program wrote it: a program that is killed before it writes the log, or between the deletion of log
+    /// and settings, leaves such a file behind.
+    pub(super) fn read(folder: &Path) -> RecordingOwner {
+        let log = folder.join(LOG_NAME);
+        let settings = read_settings(folder);
+        if !is_file(&log) {
+            return match settings {
+                Some((code, true)) => RecordingOwner::Participant { recorded_as: code.clone(), code, began: None },
+                _ => RecordingOwner::NoRecording,
+            };
+        }
+        let line = File::open(log).and_then(|file| first_line(&mut BufReader::new(file)));
+        let header: Option<Value> = line.ok().and_then(|line| serde_json::from_slice(&line).ok());
+        if let Some(header) = header.filter(Value::is_object) {
+            let session = &header["session"];
+            if header["format"] != FORMAT {
+                // A log of another program, unless the first line is an event, so that the header before it is lost.
+                if header.get("seq").is_none() || header.get("t_ns").is_none() {
+                    return RecordingOwner::NoRecording;
+                }
+            } else if let Some(code) = session["participant"]["code"].as_str() {
+                let Ok(correction) = corrected_code(folder, code) else {
+                    return RecordingOwner::Unknown(
+                        "a recording that does not say whose it is: correction.toml is damaged; it is to be deleted by \
+                         hand, if it is the participant's",
+                    );
+                };
+                let recorded_as = code.to_string();
+                let code = correction.map_or(recorded_as.clone(), |correction| correction.after);
+                let simulated =
+                    || Some(format!("seed {} trial {}", session["seed"].as_u64()?, header["trial"].as_u64()?));
+                let began = header["started"].as_str().map(str::to_string).or_else(simulated);
+                return RecordingOwner::Participant { code, recorded_as, began };
+            }
+        }
+        match settings {
+            Some((code, _)) => RecordingOwner::Participant { recorded_as: code.clone(), code, began: None },
+            None => RecordingOwner::Unknown(
+                "a recording that does not say whose it is: events.jsonl has no readable header, and session.toml is \
+                 missing or damaged; it is to be deleted by hand, if it is the participant's",
+            ),
+        }
+    }
+}
+
+/// Whether this path is a regular file: the targets of symbolic links must not be touched, and opening a named pipe
+/// would block.
+fn is_file(path: &Path) -> bool {
+    path.symlink_metadata().is_ok_and(|data| data.is_file())
+}
+
+/// The participant's code in the settings file of a folder, and whether this program wrote that file (then it has all
+/// settings and nothing else).
+fn read_settings(folder: &Path) -> Option<(String, bool)> {
+    let path = folder.join(SETTINGS_NAME);
+    let text = is_file(&path).then(|| read_regular(&path).ok()).flatten()?;
+    let settings: toml::Table = text.parse().ok()?;
+    let code = settings.get("participant")?.get("code")?.as_str()?.to_string();
+    Some((code, is_written_settings(&text)))
+}
+
+/// Which person a name or a row of a table is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum NamedPerson {
     /// The participant whose data are to be deleted.
     Subject,
     Other,
-    /// Either the participant or somebody else: both have the name.
+    /// Either the participant or somebody else: recordings of both have the name.
     Ambiguous,
 }
 
-/// A recording of the participant whose data are to be deleted.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct OwnRecording {
-    pub folder: PathBuf,
-    /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable
-    /// header.
-    pub began: Option<String>,
+struct KnownRecording {
+    folder: PathBuf,
+    code: String,
+    recorded_as: String,
+    began: Option<String>,
 }
 
-/// Recordings whose folders have the same name.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Namesakes {
-    own: Vec<OwnRecording>,
-    others: Vec<PathBuf>,
-}
-
-/// The participant whose data are to be deleted, with the code and the recordings found so far.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// The participant whose data are to be deleted, and all recordings that were found, by the names of their folders.
 pub(super) struct ForgetSubject {
-    pub code: String,
-    recordings: BTreeMap<String, Namesakes>,
-    /// Codes of all other people who have recordings.
-    others: BTreeSet<String>,
+    code: String,
+    recordings: FxHashMap<String, Vec<KnownRecording>>,
 }
 
 impl ForgetSubject {
     /// The participant with this code, before any recording has been found.
-    pub fn new(code: &str) -> ForgetSubject {
-        ForgetSubject { code: code.to_string(), ..ForgetSubject::default() }
+    pub(super) fn new(code: &str) -> ForgetSubject {
+        ForgetSubject { code: code.to_string(), recordings: FxHashMap::default() }
     }
 
-    /// Adds a recording of the participant.
-    pub fn add_own(&mut self, folder: &Path, began: Option<String>) {
-        let own = OwnRecording { folder: folder.to_path_buf(), began };
-        self.recordings.entry(name(folder)).or_default().own.push(own);
+    /// Adds a recording, of the participant or of somebody else.
+    pub(super) fn add(&mut self, folder: &Path, code: String, recorded_as: String, began: Option<String>) {
+        let recording = KnownRecording { folder: folder.to_path_buf(), code, recorded_as, began };
+        self.recordings.entry(file_name(folder)).or_default().push(recording);
     }
 
-    /// Adds a recording of somebody else.
-    pub fn add_other(&mut self, folder: &Path, code: String) {
-        self.recordings.entry(name(folder)).or_default().others.push(folder.to_path_buf());
-        self.others.insert(code);
-    }
-
-    /// Which person a name in a column of participants means: the name is a participant's code, with a random seed
+    /// Whether a name in a column of participants means the participant: it is the participant's code, with a random seed
     /// before it if several seeds were analysed together.
-    pub fn participant(&self, cell: &str) -> NamedPerson {
-        let is_code = cell == self.code;
-        let is_simulated = without_seed(cell) == Some(&self.code);
-        match is_code || is_simulated {
-            // The name `seed7-S001` can mean S001 with seed 7, but also somebody with exactly this code.
-            true if is_simulated && self.others.contains(cell) => NamedPerson::Ambiguous,
-            true if is_code && without_seed(cell).is_some() => NamedPerson::Ambiguous,
-            true => NamedPerson::Subject,
-            false => NamedPerson::Other,
-        }
+    pub(super) fn is_participant(&self, name: &str) -> bool {
+        name == self.code
+            || (without_seed(name) == Some(&self.code)
+                && !self.recordings.values().flatten().any(|recording| recording.code == name))
+    }
+
+    /// Whether a row about this recording, with this name in its column of participants, means the participant: also
+    /// tables that were made before the recording's code was corrected.
+    pub(super) fn is_in_row(&self, name: &str, recording: Option<&str>) -> bool {
+        let as_recorded = |path: &str| {
+            let mut recordings = self.recordings.get(&file_name(Path::new(path))).into_iter().flatten();
+            self.recording(path) == NamedPerson::Subject
+                && recordings.any(|one| name == one.recorded_as || without_seed(name) == Some(&one.recorded_as))
+        };
+        self.is_participant(name) || recording.is_some_and(as_recorded)
     }
 
     /// To which person the recording with this name belongs. The name is that of the recording's folder, with parent
     /// folders before it if several folders share the name.
-    pub fn recording(&self, cell: &str) -> NamedPerson {
-        let path = Path::new(cell);
-        let named = path.file_name().and_then(|name| self.recordings.get(name.to_string_lossy().as_ref()));
-        let Some(Namesakes { own, others }) = named.filter(|named| !named.own.is_empty()) else {
-            return NamedPerson::Other;
-        };
-        let is_relative = path.components().any(|part| matches!(part, Component::CurDir | Component::ParentDir));
-        match (own.iter().any(|one| one.folder.ends_with(path)), others.iter().any(|one| one.ends_with(path))) {
-            (true, false) => NamedPerson::Subject,
-            (true, true) => NamedPerson::Ambiguous,
-            // A relative path depends on the folder in which the analysis ran, which is not known.
-            (false, false) if is_relative => NamedPerson::Ambiguous,
-            (false, _) => NamedPerson::Other,
+    pub(super) fn recording(&self, name: &str) -> NamedPerson {
+        // What a path is relative to is not known, and folders before it cannot be compared.
+        let path = Path::new(name);
+        let is_relative = |part: &Component| matches!(part, Component::CurDir | Component::ParentDir);
+        let path: PathBuf = path.components().skip_while(is_relative).collect();
+        let named = self.recordings.get(&file_name(&path)).into_iter().flatten();
+        let mut own = named.filter(|recording| recording.folder.ends_with(&path)).map(|one| one.code == self.code);
+        match own.next() {
+            None => NamedPerson::Other,
+            Some(first) if own.any(|is_own| is_own != first) => NamedPerson::Ambiguous,
+            Some(first) => {
+                if first {
+                    NamedPerson::Subject
+                } else {
+                    NamedPerson::Other
+                }
+            }
         }
     }
 
     /// Whether a stream with this identity shows a recording of the participant.
-    pub fn is_streamed(&self, identity: &str) -> bool {
+    pub(super) fn is_streamed(&self, identity: &str) -> bool {
         let identity = format!(" {identity} ");
         let has = |words: &str| identity.contains(&format!(" {words} "));
-        let own = |(name, named): (&String, &Namesakes)| {
-            has(name) && named.own.iter().any(|one| one.began.as_ref().is_some_and(|began| has(began)))
-        };
-        self.recordings.iter().any(own)
-    }
-
-    /// Whether a text of unknown origin names the participant. Codes of earlier versions that are numbers, or words for
-    /// missing values, do not count, since in such a text they mean something else.
-    pub fn is_named_in(&self, text: &[u8]) -> bool {
-        let is_distinct = person_code::fault(&self.code).is_none();
-        words(text).any(|word| self.is_own_folder(&word) || (is_distinct && self.is_own_code(&word)))
-    }
-
-    /// Whether a damaged piece of one of this program's files may name the participant.
-    pub fn may_be_in(&self, text: &[u8]) -> bool {
-        words(text).any(|word| self.is_own_folder(&word) || self.is_own_code(&word))
-    }
-
-    /// Whether the name of a file contains the name of one of the participant's recordings.
-    pub fn is_named_by_recording(&self, file: &str) -> bool {
-        words(file.as_bytes()).any(|word| self.is_own_folder(&word))
-    }
-
-    fn is_own_code(&self, word: &str) -> bool {
-        self.participant(word) != NamedPerson::Other
-    }
-
-    fn is_own_folder(&self, word: &str) -> bool {
-        self.recordings.get(word).is_some_and(|named| !named.own.is_empty())
+        self.recordings.iter().any(|(name, named)| {
+            let mut own = named.iter().filter(|recording| recording.code == self.code);
+            has(name) && own.any(|recording| recording.began.as_deref().is_some_and(has))
+        })
     }
 }
 
-fn name(folder: &Path) -> String {
-    folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// Words of a text that consist of the characters of codes and recording names. Zero bytes are skipped, so that the
-/// function also finds words of a file in UTF-16.
-fn words(text: &[u8]) -> impl Iterator<Item = String> + '_ {
-    let mut bytes = text.iter().copied().filter(|&byte| byte != 0);
-    let is_sign = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
-    std::iter::from_fn(move || {
-        let first = bytes.by_ref().find(|&byte| is_sign(byte))?;
-        let rest = bytes.by_ref().take_while(|&byte| is_sign(byte));
-        Some(std::iter::once(first).chain(rest).map(char::from).collect())
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn subject(code: &str) -> ForgetSubject {
-        let mut subject = ForgetSubject::new(code);
-        subject.add_own(Path::new("/a/2026-03-14-P07-1"), Some("2026-03-14T10:00:00Z".to_string()));
-        subject.add_own(Path::new("/a/2026-03-14-P07-2"), None);
-        subject.add_other(Path::new("/b/2026-03-14-P07-1"), "P08".to_string());
-        subject.add_other(Path::new("/b/2026-03-14-P08-1"), "seed1-P09".to_string());
-        subject
-    }
-
-    #[test]
-    fn a_recording_is_named_by_its_folder_and_by_those_before_it() {
-        let subject = subject("P07");
-        for (cell, whose) in [
-            ("2026-03-14-P07-1", NamedPerson::Ambiguous),
-            ("a/2026-03-14-P07-1", NamedPerson::Subject),
-            ("b/2026-03-14-P07-1", NamedPerson::Other),
-            ("../2026-03-14-P07-2", NamedPerson::Ambiguous),
-            ("/elsewhere/2026-03-14-P07-2", NamedPerson::Other),
-            ("2026-03-14-P07-2", NamedPerson::Subject),
-            ("2026-03-14-P08-1", NamedPerson::Other),
-            ("", NamedPerson::Other),
-        ] {
-            assert_eq!(subject.recording(cell), whose, "{cell}");
-        }
-    }
-
-    #[test]
-    fn a_participant_is_named_by_the_code_with_or_without_a_seed() {
-        let whose = |code: &str, cell: &str| subject(code).participant(cell);
-        assert_eq!(whose("P07", "P07"), NamedPerson::Subject);
-        assert_eq!(whose("P07", "seed12-P07"), NamedPerson::Subject);
-        assert_eq!(whose("P07", "p07"), NamedPerson::Other);
-        assert_eq!(whose("P07", "P071"), NamedPerson::Other);
-        assert_eq!(whose("P09", "seed1-P09"), NamedPerson::Ambiguous, "somebody is called that");
-        assert_eq!(whose("seed1-P09", "seed1-P09"), NamedPerson::Ambiguous, "it is also the name of P09 with seed 1");
-    }
-
-    #[test]
-    fn a_number_or_a_word_of_the_programs_files_names_nobody_elsewhere() {
-        for (code, text, is_named, may_be) in [
-            ("P07", "x;P07;3", true, true),
-            ("P07", "P\x007\x00;", false, false),
-            ("P07", "P\x000\x007\x00;\x00", true, true),
-            ("P07", "P077,P07-2", false, false),
-            ("1", "1,2", false, true),
-            ("none", "none", false, true),
-            ("1", "2026-03-14-P07-2", true, true),
-            ("1", "2026-03-14-P08-1", false, false),
-        ] {
-            let subject = subject(code);
-            assert_eq!(subject.is_named_in(text.as_bytes()), is_named, "{code} in {text:?}");
-            assert_eq!(subject.may_be_in(text.as_bytes()), may_be, "{code} in {text:?}");
-        }
-    }
-
-    #[test]
-    fn a_stream_is_known_by_name_and_beginning() {
-        let subject = subject("P07");
-        assert!(subject.is_streamed(
-            "2026-03-14-P08-1 2026-03-14-P07-1 2026-03-13T10:00:00Z 2026-03-14T10:00:00Z tomcom-scene-3-whole"
-        ));
-        assert!(
-            !subject.is_streamed("2026-03-14-P07-1 2026-03-14T11:00:00Z tomcom-scene-3-whole"),
-            "another of that name"
-        );
-        assert!(!subject.is_streamed("2026-03-14-P07-1-part2 2026-03-14T10:00:00Z tomcom-scene-3-whole"));
-    }
+/// The last part of a path, as text.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -30,7 +30,7 @@ pub use reader::{LogEnding, LogLine, LogPlace, LogReader, at_line};
 pub(super) use reader::{MAX_LINE, first_line, read_header};
 pub use same_log::{SameLogs, code_files, differing_codes, header_digest};
 pub use simulated_log::{SimulatedLogState, check_simulated};
-pub use writer::{LogWriter, check_continued, is_begun, is_written_settings};
+pub use writer::{LogWriter, check_continued, is_written_settings};
 
 /// File name of the log in the folder of a recording.
 pub const LOG_NAME: &str = "events.jsonl";

@@ -9,13 +9,12 @@ use std::sync::Arc;
 use super::correction::correct_header;
 use super::lock::is_same;
 use super::{LOG_NAME, RecordingLock};
-use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::files::compile_kitchen;
-use crate::kitchen::{Kitchen, layout_ranges};
+use crate::kitchen::Kitchen;
 use crate::session::apply::ApplyError;
 use crate::session::header::{FORMAT, PreviousPart, VERSION};
-use crate::session::ranges;
+use crate::session::settings::SettingError;
 use crate::session::{Event, LogHeader, Session, TimestampedEvent};
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
@@ -139,6 +138,7 @@ impl LogReader {
         let layout = (Path::new(&header.layout.path), header.layout.text.clone());
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
+        header.session.check_kitchen(&kitchen).map_err(|error| wrong_setting(&path, text, error))?;
         let (path, offset) = (Arc::from(path), line.len() as u64);
         let (partial, blank) = (Vec::new(), None);
         Ok(LogReader {
@@ -156,17 +156,9 @@ impl LogReader {
         })
     }
 
-    /// The first number in the header that is outside the range which settings files may have today; `None` if there is
-    /// none. An earlier version of the program accepted such a number.
-    pub fn unusual(&self) -> Option<OutOfRange> {
-        let layout = || layout_ranges::check(&self.header.layout.text).err();
-        ranges::check_session(&self.header.session).err().or_else(layout)
-    }
-
     /// The state of the recorded session before its first event.
     pub fn session(&self) -> Session {
-        let session = Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial);
-        Session { makes_offers: self.header.has_offers(), ..session }
+        Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial)
     }
 
     /// Reads the next line of the log with its event; `None` where the log ends at present.
@@ -435,20 +427,21 @@ pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
         return Err(wrong(0, "no header of a tomcom log".to_string(), is_log));
     }
     match value.get("version").and_then(|version| version.as_u64()) {
-        Some(version) if (1..=u64::from(VERSION)).contains(&version) => {}
+        Some(version) if version == u64::from(VERSION) => {}
         version => {
             let found = version.map_or("no format version".to_string(), |version| format!("format version {version}"));
-            let remedy = format!("format version 1 to {VERSION}, or the tomcom that wrote the log");
+            let remedy = format!("format version {VERSION}, or the tomcom that wrote the log");
             return Err(wrong(0, found, remedy));
         }
     }
     let mut header: LogHeader = serde_json::from_str(text)
         .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
-    match header.session.check_recorded() {
-        Ok(()) => {
-            correct_header(path.parent().unwrap_or(Path::new("")), &mut header)?;
-            Ok(header)
-        }
-        Err(error) => Err(wrong(text.find(error.key()).unwrap_or(0), error.found, error.remedy.into_owned())),
-    }
+    header.session.check().map_err(|error| wrong_setting(path, text, error))?;
+    correct_header(path.parent().unwrap_or(Path::new("")), &mut header)?;
+    Ok(header)
+}
+
+/// The error about an invalid setting in the header of the log at this path.
+fn wrong_setting(path: &Path, header: &str, error: SettingError) -> FileError {
+    at_line(path, 1, header, header.find(error.key()).unwrap_or(0), error.found, error.remedy.into_owned())
 }

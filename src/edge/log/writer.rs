@@ -239,7 +239,7 @@ fn holds_nothing(part: &Path) -> bool {
 }
 
 /// Whether a file of this name is a log or a settings file that a program was writing when it was killed.
-pub fn is_begun(name: &str) -> bool {
+fn is_begun(name: &str) -> bool {
     [LOG_NAME, SETTINGS_NAME].iter().any(|whole| name != *whole && replaced_name(name) == *whole)
 }
 

@@ -12,8 +12,13 @@ impl CostToGo {
     /// C(s, recipes): number of presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if the
     /// orders cannot be served.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
+        self.all_orders_with(Fidelity::Searched, state, recipes)
+    }
+
+    /// Number of presses until all present orders are served, at a given fidelity.
+    pub fn all_orders_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
-        self.cost(Fidelity::Searched, state, &mut targets[..count])
+        self.cost(fidelity, state, &mut targets[..count])
     }
 
     /// C_k(s, recipes): number of presses until the order at this location is served; 0 without an order.

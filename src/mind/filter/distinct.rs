@@ -31,7 +31,6 @@ struct RatedWorld {
 /// The costs to go of the human's decision in one world.
 #[derive(Clone, Copy, Debug)]
 struct WorldCosts {
-    here: u8,
     /// Cost to go after a press of each button of the human.
     after: [u8; MAX_BUTTONS],
     fidelity: Fidelity,
@@ -113,17 +112,11 @@ impl DistinctWorlds {
         const UNKNOWN: [u8; MAX_BUTTONS] = [0; MAX_BUTTONS];
         self.known[index as usize].costs.as_ref().map_or(&UNKNOWN, |costs| &costs.after)
     }
-
-    /// Cost to go before any press in a world whose costs have been computed.
-    #[inline]
-    pub fn here(&self, index: u32) -> u8 {
-        self.known[index as usize].costs.map_or(0, |costs| costs.here)
-    }
 }
 
 impl RatedWorld {
     fn rate(&mut self, cost: &mut CostToGo, fidelity: Fidelity) {
         let decision = cost.decision_with(fidelity, self.world.state, &self.world.recipes, Agent::Human);
-        self.costs = Some(WorldCosts { here: decision.here, after: decision.after, fidelity });
+        self.costs = Some(WorldCosts { after: decision.after, fidelity });
     }
 }

@@ -1,4 +1,4 @@
-//! The update of the estimate by the likelihood of the human's action: a press, or waiting.
+//! The update of the estimate by the likelihood of the human's press.
 //!
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the
 //! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
@@ -12,17 +12,15 @@ use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
+use crate::mind::choice::ChoiceModel;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::lapse_posterior::PressParts;
 use crate::mind::model::InferenceSettings;
 
 use super::distinct::DistinctWorlds;
 use super::distinct_draws::{Alike, DistinctDraws, Run};
-use super::evidence_model::EvidenceModel;
-use super::human_act::HumanAction;
 use super::look_news::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
 use super::moments::MixtureMoments;
-use super::order_focus::considered;
+use super::proposal_mixture::ProposalMixture;
 use super::urn::PolyaUrn;
 
 /// Share of the first draws of a recipe that is spread evenly over the recipe's variants (importance sampling), so that
@@ -42,7 +40,19 @@ pub struct PressEvidence {
     pub effective: f64,
 }
 
-/// Draws belief samples and weights them by the likelihood of the human's action; the sampler's buffers are reused from
+/// The models that define the likelihood of a press of the human.
+pub struct EvidenceModel<'a> {
+    /// The kitchen, with the rules of its buttons.
+    pub kitchen: &'a Kitchen,
+    /// The human's choice model.
+    pub choice: &'a ChoiceModel,
+    /// Sample sizes of the inference.
+    pub inference: &'a InferenceSettings,
+    /// For each button of the human, the bit set of locations at which the human looks before the press.
+    pub watched: &'a [u32],
+}
+
+/// Draws belief samples and weights them by the likelihood of the human's press; the sampler's buffers are reused from
 /// press to press.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSampler {
@@ -61,11 +71,6 @@ pub struct BeliefSampler {
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
     pub(super) posteriors: Vec<f64>,
-    /// Parts of each belief sample's likelihood of the press (with and without a slip), where the lapse is learned.
-    parts: Vec<PressParts>,
-    /// Prior weight of each belief sample; where waiting is evidence, multiplied by the probability that the human
-    /// presses at all.
-    pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
@@ -87,8 +92,6 @@ pub(super) struct Sample {
     mixed: u32,
     /// Start of the mixed aspects' rows in [`BeliefSampler::rows`].
     rows: usize,
-    /// Index of the orders that a human with this belief considers (see [`super::order_focus`]).
-    pub(super) focus: u8,
     /// Range of the sample's distinct worlds in [`BeliefSampler::runs`].
     pub(super) runs: [usize; 2],
 }
@@ -110,14 +113,14 @@ impl BeliefSampler {
         }
     }
 
-    /// Updates the estimate by the likelihood of an action of the human, and by the possible looks at times of unknown
-    /// gaze before the action.
+    /// Updates the estimate by the likelihood of a press of the human, and by the possible looks at times of unknown
+    /// gaze before the press.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
-        act: HumanAction,
+        press: ProposalMixture,
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) -> PressEvidence {
@@ -131,9 +134,9 @@ impl BeliefSampler {
                 self.look(model, looks, old, random);
                 self.worlds.rate(cost, wanted * states);
             }
-            self.weigh_samples(model, act, old);
+            self.weigh_samples(model, press, old);
             while self.rate_again(cost, states) {
-                self.weigh_samples(model, act, 0);
+                self.weigh_samples(model, press, 0);
             }
             let evidence = self.evidence();
             let can_double = wanted * 2 <= model.inference.max_beliefs;
@@ -167,7 +170,6 @@ impl BeliefSampler {
         self.runs.clear();
         self.priors.clear();
         self.posteriors.clear();
-        self.pressing.clear();
         self.looks.clear();
         self.news.clear();
         self.read_sums.clear();
@@ -191,8 +193,8 @@ impl BeliefSampler {
         for sample in 0..new {
             let rows = self.rows.len();
             let mixed = self.draw_on(kitchen, new, sample, states, random);
-            let (begin, focus) = (self.runs.len(), model.focus.of_sample(sample, new));
-            self.samples.push(Sample { mixed, rows, focus, runs: [begin; 2] });
+            let begin = self.runs.len();
+            self.samples.push(Sample { mixed, rows, runs: [begin; 2] });
             self.count_worlds(kitchen, states);
         }
         self.worlds.rate(cost, wanted * states);
@@ -233,12 +235,11 @@ impl BeliefSampler {
     /// Counts the distinct worlds of the newest belief sample.
     fn count_worlds(&mut self, kitchen: &Kitchen, states: usize) {
         let index = self.samples.len() - 1;
-        let Sample { rows, focus, .. } = self.samples[index];
+        let Sample { rows, .. } = self.samples[index];
         self.alike.tell_apart(states, &self.rows[rows..]);
         for group in 0..self.alike.groups.len() {
             let Alike { first, draws, .. } = self.alike.groups[group];
-            let world = considered(kitchen, self.world_of(kitchen, index, first, states), focus);
-            let world = self.worlds.count(world, draws);
+            let world = self.worlds.count(self.world_of(kitchen, index, first, states), draws);
             self.runs.push(Run { world, first: first as u32, draws });
         }
         self.samples[index].runs[1] = self.runs.len();
@@ -259,38 +260,14 @@ impl BeliefSampler {
         world
     }
 
-    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's action.
-    fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAction, from: usize) {
+    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's press.
+    fn weigh_samples(&mut self, model: &EvidenceModel, press: ProposalMixture, from: usize) {
         self.posteriors.truncate(from);
-        self.pressing.truncate(from);
-        self.parts.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            let sums = self.sum_costs(sample, &mut sums, model);
-            let waits = || model.choice.wait_likelihood(self.sum_here(sample), sums);
-            let (pressing, likelihood) = match act {
-                HumanAction::Presses(press) => {
-                    let presses = if model.inference.waiting { 1.0 - waits() } else { 1.0 };
-                    let choice = match model.lapse {
-                        None => model.choice.press_likelihood(sums, press.button),
-                        Some(lapse) => {
-                            let parts = model.choice.press_parts(sums, press.button);
-                            self.parts.push(parts);
-                            parts.likelihood(lapse)
-                        }
-                    };
-                    (prior * presses, press.likelihood(choice))
-                }
-                HumanAction::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
-            };
-            self.pressing.push(pressing);
-            self.posteriors.push(pressing * likelihood);
+            let choice = model.choice.press_likelihood(self.sum_costs(sample, &mut sums, model), press.button);
+            self.posteriors.push(prior * press.likelihood(choice));
         }
-    }
-
-    /// Cost to go of the present state, summed over the draws of one belief sample.
-    fn sum_here(&self, sample: &Sample) -> u32 {
-        self.runs_of(sample).iter().map(|run| run.draws * u32::from(self.worlds.here(run.world))).sum()
     }
 
     /// Cost to go after each button of the human, summed over the draws of one belief sample.
@@ -328,27 +305,8 @@ impl BeliefSampler {
         self.worlds.rate_again(cost, &self.world_weights, sum)
     }
 
-    /// Posterior probability of each focus of the human.
-    pub fn focus(&self, focuses: usize) -> Vec<f64> {
-        let total: f64 = self.posteriors.iter().sum();
-        let mut found = vec![0.0; focuses];
-        for (sample, weight) in self.samples.iter().zip(&self.posteriors) {
-            found[usize::from(sample.focus)] += weight / total;
-        }
-        found
-    }
-
-    /// Expected parts of the last press's likelihood, under the estimate before that press.
-    pub fn expected_parts(&self) -> PressParts {
-        let before: f64 = self.pressing.iter().sum();
-        let mean = |part: fn(&PressParts) -> f64| {
-            self.parts.iter().zip(&self.pressing).map(|(parts, weight)| part(parts) * weight).sum::<f64>() / before
-        };
-        PressParts { chosen: mean(|parts| parts.chosen), slipped: mean(|parts| parts.slipped) }
-    }
-
     fn evidence(&self) -> PressEvidence {
-        let (before, total): (f64, f64) = (self.pressing.iter().sum(), self.posteriors.iter().sum());
+        let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
         let squares: f64 = self.posteriors.iter().map(|p| p * p).sum();
         PressEvidence {
             log_p: (total / before).ln(),

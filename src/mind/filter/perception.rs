@@ -1,25 +1,27 @@
 //! Perception: the update of the estimate by a gaze sample, in closed form.
 //!
-//! A sample that covers dt reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance
-//! of the gaze from the location's area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a
-//! location is read at most once in a look. Let m0 be the belief at the start of the look, or after the last other
-//! event that changed the belief; `unread` is the probability that the location had not been read in this look by then,
-//! and `survived` the probability that it has not been read since. The weight of m0 in the present belief is 1 - unread
-//! (1 - survived); the remaining weight is on the content that was read. Each sample moves a further share of m0 to
-//! that content. Mean and second moment are exact.
+//! Where every sample is an observation, see [`super::sample_observation`]. Where looks are, a sample that covers dt
+//! reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance of the gaze from the
+//! location's area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a location is read at
+//! most once in a look. Let m0 be the belief at the start of the look, or after the last other event that changed the
+//! belief; `unread` is the probability that the location had not been read in this look by then, and `survived` the
+//! probability that it has not been read since. The weight of m0 in the present belief is 1 - unread (1 - survived);
+//! the remaining weight is on the content that was read. Each sample moves a further share of m0 to that content. Mean
+//! and second moment are exact.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::model::{LocationReadingRate, PerceptionModel};
+use crate::mind::model::{LocationReadingRate, PerceptionModel, PerceptionUnit};
+
+use super::sample_observation::{NEGLIGIBLE, SampleObservations};
 
 /// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
-/// Contents that would be read with a smaller probability than this are ignored.
-pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// A look at a location: consecutive gaze samples near the location.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +30,6 @@ struct Look {
     unread: f64,
     /// Probability that the location has not been read since that last event.
     survived: f64,
-    /// Time for which the location has been looked at in this look, in seconds at full reading rate.
-    looked_s: f64,
     /// Code of the content that the display showed at the last sample of the look.
     code: u8,
     /// Time of the last sample of the look.
@@ -37,16 +37,6 @@ struct Look {
 }
 
 impl Look {
-    /// Counts time of looking, in seconds at full reading rate; returns the share of it in which the location can be read
-    /// already, where reading begins after `begins_s`.
-    fn look_on(&mut self, added_s: f64, begins_s: f64) -> f64 {
-        self.looked_s += added_s;
-        if begins_s <= 0.0 {
-            return 1.0;
-        }
-        ((self.looked_s - begins_s) / added_s.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
-    }
-
     /// Applies a probability `chance` that the location is read, given that it has not been read in this look. Returns
     /// the share of the present belief that the reading replaces.
     fn read(&mut self, chance: f64) -> f64 {
@@ -59,6 +49,8 @@ impl Look {
 /// The update of the estimate by gaze samples, with looks and the display's history.
 #[derive(Clone, Debug)]
 pub struct GazeBeliefUpdate {
+    /// The update by single samples, where these are observations.
+    samples: Option<Arc<SampleObservations>>,
     /// Confusion matrix of each location: for each true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
     rate: LocationReadingRate,
@@ -72,14 +64,15 @@ impl GazeBeliefUpdate {
     pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeBeliefUpdate {
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();
-            (0..values).map(|value| confusion(kitchen, model, LocationId(index as u8), value)).collect()
+            (0..values).map(|value| model.confusion(kitchen, LocationId(index as u8), value)).collect()
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
-        let looks = vec![
-            Look { unread: 1.0, survived: 1.0, looked_s: 0.0, code: 0, last: SessionTime::ZERO };
-            confusions.len()
-        ];
-        GazeBeliefUpdate { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
+        let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
+        let samples = match model.observation {
+            PerceptionUnit::Sample => Some(Arc::new(SampleObservations::new(kitchen, model))),
+            PerceptionUnit::Look => None,
+        };
+        GazeBeliefUpdate { samples, confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
     }
 
     /// Records that the display shows `state` from `now` on.
@@ -131,20 +124,22 @@ impl GazeBeliefUpdate {
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
         let is_usable = on_display && known_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };
+        if let Some(samples) = &self.samples {
+            return observe(kitchen, model, samples, belief, sample, state);
+        }
         let (full_hz, confidence) = (model.reading_rate_hz, sample.confidence.min(1.0));
         for (index, look) in self.looks.iter_mut().enumerate() {
             let distance_m = kitchen.locations[index].display.distance_m([sample.x, sample.y], kitchen.display_m);
             let rate_hz = self.rate.at(distance_m, confidence);
             let code = state.code(LocationId(index as u8));
             if code != look.code || taken.secs_since(look.last) > model.look_ends_s {
-                (look.unread, look.survived, look.looked_s) = (1.0, 1.0, 0.0);
+                (look.unread, look.survived) = (1.0, 1.0);
                 look.code = code;
             }
             if rate_hz >= ELSEWHERE * full_hz * confidence {
                 look.last = taken;
             }
-            let read_s = known_s * look.look_on(rate_hz / full_hz * known_s, model.reading_begins_s);
-            let read = look.read(-(-rate_hz * read_s).exp_m1());
+            let read = look.read(-(-rate_hz * known_s).exp_m1());
             if read < NEGLIGIBLE {
                 continue;
             }
@@ -155,23 +150,23 @@ impl GazeBeliefUpdate {
     }
 }
 
-/// Probabilities of reading each value of a location's aspect, given that `value` is displayed there.
-fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
-    let aspect = &kitchen.aspects[location.index()];
-    let alike: Vec<usize> = kitchen
-        .look_alike_codes(location, aspect.values[value])
-        .into_iter()
-        .filter_map(|code| aspect.index_of(code))
-        .collect();
-    let others = aspect.values.len() - 1 - alike.len();
-    let to_alike = if alike.is_empty() { 0.0 } else { model.look_alike };
-    let to_others = if others == 0 { 0.0 } else { model.anything };
-    let each_alike = to_alike / alike.len().max(1) as f64;
-    let each_other = to_others / others.max(1) as f64;
-    let chance = |other: usize| match other {
-        _ if other == value => 1.0 - to_alike - to_others,
-        _ if alike.contains(&other) => each_alike,
-        _ => each_other,
-    };
-    (0..aspect.values.len()).map(chance).collect()
+/// Updates the estimate by the observations of one gaze sample: of every location within the radius around the gaze.
+fn observe(
+    kitchen: &Kitchen,
+    model: &PerceptionModel,
+    samples: &SampleObservations,
+    belief: &mut DirichletBelief,
+    sample: &GazeSample,
+    state: State,
+) {
+    if sample.confidence < model.min_confidence {
+        return;
+    }
+    for (index, location) in kitchen.locations.iter().enumerate() {
+        let code = state.code(LocationId(index as u8));
+        let is_near = location.display.distance_m([sample.x, sample.y], kitchen.display_m) <= model.radius_m();
+        if let Some(truth) = kitchen.aspects[index].index_of(code).filter(|_| is_near) {
+            samples.observe(&mut belief.aspects[index], index, truth);
+        }
+    }
 }

@@ -36,32 +36,6 @@ struct Served {
     on_plate: Vec<Option<usize>>,
 }
 
-/// How people recall another version of a recipe where the version that they recalled was found to be wrong.
-pub struct VersionRecall<'a> {
-    /// What is left of forgotten recipes.
-    pub left: &'a DirichletBelief,
-    /// Precision with which one version is recalled.
-    pub precision: f64,
-}
-
-impl VersionRecall<'_> {
-    /// Gives what a belief about a recipe lost, from `before` to `after`, to its other versions: not as it held them, since
-    /// it is of people who recalled one version, but as they are left of the forgotten recipe. A share of the people as
-    /// large as that loss recalls one version anew. Returns the pooled second moment of their beliefs, whose mean is `after`.
-    fn another(&self, recipe: AspectId, before: &[f64], after: &mut [f64]) -> f64 {
-        let left = self.left.aspect(recipe).mean();
-        let is_other: Vec<bool> = after.iter().zip(before).map(|(now, then)| now >= then).collect();
-        let lost: f64 = after.iter().zip(before).map(|(now, then)| (then - now).max(0.0)).sum();
-        let left_of_others: f64 =
-            left.iter().zip(&is_other).map(|(left, other)| if *other { *left } else { 0.0 }).sum();
-        for (value, now) in after.iter_mut().enumerate().filter(|(value, _)| is_other[*value]) {
-            *now = before[value] + lost * left[value] / left_of_others.max(f64::MIN_POSITIVE);
-        }
-        let kept = square(after);
-        (1.0 - lost) * kept + lost * (self.precision * kept + 1.0) / (self.precision + 1.0)
-    }
-}
-
 /// Sum of the squares of a distribution's probabilities.
 fn square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
@@ -90,16 +64,8 @@ impl ServingUpdate {
         ServingUpdate { order, plate, served, empty: on_plate.index_of(0).unwrap_or(0), dishes: dishes.collect() }
     }
 
-    /// Updates the estimate by a press of the order's serve button. `recall`: how another version of the recipe is recalled
-    /// after a press without effect, where recipes are recalled.
-    pub fn learn(
-        &self,
-        belief: &mut DirichletBelief,
-        effective: bool,
-        recall: Option<&VersionRecall>,
-        draws: usize,
-        random: &mut Stream,
-    ) {
+    /// Updates the estimate by a press of the order's serve button.
+    pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
         let expected = belief.aspect(self.order).mean();
         let dishes: Vec<&Served> = self.dishes.iter().filter(|dish| expected[dish.ordered] >= NEGLIGIBLE).collect();
         let aspects = [self.order, self.plate].into_iter().chain(dishes.iter().map(|dish| dish.recipe));
@@ -112,14 +78,9 @@ impl ServingUpdate {
         let mut tallies: Vec<Tally> = draw_of.iter().map(Draw::tally).collect();
         for _ in 0..draws {
             draw_of.iter_mut().for_each(|draw| draw.again(random));
-            let Some(mut after) = condition(&dishes, &draw_of, effective) else { continue };
-            for (index, ((tally, draw), after)) in tallies.iter_mut().zip(&draw_of).zip(&mut after).enumerate() {
-                let recalled = recall.filter(|_| index >= 2 && !effective);
-                let second = match recalled {
-                    Some(recall) => recall.another(draw.aspect, &draw.now, after),
-                    None => square(after),
-                };
-                tally.add(draw, after, second, 1.0 / draws as f64);
+            let Some(after) = condition(&dishes, &draw_of, effective) else { continue };
+            for ((tally, draw), after) in tallies.iter_mut().zip(&draw_of).zip(&after) {
+                tally.add(draw, after, 1.0 / draws as f64);
             }
         }
         for (tally, draw) in tallies.iter().zip(&draw_of) {
@@ -249,11 +210,11 @@ impl Draw {
 }
 
 impl Tally {
-    /// Adds a draw whose conditioned belief has the mean `after` and this pooled second moment.
-    fn add(&mut self, before: &Draw, after: &[f64], second: f64, weight: f64) {
+    /// Adds a draw whose conditioned belief is `after`.
+    fn add(&mut self, before: &Draw, after: &[f64], weight: f64) {
         for ((mean, now), then) in self.mean.iter_mut().zip(after).zip(&before.now) {
             *mean += weight * (now - then);
         }
-        self.second += weight * (second - square(&before.now));
+        self.second += weight * (square(after) - square(&before.now));
     }
 }

@@ -1,7 +1,7 @@
-//! The signals of a trial as the estimate follows them: the signal on the display, and how many signals were read.
+//! The signals of a trial as the estimate follows them: the signal on the display, and the last one before it.
 
 use crate::base::time::SessionTime;
-use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, State};
+use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::signal_model::SignalModel;
 
@@ -54,9 +54,6 @@ pub struct SignalReadingHistory {
     pub standing: Option<SignalOnDisplay>,
     /// The last signal that has left the display, until the belief filter's function `take_signal_over` takes it.
     pub over: Option<EndedSignal>,
-    /// Expected number of signals that were read, and number of signals that have left the display.
-    read: f64,
-    shown: f64,
 }
 
 impl SignalReadingHistory {
@@ -68,13 +65,7 @@ impl SignalReadingHistory {
     /// The signal on the display leaves the display.
     pub fn end(&mut self) {
         if let Some(SignalOnDisplay { location, unread, .. }) = self.standing.take() {
-            (self.read, self.shown) = (self.read + 1.0 - unread, self.shown + 1.0);
             self.over = Some(EndedSignal { location, read: 1.0 - unread });
         }
-    }
-
-    /// Expected probability that this person notices a signal about a location of this kind.
-    pub fn noticed(&self, model: &SignalModel, kind: LocationKind) -> f64 {
-        model.expected_noticed(kind, self.read, self.shown)
     }
 }

@@ -14,10 +14,8 @@ use crate::mind::dirichlet::DirichletBelief;
 use rand::RngExt;
 
 use super::distinct_draws::Run;
-use super::evidence::{BeliefSampler, Sample, UNDRAWN};
-use super::evidence_model::EvidenceModel;
+use super::evidence::{BeliefSampler, EvidenceModel, Sample, UNDRAWN};
 use super::look_news::{PossiblyReadSignal, SampleLookEffects, UnseenLooks, ValueSeenByLook};
-use super::order_focus::considered;
 use super::urn::value_at;
 
 impl BeliefSampler {
@@ -116,14 +114,14 @@ impl BeliefSampler {
 
     /// Replaces the worlds of a belief sample by worlds with the values that the sample has learned from looks.
     fn believe_news(&mut self, kitchen: &Kitchen, index: usize, news: [usize; 2], states: usize) {
-        let Sample { runs: [first, last], focus, .. } = self.samples[index];
+        let Sample { runs: [first, last], .. } = self.samples[index];
         for run in first..last {
             let Run { first, draws, .. } = self.runs[run];
             let mut world = self.world_of(kitchen, index, first as usize, states);
             for &ValueSeenByLook { aspect, value, .. } in &self.news[news[0]..news[1]] {
                 world.set_value(kitchen, AspectId(aspect as u8), usize::from(value));
             }
-            self.runs[run].world = self.worlds.count(considered(kitchen, world, focus), draws);
+            self.runs[run].world = self.worlds.count(world, draws);
         }
     }
 

@@ -1,14 +1,11 @@
 //! A set of explicit beliefs that are updated with the same events: the samples of the reference filter, the particles
 //! of an unprojected filter, or one human simulated from the model.
 
-mod recipe_memory;
-
 use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::order_focus;
-use super::person::{Particle, press_chances, wait_chance};
+use super::person::Particle;
 use super::plausible_looks::{self, LookNeedProbabilities};
 use super::reading_effect::LookTracker;
 use super::signal_reading::ReferenceSignalHistory;
@@ -17,12 +14,10 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{
-    Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
+    Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
 };
-use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::UnknownGazeTimer;
-use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
@@ -31,19 +26,14 @@ use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 pub struct ParticleSet {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
-    /// The prior: distribution of the belief at the start.
+    /// The prior: distribution of the belief at the start, to which beliefs about recipes decay.
     pub prior: DirichletBelief,
-    /// The distribution to which beliefs about recipes decay.
-    forgotten: DirichletBelief,
     /// Distribution that replaces a belief after an observation that was impossible under that belief.
     pub doubt: DirichletBelief,
     /// The explicit beliefs of the set.
     pub of: Vec<Particle>,
     sight: LookTracker,
     presence: UnknownGazeTimer,
-    /// For each belief, the probability at the human's last press that the human presses rather than waits, where
-    /// waiting is evidence.
-    pub pressing: Vec<f64>,
     /// Where the human of each belief looks while the gaze is unknown, once it has been computed after the last event.
     unseen: Option<LookNeedProbabilities>,
     shown: State,
@@ -55,8 +45,6 @@ pub struct ParticleSet {
     proposed: ProposedPresses,
     /// Signals of the trial, as far as they take time to be read.
     signals: ReferenceSignalHistory,
-    /// Possible lapses (shares of slips) of this person with their probabilities.
-    pub lapses: Vec<(f64, f64)>,
 }
 
 impl ParticleSet {
@@ -64,35 +52,29 @@ impl ParticleSet {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> ParticleSet {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
-        let forgotten = DirichletBelief::forgotten(&kitchen, &model, shown);
         let (doubt, sight, presence) = (prior.clone(), LookTracker::default(), UnknownGazeTimer::new(&model));
-        let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
-        let (proposed, signals, lapses) =
-            (ProposedPresses::default(), ReferenceSignalHistory::default(), lapses(&model));
+        let (of, unseen, forgot) = (Vec::new(), None, None);
+        let (proposed, signals) = (ProposedPresses::default(), ReferenceSignalHistory::default());
         ParticleSet {
             kitchen,
             model,
             prior,
-            forgotten,
             doubt,
             of,
             sight,
             presence,
-            pressing,
             unseen,
             shown,
             forgot,
             frozen: None,
             proposed,
             signals,
-            lapses,
         }
     }
 
     /// Starts the trial in `state` with `count` beliefs drawn from the prior.
     pub fn start(&mut self, now: SessionTime, state: State, count: usize, random: &mut Stream) {
         self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
-        self.forgotten = DirichletBelief::forgotten(&self.kitchen, &self.model, state);
         self.doubt.clone_from(&self.prior);
         self.of = (0..count).map(|_| Particle::draw(&self.kitchen, &self.prior, random)).collect();
         self.forgot = Some(now);
@@ -100,10 +82,7 @@ impl ParticleSet {
         self.unseen = None;
         self.proposed = ProposedPresses::default();
         self.signals = ReferenceSignalHistory::default();
-        self.lapses = lapses(&self.model);
-        self.recall_ordered(self.kitchen.empty_state(), state, random);
         self.show(now, state);
-        order_focus::begin(&self.kitchen, &self.model, &mut self.of, random);
     }
 
     /// Replaces all explicit beliefs of the set.
@@ -127,6 +106,7 @@ impl ParticleSet {
         let (kitchen, model) = (&self.kitchen, &self.model);
         let looking = &model.looking;
         let rates_hz = match self.presence.display_in_view {
+            _ if !looking.marginalised => [0.0; 2],
             true => [looking.other_looks_hz, looking.looks_hz],
             false => [looking.display_lost_looks_hz; 2],
         };
@@ -155,14 +135,15 @@ impl ParticleSet {
 
     /// Accounts for a change by others that attracts the gaze while the gaze is unknown.
     fn see_changes(&mut self, now: SessionTime, after: State, random: &mut Stream) {
-        if self.forgot.is_some() && self.presence.display_in_view {
+        let looks = self.model.looking.marginalised && self.presence.display_in_view;
+        if self.forgot.is_some() && looks {
             let seen = self.model.looking.capture * self.presence.unknown_share(now);
             plausible_looks::see_changes(&self.kitchen, &self.model, &mut self.of, [self.shown, after], seen, random);
         }
     }
 
-    /// Updates every belief with an event. Returns for each belief the likelihood of the human's press, or of the
-    /// human's waiting; 1 for other events.
+    /// Updates every belief with an event. Returns for each belief the likelihood of the human's press; 1 for other
+    /// events.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = self.frozen.unwrap_or(observation.time);
         match observation.what {
@@ -203,11 +184,8 @@ impl ParticleSet {
             ObservedEvidence::Displayed { state } => {
                 self.expect_cleared(state);
                 self.see_changes(now, state, random);
-                self.recall_ordered(self.shown, state, random);
-                order_focus::turn_from_changed(&self.kitchen, &self.model, &mut self.of, [self.shown, state], random);
                 self.show(now, state);
             }
-            ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
             ObservedEvidence::Told { location } => self.told(now, location, random),
             ObservedEvidence::EndedSignal => self.end_signal(),
             ObservedEvidence::Paused => self.forgot = None,
@@ -222,18 +200,13 @@ impl ParticleSet {
     /// Takes in a press of either agent; returns the press's likelihood under each belief, 1 for presses of the robot.
     fn pressed(&mut self, now: SessionTime, press: &Press, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let weights = match press.agent {
-            Agent::Human => {
-                let weights = self.human_pressed(press.button, press.effective, cost, random);
-                order_focus::turn_at_press(&self.kitchen, &self.model, &mut self.of, random);
-                weights
-            }
+            Agent::Human => self.human_pressed(press.button, press.effective, cost, random),
             Agent::Robot => {
                 self.robot_pressed(cost, random);
                 self.see_changes(now, press.after, random);
                 vec![1.0; self.of.len()]
             }
         };
-        order_focus::turn_from_changed(&self.kitchen, &self.model, &mut self.of, [self.shown, press.after], random);
         self.show(now, press.after);
         weights
     }
@@ -291,44 +264,25 @@ impl ParticleSet {
         };
         self.proposed.pressed(button);
         let mut weights = Vec::with_capacity(self.of.len());
-        self.pressing.clear();
-        let mut likelihoods = vec![0.0; self.lapses.len()];
-        let is_serving = matches!(self.kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_));
-        // Only a serving without effect makes people recall other versions.
-        let recall = self.model.transition.recall_precision.filter(|_| is_serving && !effective);
         for person in &mut self.of {
-            let mut weight = 0.0;
-            let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
-            let presses = if inference.waiting { 1.0 - wait_chance(decision, here, &after) } else { 1.0 };
-            self.pressing.push(presses);
-            // p(a | b) for each possible lapse; only for the human model's lapse where the lapse is not learned.
-            for ((lapse, p), likelihood) in self.lapses.iter().zip(&mut likelihoods) {
-                let decision = ChoiceParameters { lapse: *lapse, ..decision.clone() };
-                let pressed = proposed + chosen * press_chances(&self.kitchen, &decision, &after)[button.index()];
-                *likelihood += presses * pressed;
-                weight += p * presses * pressed;
-            }
-            weights.push(weight);
-            let before = recall.map(|precision| (precision, person.of.clone()));
+            let chances = person.press_chances(&self.kitchen, cost, decision, inference.states, random);
+            weights.push(proposed + chosen * chances[button.index()]);
             person.pressed(&self.kitchen, &doubt, button, effective);
-            if let Some((precision, before)) = before {
-                person.recall_others(&self.kitchen, &before, &self.forgotten, precision, random);
-            }
-        }
-        let total: f64 = self.lapses.iter().zip(&likelihoods).map(|((_, p), likelihood)| p * likelihood).sum();
-        for ((_, p), likelihood) in self.lapses.iter_mut().zip(&likelihoods) {
-            *p *= likelihood / total;
         }
         weights
     }
 
-    fn human_waited(&self, longer: f64, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
-        let (decision, states) = (&self.model.decision, self.model.inference.states);
-        let waited = |person: &Particle| {
-            let (here, after) = person.prospects(&self.kitchen, cost, states, random);
-            longer + (1.0 - longer) * wait_chance(decision, here, &after)
-        };
-        self.of.iter().map(waited).collect()
+    fn forget(&mut self, now: SessionTime, random: &mut Stream) {
+        let Some(last) = self.forgot else { return };
+        self.forgot = Some(now.max(last));
+        let lost = 1.0 - 0.5_f64.powf(now.secs_since(last) / self.model.transition.recipe_half_life_s);
+        for person in &mut self.of {
+            for (index, aspect) in self.kitchen.aspects.iter().enumerate() {
+                if let AspectKind::Recipe(_) = aspect.kind {
+                    person.forget(AspectId(index as u8), &self.prior.aspects[index], lost, random);
+                }
+            }
+        }
     }
 
     fn robot_pressed(&mut self, cost: &mut CostToGo, random: &mut Stream) {
@@ -358,9 +312,8 @@ impl ParticleSet {
         {
             aspects.push(kitchen.aspect_of_dish(dish));
         }
-        let read = self.share_with_signal(&vec![1.0; self.of.len()]);
         self.of.iter_mut().for_each(|person| person.read_signal = false);
-        self.signals.show(&kitchen, &self.model, now, (location, aspects), read);
+        self.signals.show(&kitchen, &self.model, now, (location, aspects));
         if !self.model.signal.takes_time() {
             self.signals.read_at_once(&kitchen, &self.model, &mut self.of, self.shown, random);
         }
@@ -368,8 +321,7 @@ impl ParticleSet {
 
     /// The signal leaves the display.
     fn end_signal(&mut self) {
-        let read = self.share_with_signal(&vec![1.0; self.of.len()]);
-        self.signals.end(read);
+        self.signals.end();
         self.of.iter_mut().for_each(|person| person.read_signal = false);
     }
 
@@ -377,14 +329,5 @@ impl ParticleSet {
     pub fn share_with_signal(&self, weights: &[f64]) -> f64 {
         let read = self.of.iter().zip(weights).filter(|(person, _)| person.read_signal);
         read.map(|(_, weight)| weight).sum::<f64>() / weights.iter().sum::<f64>()
-    }
-}
-
-/// The lapses (shares of slips) that a person may have, with their probabilities before the first press.
-fn lapses(model: &HumanModel) -> Vec<(f64, f64)> {
-    let own = model.decision.lapse;
-    match model.adapt.lapse {
-        true => LAPSES.iter().map(|(times, p)| ((times * own).min(MOST_LAPSE), *p)).collect(),
-        false => vec![(own, 1.0)],
     }
 }

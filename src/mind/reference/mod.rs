@@ -2,12 +2,13 @@
 //! for tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's
 //! policy, the cost to go, and the accounting of known and unknown gaze time.
 //!
-//! Where the attention of the person is learned, there is a [`ConditionalReference`] for each possible attention, and
-//! the estimate has mean and second moment of their mixture.
+//! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every
+//! belief by the human model ([`person`]); a press of the human weights the beliefs by p(a | b). Then the beliefs are
+//! projected onto Dirichlets by moment matching, and drawn anew. Gaze samples update the explicit beliefs as well;
+//! several samples in a row are projected together, which is equivalent, since they change first and second moments
+//! linearly.
 
 pub mod belief_set;
-pub mod conditional_reference;
-pub mod order_focus;
 pub mod person;
 pub mod plausible_looks;
 pub mod reading_effect;
@@ -15,45 +16,53 @@ pub mod signal_reading;
 
 use std::sync::Arc;
 
-use self::conditional_reference::ConditionalReference;
-use super::attention_posterior::{ATTENTIONS, RETURNING, with_attention};
-use super::dirichlet::{Dirichlet, DirichletBelief};
+use rand::RngExt;
+
+use self::belief_set::ParticleSet;
+use self::person::Particle;
+use super::dirichlet::DirichletBelief;
 use super::model::HumanModel;
 use super::observation::{Observation, ObservedEvidence};
+use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, Press};
+use crate::kitchen::{Agent, Kitchen};
 
 /// The reference estimator of the human's belief without optimisations, to check the optimised filter.
 #[derive(Clone, Debug)]
 pub struct ReferenceFilter {
-    /// For each possible attention its probability before the first press, its probability now, and the filter of a
-    /// human with that attention.
-    of: Vec<(f64, f64, ConditionalReference)>,
+    kitchen: Arc<Kitchen>,
+    /// Number of belief samples that the filter draws.
+    beliefs: usize,
+    seed: u64,
+    people: ParticleSet,
+    /// Number of observations so far, which seeds the random stream.
+    observed: u64,
+    /// Whether gaze samples have updated the beliefs since they were last drawn.
+    looked: bool,
     log_p: Option<f64>,
 }
 
 impl ReferenceFilter {
     /// A reference filter with the estimate before the trial's start.
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> ReferenceFilter {
-        let possible = if model.adapt.attention { ATTENTIONS.to_vec() } else { vec![(1.0, 1.0)] };
-        let filter = |(times, p): (f64, f64)| {
-            (p, p, ConditionalReference::new(kitchen.clone(), with_attention(&model, times), seed))
-        };
-        ReferenceFilter { of: possible.into_iter().map(filter).collect(), log_p: None }
+        let beliefs = model.inference.beliefs;
+        ReferenceFilter {
+            people: ParticleSet::new(kitchen.clone(), model),
+            kitchen,
+            beliefs,
+            seed,
+            observed: 0,
+            looked: false,
+            log_p: None,
+        }
     }
 
     /// The present estimate of the human's belief.
     pub fn belief(&self) -> DirichletBelief {
-        let beliefs: Vec<(f64, DirichletBelief)> = self.of.iter().map(|(_, p, filter)| (*p, filter.belief())).collect();
-        let mixed = |index: usize| {
-            let mut mean = vec![0.0; beliefs[0].1.aspects[index].mean().len()];
-            for (p, belief) in &beliefs {
-                mean.iter_mut().zip(belief.aspects[index].mean()).for_each(|(sum, m)| *sum += p * m);
-            }
-            let second = beliefs.iter().map(|(p, belief)| p * belief.aspects[index].second()).sum();
-            Dirichlet::of_moments(mean, second)
-        };
-        DirichletBelief { aspects: (0..beliefs[0].1.aspects.len()).map(mixed).collect() }
+        match self.people.of.is_empty() {
+            true => self.people.prior.clone(),
+            false => self.people.projected(&vec![1.0; self.people.of.len()]),
+        }
     }
 
     /// ln p of the human's last press, given that a button is pressed, under the estimate before that press, in nats.
@@ -61,36 +70,52 @@ impl ReferenceFilter {
         self.log_p
     }
 
-    /// The expected share of presses that slip.
-    pub fn lapse(&self) -> f64 {
-        self.of.iter().map(|(_, p, filter)| p * filter.lapse()).sum()
-    }
-
-    /// The probability of each possible attention.
-    pub fn attention(&self) -> Vec<f64> {
-        self.of.iter().map(|(_, p, _)| *p).collect()
-    }
-
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of observations
     /// only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
-        for (_, _, filter) in &mut self.of {
-            filter.observe(observation, cost);
+        self.observed += 1;
+        let mut random = stream(self.seed, "reference", self.observed);
+        if let ObservedEvidence::Started { state } = observation.what {
+            self.people.start(observation.time, state, self.beliefs, &mut random);
+            return;
         }
-        match observation.what {
-            ObservedEvidence::Started { .. } => self.of.iter_mut().for_each(|(prior, p, _)| *p = *prior),
-            ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }) => {
-                // Bayes' rule, then a share of the probability returns to the prior.
-                let joint =
-                    |(_, p, filter): &(f64, f64, ConditionalReference)| p * filter.log_p().map_or(1.0, f64::exp);
-                let joint: Vec<f64> = self.of.iter().map(joint).collect();
-                let total: f64 = joint.iter().sum();
-                for ((prior, p, _), joint) in self.of.iter_mut().zip(joint) {
-                    *p = (1.0 - RETURNING) * joint / total + RETURNING * *prior;
-                }
-                self.log_p = Some(total.ln());
-            }
-            _ => {}
+        let is_gaze = matches!(observation.what, ObservedEvidence::Gaze { .. });
+        if self.looked && !is_gaze {
+            self.project(&vec![1.0; self.people.of.len()], &mut random);
         }
+        let weights = self.people.experience(observation, cost, &mut random);
+        self.looked = is_gaze;
+        if matches!(observation.what, ObservedEvidence::Pressed(press) if press.agent == Agent::Human) {
+            self.log_p = Some((weights.iter().sum::<f64>() / weights.len() as f64).ln());
+        }
+        if !is_gaze {
+            self.project(&weights, &mut random);
+        }
+    }
+
+    /// Projects the weighted explicit beliefs onto Dirichlets.
+    fn project(&mut self, weights: &[f64], random: &mut Stream) {
+        if !self.people.of.is_empty() {
+            let estimate = self.people.projected(weights);
+            self.draw(&estimate, weights, random);
+            self.people.doubt = estimate;
+        }
+    }
+
+    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is
+    /// preserved, and so is the weighted share that has read the signal on the display.
+    fn draw(&mut self, estimate: &DirichletBelief, weights: &[f64], random: &mut Stream) {
+        let with_signal = self.people.share_with_signal(weights);
+        let count = self.people.of.len() as f64;
+        let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;
+        let read: Vec<f64> = (0..self.kitchen.locations.len()).map(read).collect();
+        let person = |random: &mut Stream| {
+            let mut person = Particle::draw(&self.kitchen, estimate, random);
+            person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
+            person.read_signal = with_signal > 0.0 && random.random::<f64>() < with_signal;
+            person
+        };
+        let people = (0..self.beliefs).map(|_| person(random)).collect();
+        self.people.replace(people);
     }
 }

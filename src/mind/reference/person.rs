@@ -31,8 +31,6 @@ pub struct Particle {
     pub read: Vec<bool>,
     /// Whether the human with this belief has read the signal on the display.
     pub read_signal: bool,
-    /// The only order that the human considers; `None`: all orders.
-    pub focus: Option<LocationId>,
 }
 
 /// A hypothesis of kitchen state and recipes, with its probability.
@@ -50,11 +48,12 @@ impl Particle {
     /// A belief drawn from an estimate; every component is drawn by a gamma variate.
     pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
-        Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false, focus: None }
+        Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false }
     }
 
     /// Applies a gaze sample: a location that has not been read in this look is read with a probability, and the belief
-    /// becomes certain of the value that was read.
+    /// becomes certain of the value that was read. Where the sample is an observation, the belief is updated by Bayes'
+    /// rule.
     pub fn look(&mut self, glances: &[LocationReading], random: &mut Stream) {
         for glance in glances {
             let location = glance.location.index();
@@ -64,8 +63,24 @@ impl Particle {
             if !self.read[location] && random.random::<f64>() < glance.chance {
                 self.read[location] = true;
                 let value = pick(&glance.reading, random);
-                self.settle(AspectId::of_location(glance.location), value);
+                match &glance.observation {
+                    None => self.settle(AspectId::of_location(glance.location), value),
+                    Some(probabilities) => self.observe(location, value, probabilities),
+                }
             }
+        }
+    }
+
+    /// Updates the belief about a location by Bayes' rule: the value `seen` has the probability
+    /// `probabilities[v][seen]` where v is the true value.
+    fn observe(&mut self, location: usize, seen: usize, probabilities: &[Vec<f64>]) {
+        let of = &mut self.of[location];
+        for (p, row) in of.iter_mut().zip(probabilities) {
+            *p *= row[seen];
+        }
+        let total: f64 = of.iter().sum();
+        if total > 0.0 {
+            of.iter_mut().for_each(|p| *p /= total);
         }
     }
 
@@ -76,50 +91,10 @@ impl Particle {
         of[value] = 1.0;
     }
 
-    /// Forgets a recipe with the probability `lost`, whereupon the belief is drawn anew from the prior; returns whether it
-    /// was forgotten.
-    pub fn forget(&mut self, aspect: AspectId, prior: &Dirichlet, lost: f64, random: &mut Stream) -> bool {
-        let is_forgotten = random.random::<f64>() < lost;
-        if is_forgotten {
+    /// Forgets a recipe with the probability `lost`, whereupon the belief is drawn anew from the prior.
+    pub fn forget(&mut self, aspect: AspectId, prior: &Dirichlet, lost: f64, random: &mut Stream) {
+        if random.random::<f64>() < lost {
             self.of[aspect.index()] = draw(prior, random);
-        }
-        is_forgotten
-    }
-
-    /// Moves the belief about a recipe towards `values` by the share `faded`.
-    pub fn fade(&mut self, aspect: AspectId, values: &[f64], faded: f64) {
-        for (p, value) in self.of[aspect.index()].iter_mut().zip(values) {
-            *p += faded * (value - *p);
-        }
-    }
-
-    /// Recalls one version of the recipe of this aspect: the belief is drawn from a Dirichlet around the earlier one.
-    pub fn recall(&mut self, aspect: AspectId, precision: f64, random: &mut Stream) {
-        let of = &mut self.of[aspect.index()];
-        *of = draw(&Dirichlet::new(std::mem::take(of), precision), random);
-    }
-
-    /// Gives what the belief about each recipe lost, since it was `before`, to the versions that lost nothing, in proportion
-    /// to what is `left` of a forgotten recipe; with a probability as large as that loss one version is recalled anew.
-    pub fn recall_others(
-        &mut self,
-        kitchen: &Kitchen,
-        before: &[Vec<f64>],
-        left: &DirichletBelief,
-        precision: f64,
-        random: &mut Stream,
-    ) {
-        for index in kitchen.locations.len()..kitchen.aspects.len() {
-            let (of, before, left) = (&mut self.of[index], &before[index], left.aspects[index].mean());
-            let others: Vec<usize> = (0..of.len()).filter(|&version| of[version] >= before[version]).collect();
-            let kept: f64 = (0..of.len()).map(|version| of[version].min(before[version])).sum();
-            let left_of_others: f64 = others.iter().map(|&version| left[version]).sum();
-            for version in others {
-                of[version] = before[version] + (1.0 - kept) * left[version] / left_of_others;
-            }
-            if random.random::<f64>() < 1.0 - kept {
-                self.recall(AspectId(index as u8), precision, random);
-            }
         }
     }
 
@@ -145,25 +120,13 @@ impl Particle {
         let mut here = 0.0;
         let mut after = vec![0.0; kitchen.buttons[Agent::Human.index()].len()];
         for way in self.ways(kitchen, states, random) {
-            let state = self.considered(kitchen, way.state);
-            let decision = cost.decision(state, &way.recipes, Agent::Human);
+            let decision = cost.decision(way.state, &way.recipes, Agent::Human);
             here += way.p * f64::from(decision.here);
             for (sum, &one) in after.iter_mut().zip(&decision.after) {
                 *sum += way.p * f64::from(one);
             }
         }
         (here, after)
-    }
-
-    /// What the human considers of a believed state: a dish that is ordered at the order of the focus, and then no other.
-    fn considered(&self, kitchen: &Kitchen, mut state: State) -> State {
-        let Some(only) = self.focus.filter(|&order| matches!(state.order(order), OrderContent::Dish(_))) else {
-            return state;
-        };
-        for &order in kitchen.orders.iter().filter(|&&order| order != only) {
-            state.set_order(order, OrderContent::None);
-        }
-        state
     }
 
     /// p(a | b) of every button of the human, given that a button is pressed.
@@ -378,14 +341,6 @@ pub fn press_chances(kitchen: &Kitchen, model: &ChoiceParameters, expected: &[f6
         }
     }
     chances
-}
-
-/// p(wait | b), from the expected cost to go of the present state and of the state after each button.
-pub fn wait_chance(model: &ChoiceParameters, here: f64, after: &[f64]) -> f64 {
-    let weight = |q: f64| (model.tau * (q + here)).exp();
-    let wait = weight(-(here + model.wait_cost));
-    let pressing: f64 = after.iter().map(|after| weight(-(1.0 + after))).sum();
-    wait / (wait + pressing)
 }
 
 /// Draws a value in proportion to weights that sum to about 1.

@@ -1,10 +1,10 @@
-//! The effect of a gaze sample at each location: the probability that the location is read, and the distribution of the
-//! value that is read.
+//! The effect of a gaze sample at each location: the probability that the location is read, or that it is observed, and
+//! the distribution of the value that is read or observed.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use crate::mind::model::PerceptionModel;
+use crate::mind::model::{PerceptionModel, PerceptionUnit};
 
 /// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
@@ -20,6 +20,9 @@ pub struct LocationReading {
     pub chance: f64,
     /// Distribution of the value that is read at the location.
     pub reading: Vec<f64>,
+    /// Where the sample is an observation: `[v][o]`, the probability of observing value o where v is the true one, by
+    /// which the belief is updated. Where a look is one, the belief becomes certain of what was read.
+    pub observation: Option<Vec<Vec<f64>>>,
 }
 
 /// A look at a location.
@@ -29,8 +32,6 @@ struct Look {
     code: u8,
     /// Time of the last sample.
     last: SessionTime,
-    /// Time of looking, in seconds at full reading rate.
-    looked_s: f64,
 }
 
 /// Tracks looks at locations and the recent states of the display.
@@ -80,22 +81,29 @@ impl LookTracker {
             let look = &mut self.looks[index];
             let begins = code != look.code || taken.secs_since(look.last) > model.look_ends_s;
             if begins {
-                *look = Look { code, looked_s: 0.0, ..*look };
+                *look = Look { code, ..*look };
+            }
+            if model.observation == PerceptionUnit::Sample {
+                let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
+                if distance_m <= model.radius_m() && sample.confidence >= model.min_confidence {
+                    let values = 0..kitchen.aspects[index].values.len();
+                    let all: Vec<_> = values.map(|value| reading(kitchen, model, location, value)).collect();
+                    let (reading, observation) = (all[value].clone(), Some(all));
+                    glances.push(LocationReading { location, begins: true, chance: 1.0, reading, observation });
+                }
+                continue;
             }
             if rate_hz >= ELSEWHERE * model.reading_rate_hz * confidence {
                 look.last = taken;
             }
-            let before_s = look.looked_s;
-            look.looked_s += rate_hz / model.reading_rate_hz * known_s;
-            let begun_s = |looked_s: f64| (looked_s - model.reading_begins_s).max(0.0);
-            let readable_s = begun_s(look.looked_s) - begun_s(before_s);
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
-            let chance = 1.0 - (-model.reading_rate_hz * readable_s).exp();
+            let chance = 1.0 - (-rate_hz * known_s).exp();
             glances.push(LocationReading {
                 location,
                 begins,
                 chance,
                 reading: reading(kitchen, model, location, value),
+                observation: None,
             });
         }
         glances

@@ -18,41 +18,31 @@ struct ShownContent {
     noticed: f64,
 }
 
-/// The signal on the display, and how many earlier signals of the trial were read.
+/// The signal on the display, if there is one.
 #[derive(Clone, Debug, Default)]
 pub struct ReferenceSignalHistory {
     shown: Option<ShownContent>,
-    /// Expected number of signals that were read, and number of signals that have left the display.
-    counts: [f64; 2],
 }
 
 impl ReferenceSignalHistory {
-    /// A signal takes the place of the one before it, which the share `read` of the beliefs has read.
+    /// A signal takes the place of the one before it.
     pub fn show(
         &mut self,
         kitchen: &Kitchen,
         model: &HumanModel,
         now: SessionTime,
         (location, aspects): (LocationId, Vec<AspectId>),
-        read: f64,
     ) {
-        self.end(read);
-        let signal = &model.signal;
-        let prior = match kitchen.location(location).kind {
-            LocationKind::Order => signal.noticed,
-            _ => signal.highlight_noticed.unwrap_or(signal.noticed),
+        let noticed = match kitchen.location(location).kind {
+            LocationKind::Order => model.signal.noticed,
+            _ => model.signal.highlight_noticed.unwrap_or(model.signal.noticed),
         };
-        let [read, over] = self.counts;
-        let precision = signal.noticed_precision;
-        let noticed = if precision > 0.0 { (precision * prior + read) / (precision + over) } else { prior };
         self.shown = Some(ShownContent { location, aspects, since: now, noticed });
     }
 
-    /// The signal, which the share `read` of the beliefs has read, leaves the display.
-    pub fn end(&mut self, read: f64) {
-        if self.shown.take().is_some() {
-            self.counts = [self.counts[0] + read, self.counts[1] + 1.0];
-        }
+    /// The signal leaves the display.
+    pub fn end(&mut self) {
+        self.shown = None;
     }
 
     /// Moves the signal's beginning on by a duration for which the task stood still.
@@ -60,8 +50,7 @@ impl ReferenceSignalHistory {
         self.shown.iter_mut().for_each(|shown| shown.since = shown.since + by);
     }
 
-    /// Lets the human of every belief notice the signal, or not, where signals take no time to be read. Such signals
-    /// teach nothing about how often this person notices signals.
+    /// Lets the human of every belief notice the signal, or not, where signals take no time to be read.
     pub fn read_at_once(
         &mut self,
         kitchen: &Kitchen,

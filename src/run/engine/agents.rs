@@ -15,9 +15,9 @@ use crate::participant::SimulatedParticipant;
 use crate::participant::gaze_gaps::GazeDropoutSchedule;
 use crate::participant::population::Experience;
 use crate::session::SessionSpec;
-use crate::session::settings::ArmKind;
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
+use crate::session::settings::{ArmKind, RobotSpec};
 use crate::session::tracker::GazeGapSpec;
 use crate::wizard::ScriptedWizard;
 
@@ -34,10 +34,10 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
 
 /// The scripted wizard of a trial, if it has one; the script reads offers where the session shows offers.
 pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
-    let (own_hand, seed) = (spec.signals.own_hand, spec.seed);
+    let (highlights, seed) = (spec.highlights(kitchen), spec.seed);
     let script = spec
         .scripts_wizard()
-        .then(|| ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), own_hand, seed, trial))?;
+        .then(|| ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), highlights, seed, trial))?;
     Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 
@@ -52,7 +52,8 @@ pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeDropoutSch
 /// # Panics
 /// The settings ask for an arm with simulated physics, and this build has none.
 pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> RobotTaskExecutor {
-    let robot = RobotTaskExecutor::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+    let RobotSpec { press_s, press_spread, initiative_s, .. } = spec.robot;
+    let robot = RobotTaskExecutor::new(press_s, press_spread, initiative_s, spec.seed, trial);
     match spec.robot.arm {
         ArmKind::Timed => robot,
         ArmKind::Physics => with_physics(robot, kitchen, spec, trial),

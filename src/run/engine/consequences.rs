@@ -43,15 +43,6 @@ impl SessionEngine {
         }
     }
 
-    /// Records of which aspect the human seems unaware, judged by gaze.
-    pub(super) fn note_unawareness(&mut self, now: SessionTime) {
-        let unaware = self.follower.unaware().filter(|_| self.session().is_running());
-        if let Some(aspect) = unaware {
-            let aspect = self.session().kitchen.aspects[aspect.index()].name.clone();
-            self.record_own(now, Event::SeemsUnaware { aspect });
-        }
-    }
-
     /// The signal that the assistant sends because of its recommendation, if the assistant may act. An error gets one
     /// proposal, as long as the error is the human's last press.
     pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
@@ -60,7 +51,7 @@ impl SessionEngine {
             advice.proposal.as_ref().filter(|one| is_last(one.error) && !proposals::was_made(self.session()));
         let proposal = proposal.map(|one| Signal::Propose(one.presses.clone()));
         let signal = advice.best.clone().or(proposal)?;
-        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None, offer: None };
+        let event = Event::SignalShown { by: Sender::Assistant, signal, offer: None };
         admit(self.session(), &event).is_ok().then_some(event)
     }
 }

@@ -29,7 +29,11 @@ impl SessionEngine {
             RobotEvent::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
             RobotEvent::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
             RobotEvent::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
-            RobotEvent::Idle(reason) => Event::RobotIdles { reason },
+            RobotEvent::Idle { reason, waits_for } => {
+                let human = &kitchen.buttons[Agent::Human.index()];
+                let awaited = human.iter().enumerate().filter(|(index, _)| waits_for >> index & 1 == 1);
+                Event::RobotIdles { reason, waits_for: awaited.map(|(_, button)| button.name.clone()).collect() }
+            }
             RobotEvent::Move(moment) => Event::RobotMoves(moment),
             RobotEvent::Safety { mode, force_n, joint } => Event::RobotSafety { mode, force_n, joint },
             RobotEvent::Touched { force_n } => Event::RobotTouched { force_n },
@@ -46,6 +50,10 @@ impl SessionEngine {
             self.robot.human_pressed(now, kitchen.button(Agent::Human, press.button).at_m);
         }
         let reaction = match &stamped.event {
+            Event::TrialStarted => {
+                self.robot.start(now);
+                None
+            }
             Event::RobotStopped => return self.robot.stop(),
             Event::RobotResumed => self.robot.resume(now),
             Event::RobotHeld { .. } => {
@@ -63,7 +71,7 @@ impl SessionEngine {
             }
             Event::KitchenCorrected { .. } => {
                 let state = self.session().state;
-                self.robot.reconsider(&kitchen, &mut self.follower.cost, state)
+                self.robot.reconsider(&kitchen, &mut self.follower.cost, now, state)
             }
             _ => None,
         };

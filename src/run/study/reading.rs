@@ -178,7 +178,7 @@ pub fn read(
         _ => hands.figures(follower).measures,
     });
     let details = details(&pass, &judged, known.as_ref(), &lanes, probes);
-    trial.offers = follower.session.makes_offers.then(|| OfferSummary::from_offers(&details.offers));
+    trial.offers = OfferSummary::from_offers(&details.offers);
     trial.probes = details.probes.as_ref().map(ProbedTrial::statistics);
     let sequences = sequences(&judged);
     let presses = TrialPressAnalyses {
@@ -351,8 +351,8 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: O
         answers: Vec::new(),
         wizard: None,
         useful_signals: None,
-        display_arm: spec.display.arm.filter(|_| spec.participant.kind == ParticipantKind::Display),
-        offers: None,
+        display_arm: (spec.participant.kind == ParticipantKind::Display).then_some(spec.display.arm),
+        offers: OfferSummary::default(),
         wizard_saw_advice: session.wizard_saw_advice(),
         raters: None,
         shared_beliefs: None,

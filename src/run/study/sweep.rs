@@ -101,10 +101,10 @@ impl ConceptSweep {
         let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
         let session = &self.follower.session;
         let (kitchen, state) = (&session.kitchen, session.state);
-        let own_hand = session.spec.signals.own_hand;
+        let highlights = session.highlights();
         let moment = question.moment();
         let allowed: Vec<Vec<Signal>> =
-            self.swept_concepts.iter().map(|swept| swept.repeats.allowed(kitchen, own_hand)).collect();
+            self.swept_concepts.iter().map(|swept| swept.repeats.allowed(kitchen, highlights)).collect();
         let least_cost = |signal: &Signal| least_cost(&self.swept_concepts, &allowed, signal);
         let benefits = self.planner.benefits(&mut self.cost, &moment, least_cost);
         let deviations = self.tom.advise(&mut self.cost, &moment).options;

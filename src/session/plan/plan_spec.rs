@@ -31,7 +31,7 @@ pub struct PlanSpec {
     pub consent: String,
     /// How the participant consents: by holding a button on the display, or by telling the wizard, who confirms the
     /// consent at the console.
-    #[serde(default = "on_console", skip_serializing_if = "is_console")]
+    #[serde(default = "on_console")]
     pub consent_on: AnswerDevice,
     /// Steps of the wizard's instruction to the participant.
     #[serde(default)]
@@ -57,10 +57,6 @@ fn default_consent() -> String {
 
 fn on_console() -> AnswerDevice {
     AnswerDevice::Console
-}
-
-fn is_console(consent_on: &AnswerDevice) -> bool {
-    *consent_on == AnswerDevice::Console
 }
 
 /// The participants of a plan: their number, from which codes follow (P01, P02, …), or a list of their codes.

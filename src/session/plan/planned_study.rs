@@ -73,9 +73,6 @@ impl Study {
         if let Some(tutorial) = &tutorial {
             text += &serde_json::to_string(tutorial).unwrap_or_default();
         }
-        if let Some(people) = &session.people {
-            text += &serde_json::to_string(people).unwrap_or_default();
-        }
         let digest = digest(&text);
         Some(Study { plan, questionnaires, tutorial, session, digest })
     }
@@ -88,7 +85,7 @@ impl Study {
     /// The event that the participant consented to the plan's text, at the display or at the console.
     pub fn consent_given(&self, on: AnswerDevice) -> ProtocolEvent {
         let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
-        ProtocolEvent::ConsentGiven { on: Some(on), text: Some(text), digest: Some(digest) }
+        ProtocolEvent::ConsentGiven { on, text, digest }
     }
 
     /// The planned trials of a participant, in order.
@@ -99,14 +96,12 @@ impl Study {
         practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
     }
 
-    /// The settings of a recording with people, with the participant's own fitted parameters of the human model where
-    /// there are any, and the number of the recording's trial.
+    /// The settings of a recording with people, and the number of the recording's trial.
     pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
         let slots = self.slots(wanted.participant);
         let slot = slots[wanted.slot];
         let mut spec = self.session.clone();
         spec.participant.code = self.plan.code(wanted.participant);
-        spec.adopt_person();
         set_arm(&mut spec, slot.condition);
         let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
         if let Some(practice) = practice {
@@ -151,7 +146,6 @@ impl Study {
         let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
         let mut spec = self.session.clone();
         spec.participant.code = code.to_string();
-        spec.adopt_person();
         spec.step = Some(PlanPosition {
             plan: format!("{}-tutorial", self.plan.name),
             digest: self.digest.clone(),

@@ -25,7 +25,7 @@ pub struct PlanPosition {
     pub period: Option<u32>,
     /// Number of counted trials per participant.
     pub periods: u32,
-    /// The study arm that the plan assigns to the trial; absent in recordings from before plans had arms.
+    /// The study arm that the plan assigns to the trial; `None` for a recording of the tutorial alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arm: Option<StudyArm>,
     /// The aims of the study, if they are not the default.

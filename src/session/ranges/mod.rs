@@ -1,7 +1,6 @@
 //! The allowed ranges of all numbers in session files, in files with parameters of the human model, and in
 //! questionnaires. Those of layouts are in [`crate::kitchen::layout_ranges`]; `docs/settings.md` shows both.
-//! A file with a number outside of its allowed range is refused. For the header of a recording the program only warns,
-//! if an earlier version of the program accepted the number.
+//! A file with a number outside of its allowed range is refused, and so is the header of a recording.
 
 mod human;
 mod people;
@@ -45,12 +44,4 @@ pub fn check_human_model(model: &impl Serialize) -> Result<(), OutOfRange> {
 /// The first number outside of its allowed range.
 pub fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&OF_QUESTIONNAIRES, &numbers(questionnaire, "")?)
-}
-
-/// Checks that all numbers in the settings of a recording were allowed by some version of the program.
-///
-/// # Errors
-/// The first number that no version of the program accepted.
-pub fn check_recorded(spec: &impl Serialize) -> Result<(), OutOfRange> {
-    number_range::check_recorded(&of_sessions(), &numbers(spec, "")?)
 }

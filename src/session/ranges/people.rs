@@ -1,6 +1,6 @@
 //! Allowed ranges of settings of simulated people: the population of participants, and the scripted wizard.
 
-use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
+use crate::base::number_range::NumberRange;
 
 const SECONDS: &str = "s";
 const CHANCE: &str = "the setting is a probability";
@@ -9,7 +9,7 @@ const LATE: &str = "a wizard who takes longer cannot help";
 /// Range of a probability that differs between people: its odds are drawn for each person, so 0 and 1 are not allowed.
 const fn chance(path: &'static str) -> NumberRange {
     let reason = "the setting is a probability whose odds are drawn for each person, so neither 0 nor 1";
-    NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
+    NumberRange::real(path, [0.000_001, 0.999_999], "", reason)
 }
 
 /// Range of a probability that either differs between people, or is 0 for everybody.
@@ -20,10 +20,9 @@ const fn rare_chance(path: &'static str) -> NumberRange {
         "",
         "the setting is a probability whose odds are drawn for each person, so not 1; with 0 nobody does this",
     )
-    .recorded([0.0, INSIDE_0_AND_1[1]])
 }
 
-pub(super) const RANGES: [NumberRange; 60] = [
+pub(super) const RANGES: [NumberRange; 61] = [
     chance("participant.population.slip.median"),
     chance("participant.population.look_alike_slip.median"),
     chance("participant.population.thoughtless.median"),
@@ -48,6 +47,7 @@ pub(super) const RANGES: [NumberRange; 60] = [
     rare_chance("participant.population.keeps_own_recipe.median"),
     rare_chance("participant.population.misremembers.median"),
     rare_chance("participant.population.guesses_robot.median"),
+    rare_chance("participant.population.gets_stuck.median"),
     rare_chance("participant.population.answers_wrong.median"),
     rare_chance("participant.population.follows_proposal.median"),
     NumberRange::real("participant.population.answers_from", [0.0, 1.0], "", CHANCE),
@@ -62,47 +62,39 @@ pub(super) const RANGES: [NumberRange; 60] = [
         [1.0, 10.0],
         "presses",
         "drawn planning depths are rounded to 2 to 5 presses",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "participant.population.press_s.median",
         [0.05, 60.0],
         SECONDS,
         "nobody presses more quickly, nobody cooperates more slowly",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "participant.population.watches_robot.median",
         [0.001, 1_000.0],
         "times a place of the next press",
         "from a robot that is not watched at all to one that alone is watched",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "participant.population.fixation_s.median",
         [0.02, 10.0],
         SECONDS,
         "fixations cannot be shorter, and eyes do not rest longer",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "participant.population.half_life_s.median",
         [1.0, 1_000_000.0],
         SECONDS,
         "half-lives from forgotten at once to never forgotten",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "participant.population.loses_thread_per_min.median",
         [0.0001, 60.0],
         "per minute",
         "from never to once a second",
-    )
-    .recorded(ABOVE_0),
-    NumberRange::real("participant.population.patience_s.median", [0.1, 3_600.0], SECONDS, "from no time to endless")
-        .recorded(ABOVE_0),
-    NumberRange::real("participant.population.commitment_s.median", [0.1, 3_600.0], SECONDS, "from no time to endless")
-        .recorded(ABOVE_0),
+    ),
+    NumberRange::real("participant.population.patience_s.median", [0.1, 3_600.0], SECONDS, "from no time to endless"),
+    NumberRange::real("participant.population.commitment_s.median", [0.1, 3_600.0], SECONDS, "from no time to endless"),
     NumberRange::real(
         "participant.population.*.sigma",
         [0.0, 2.0],
@@ -126,52 +118,45 @@ pub(super) const RANGES: [NumberRange; 60] = [
         [0.01, 100_000.0],
         "presses",
         "from people who are practised at once to people who never are",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real("participant.population.notices_slip", [0.0, 1.0], "", CHANCE),
     NumberRange::real(
         "participant.population.insists",
         [0.0, 0.99],
         "",
         "the setting is a probability, and with 1 nobody would ever stop",
-    )
-    .recorded([0.0, INSIDE_0_AND_1[1]]),
+    ),
     NumberRange::real(
         "participant.population.confuses_look_alikes",
         [0.001, 1_000.0],
         "times another topping",
         "confusions from never to always",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "participant.population.signal_after_s",
         [0.0, 60.0],
         SECONDS,
         "a signal that is read later is no help",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::real(
         "participant.population.reads_signal_s",
         [0.0, 60.0],
         SECONDS,
         "nobody reads a signal for longer",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::real(
         "participant.population.resumes_after_s",
         [0.0, 60.0],
         SECONDS,
         "nobody thinks for longer before going on",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::real("participant.population.misreads_signal", [0.0, 1.0], "", CHANCE),
     NumberRange::real(
         "participant.population.recipes_gained",
         [0.01, 100.0],
         "",
         "the odds of knowing a recipe grow by this factor with every trial",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real("participant.population.practice_kept", [0.0, 1.0], "", "the setting is a share from 0 to 1"),
     NumberRange::real(
         "participant.population.tracker_offset_m",

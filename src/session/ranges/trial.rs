@@ -1,11 +1,7 @@
 //! Allowed ranges of settings of trial, robot, signals, assistant, devices and plan.
 
-use crate::base::number_range::{ABOVE_0, ANY, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
+use crate::base::number_range::NumberRange;
 
-/// Range of numbers of rollouts that earlier versions of the program accepted.
-const TO_65536: [f64; 2] = [1.0, 65_536.0];
-/// Range of a probability that must be below 1.
-const BELOW_1: [f64; 2] = [0.0, INSIDE_0_AND_1[1]];
 const SECONDS: &str = "s";
 const CHANCE: &str = "the setting is a probability";
 const PORT: &str = "ports of TCP and UDP have these numbers";
@@ -17,19 +13,18 @@ const LONGEST: &str = "no trial is longer than a day";
 /// Largest number that 32 bits hold, which is practically no limit for a count.
 const COUNT: f64 = 4_294_967_295.0;
 
-pub(super) const RANGES: [NumberRange; 50] = [
+pub(super) const RANGES: [NumberRange; 51] = [
     NumberRange::whole(
         "seed",
         [0.0, 9_007_199_254_740_991.0],
         "",
         "every reader of JSON keeps whole numbers up to this one exactly",
-    )
-    .recorded(ANY),
+    ),
     NumberRange::whole("trial.presses", [1.0, COUNT], "presses", "the largest numbers mean no limit in practice"),
-    NumberRange::real("trial.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
+    NumberRange::real("trial.seconds", [0.1, DAY_S], SECONDS, LONGEST),
     NumberRange::whole("trial.orders", [1.0, COUNT], "orders", "the largest numbers mean no limit in practice"),
     NumberRange::real("trial.pace_s", [0.1, 60.0], SECONDS, PRESS),
-    NumberRange::real("robot.press_s", [0.05, 60.0], SECONDS, PRESS).recorded(ABOVE_0),
+    NumberRange::real("robot.press_s", [0.05, 60.0], SECONDS, PRESS),
     NumberRange::real(
         "robot.press_spread",
         [0.0, 2.0],
@@ -37,12 +32,17 @@ pub(super) const RANGES: [NumberRange; 50] = [
         "with a larger spread, presses take anything from no time to minutes",
     ),
     NumberRange::real(
+        "robot.initiative_s",
+        [0.0, DAY_S],
+        SECONDS,
+        "after the longest time the robot never takes the initiative, since no trial is longer",
+    ),
+    NumberRange::real(
         "signals.shown_s",
         [0.1, 3_600.0],
         SECONDS,
         "a signal shown for less time cannot be read, for more time it is a picture on the wall",
-    )
-    .recorded(ABOVE_0),
+    ),
     NumberRange::real(
         "signals.cool_down_s",
         [0.0, 60.0],
@@ -54,15 +54,13 @@ pub(super) const RANGES: [NumberRange; 50] = [
         [0.0, 1_000.0],
         "presses",
         "no signal saves as many presses as the largest cost",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::real(
         "assistant.belief_threshold",
         [0.0, 0.99],
         "",
         "the threshold is a probability, and none exceeds 1",
-    )
-    .recorded(BELOW_1),
+    ),
     NumberRange::whole(
         "assistant.proposed_presses",
         [1.0, 5.0],
@@ -80,54 +78,47 @@ pub(super) const RANGES: [NumberRange; 50] = [
         [1.0, 16_384.0],
         "rollouts",
         "more rollouts (64 times the default) take minutes for each press",
-    )
-    .recorded(TO_65536),
+    ),
     NumberRange::whole(
         "assistant.rollout.states",
         [1.0, 128.0],
         "states",
         "more states make the estimate no more exact",
-    )
-    .recorded([1.0, 256.0]),
-    NumberRange::real("assistant.rollout.human_press_s", [0.05, 60.0], SECONDS, PRESS).recorded(ABOVE_0),
+    ),
+    NumberRange::real("assistant.rollout.human_press_s", [0.05, 60.0], SECONDS, PRESS),
     NumberRange::real(
         "assistant.rollout.looks_hz",
         [0.0, 100.0],
         "per second",
         "eyes look at a few places in a second",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::real(
         "assistant.rollout.other_looks_hz",
         [0.0, 100.0],
         "per second",
         "eyes look at a few places in a second",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::real("assistant.rollout.capture", [0.0, 1.0], "", CHANCE),
     NumberRange::real(
         "assistant.rollout.enough_error",
         [0.0, 100.0],
         "presses",
         "with a larger error, the least number of rollouts is always enough",
-    )
-    .recorded(NOT_NEGATIVE),
+    ),
     NumberRange::whole(
         "assistant.rollout.least_rollouts",
         [1.0, 16_384.0],
         "rollouts",
         "the least number of rollouts cannot be above their largest number",
-    )
-    .recorded(TO_65536),
-    NumberRange::whole("participant.gaze_port", [1.0, 65_535.0], "", PORT).recorded(ANY),
-    NumberRange::whole("tracker.port", [1.0, 65_535.0], "", PORT).recorded(ANY),
+    ),
+    NumberRange::whole("participant.gaze_port", [1.0, 65_535.0], "", PORT),
+    NumberRange::whole("tracker.port", [1.0, 65_535.0], "", PORT),
     NumberRange::real(
         "tracker.corners",
         [-10.0, 10.0],
         "fractions of the display",
         "a surface much larger than the display gets no gaze",
-    )
-    .recorded(ANY),
+    ),
     NumberRange::real("tracker.file_start_s", [-DAY_S, DAY_S], SECONDS, LONGEST),
     NumberRange::real("tracker.gaps.every_s", [0.01, DAY_S], SECONDS, LONGEST),
     NumberRange::real("tracker.gaps.shortest_s", [0.01, DAY_S], SECONDS, LONGEST),
@@ -170,7 +161,7 @@ pub(super) const RANGES: [NumberRange; 50] = [
         "the setting is a probability, and analyses divide by this probability",
     ),
     NumberRange::real("probes.teaches", [0.0, 1.0], "", CHANCE),
-    NumberRange::whole("display.port", [1.0, 65_535.0], "", PORT).recorded(ANY),
+    NumberRange::whole("display.port", [1.0, 65_535.0], "", PORT),
     NumberRange::whole(
         "plan.participants",
         [1.0, 9_999.0],
@@ -189,7 +180,7 @@ pub(super) const RANGES: [NumberRange; 50] = [
         "presses",
         "the largest numbers mean no limit in practice",
     ),
-    NumberRange::real("plan.familiarisation.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
+    NumberRange::real("plan.familiarisation.seconds", [0.1, DAY_S], SECONDS, LONGEST),
     NumberRange::whole(
         "plan.familiarisation.orders",
         [1.0, COUNT],

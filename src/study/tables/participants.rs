@@ -62,9 +62,9 @@ impl CsvRow for ParticipantRow<'_> {
         let at = "wall clock time (UTC) at which the recording that begins with the consent began";
         let digest = "digest of the text that was agreed to, as the recording has it beside the text";
         columns.extend([
-            Self::column("consent_on", "", on, |row| row.1.and_then(RecordedConsent::place).into()),
+            Self::column("consent_on", "", on, |row| row.1.map(RecordedConsent::place).into()),
             Self::column("consent_at", "", at, |row| row.1.and_then(|consent| consent.started.as_ref()).into()),
-            Self::column("consent_digest", "", digest, |row| row.1.and_then(|consent| consent.digest.as_ref()).into()),
+            Self::column("consent_digest", "", digest, |row| row.1.map(|consent| &consent.digest).into()),
         ]);
         columns
     }

@@ -337,9 +337,7 @@ fn offered() -> Vec<TrialColumn> {
         meaning: &'static str,
         value: fn(&OfferSummary) -> CsvCell<'static>,
     ) -> TrialColumn {
-        TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, move |trial| {
-            trial.offers.as_ref().map(value).into()
-        }))
+        TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, move |trial| value(&trial.offers)))
     }
     vec![
         offers("offers", "offers", "closed offers that a wizard could see; empty: a recording without offers", |of| {

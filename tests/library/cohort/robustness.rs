@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::analysis::cohort_lines::{describe_end, describe_rows, name_width};
+use tomcom::analysis::cohort_lines::{describe_end, describe_row, name_width};
 use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable};
 use tomcom::edge::battery_file::{CohortBattery, read_battery};
 use tomcom::edge::files::read_session;
 use tomcom::measures::flags::ThresholdSource;
-use tomcom::mind::model::AdaptationSettings;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
 use tomcom::run::gathered::GatheredRecordings;
@@ -34,8 +33,7 @@ fn battery() -> CohortBattery {
 }
 
 fn table(battery: &CohortBattery, seed: u64) -> RobustnessTable {
-    let request =
-        RobustnessRequest { battery: battery.clone(), trials: TRIALS, seed, choose_seed: 51, adaptation: true };
+    let request = RobustnessRequest { battery: battery.clone(), trials: TRIALS, seed, choose_seed: 51 };
     let mut finished: Vec<CohortRow> = Vec::new();
     let table = measure(&request, || (), |row| finished.push(row.clone()));
     assert_eq!(finished, table.cohorts, "each row is told when it is finished");
@@ -54,37 +52,15 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert_ne!(one.cohorts[0].unassisted, one.cohorts[1].unassisted, "cohorts differ");
     assert_ne!(one.cohorts[0].unassisted, table(&battery, 42).cohorts[0].unassisted, "seeds differ");
     let width = name_width(one.cohorts.iter().map(|row| row.cohort.as_str()));
-    let text = describe_rows(&one.cohorts[1], width);
-    let rows: Vec<&str> = text.lines().collect();
-    assert!(rows[0].starts_with("confident wrong recipes ") && rows[1].starts_with("  adapting "), "{text}");
+    let text = describe_row(&one.cohorts[1], width);
+    assert!(text.starts_with("confident wrong recipes ") && text.lines().count() == 1, "{text}");
     let end = describe_end(&one);
-    assert!(end.contains("3 trials of seed 41") && end.contains("adapting less usual"), "{end}");
-    assert!(text.lines().chain(end.lines().take(4)).all(|line| line.chars().count() <= 125), "{text}{end}");
-    assert!(one.cohorts.iter().all(|row| row.usual.assisted.signals_per_100 > 0.0), "{text}");
-    for row in &one.cohorts {
-        let adapting = &row.adapting.as_ref().expect("measured").detection;
-        assert_ne!(row.usual.detection.auc_locations, adapting.auc_locations, "{}: adapts", row.cohort);
-        assert_eq!(row.usual.detection.flags.episodes, adapting.flags.episodes, "{}", row.cohort);
-    }
+    assert!(end.contains("3 trials of seed 41"), "{end}");
+    assert!(text.chars().count() <= 126, "{text}");
+    assert!(one.cohorts.iter().all(|row| row.assisted.signals_per_100 > 0.0), "{text}");
     let picture = robustness(&one);
     assert!(picture.starts_with("<svg ") && picture.contains("ROC, recipes"), "{picture}");
-    assert_eq!(picture.matches("<circle").count(), 2 * 2 * 3 + 2, "a point for each value, and two for the colours");
-}
-
-#[test]
-fn leaving_out_adaptation_changes_nothing_else() {
-    let battery = battery();
-    let whole = table(&battery, 41);
-    let request = RobustnessRequest { battery, trials: TRIALS, seed: 41, choose_seed: 51, adaptation: false };
-    let without = measure(&request, || (), |_| ());
-    for (row, whole) in without.cohorts.iter().zip(&whole.cohorts) {
-        assert_eq!((&row.adapting, &row.adaptation), (&None, &None), "{}", row.cohort);
-        assert_eq!((row.unassisted, &row.usual), (whole.unassisted, &whole.usual), "{}", row.cohort);
-    }
-    let text = describe_rows(&without.cohorts[0], 24) + &describe_end(&without);
-    assert!(!text.contains("adapting") && text.contains("3 trials of seed 41"), "{text}");
-    let picture = robustness(&without);
-    assert_eq!(picture.matches("<circle").count(), 2 * 3 + 1, "a point for each value, and one for the colour");
+    assert_eq!(picture.matches("<circle").count(), 2 * 3, "a point for each value");
 }
 
 #[test]
@@ -93,12 +69,8 @@ fn an_assistant_that_says_nothing_saves_nothing() {
     battery.session.spec.assistant.cost_of_communication = 1000.0;
     for row in table(&battery, 43).cohorts {
         assert!(row.unassisted.related_per_100 > 0.0, "{}: nothing to save", row.cohort);
-        for of in [&row.usual, row.adapting.as_ref().expect("measured")] {
-            assert_eq!(row.unassisted, of.assisted, "{}: pairs are of the same trials", row.cohort);
-            assert_eq!((of.saved, of.saved_interval), (Some(0.0), Some([0.0, 0.0])), "{}", row.cohort);
-        }
-        let saved = row.adaptation.and_then(|found| found.saved).expect("known");
-        assert_eq!((saved.difference, saved.interval), (0.0, Some([0.0, 0.0])), "{}", row.cohort);
+        assert_eq!(row.unassisted, row.assisted, "{}: pairs are of the same trials", row.cohort);
+        assert_eq!((row.saved, row.saved_interval), (Some(0.0), Some([0.0, 0.0])), "{}", row.cohort);
     }
 }
 
@@ -108,38 +80,24 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
     let row = &table(&battery, 44).cohorts[0];
     let mut files = battery.session.clone();
     files.spec.trial.condition = Condition::None;
-    let mut recorded = |seed: u64, adapt: AdaptationSettings| -> (u64, Vec<PathBuf>) {
-        (files.spec.seed, files.spec.human.adapt) = (seed, adapt);
-        let out = folder(&format!("robustness-{seed}-{}", adapt.attention));
+    let recorded = |seed: u64| -> (u64, Vec<PathBuf>) {
+        files.spec.seed = seed;
+        let out = folder(&format!("robustness-{seed}"));
         let figures = run(&files, TRIALS, SimulationShard::WHOLE, &out);
         let related = figures.beliefs.belief_related_errors.expect("known of simulated people");
         (related, figures.recordings.iter().map(PathBuf::from).collect())
     };
     let gathered = |paths: &[PathBuf]| GatheredRecordings::find(paths).expect("recordings");
-    let [(related, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::default()));
+    let [(related, judged), (_, chosen_on)] = [44, 51].map(recorded);
     let check = check_beliefs::check(&gathered(&judged), &gathered(&chosen_on), || ()).expect("recordings");
-    assert_eq!(row.usual.detection, check.detection);
-    assert_eq!(row.usual.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
-    assert_eq!(row.usual.log_likelihood, check.log_likelihood);
+    assert_eq!(row.detection, check.detection);
+    assert_eq!(row.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
+    assert_eq!(row.log_likelihood, check.log_likelihood);
     let counted = row.unassisted.related_per_100 * check.human_actions as f64 / 100.0;
     assert!((counted - related as f64).abs() < 1e-6, "{counted} and {related}");
-    // The second filter on the same events gives what the recordings of an adapting session have.
-    let [(_, judged), (_, chosen_on)] = [44, 51].map(|seed| recorded(seed, AdaptationSettings::ALL));
-    let check = check_beliefs::check(&gathered(&judged), &gathered(&chosen_on), || ()).expect("recordings");
-    let found = row.adapting.as_ref().expect("measured");
-    assert_eq!(found.detection, check.detection);
-    assert_eq!(found.log_likelihood, check.log_likelihood);
-    // Where each trial counts once, the resampled areas are those of the table.
-    let (usual, adapting) = (&row.usual.detection, &found.detection);
-    let effect = row.adaptation.expect("measured");
-    let [places, ece] = [effect.auc_locations, effect.ece].map(|found| found.expect("known").difference);
-    assert!((places - (adapting.auc_locations.expect("known") - usual.auc_locations.expect("known"))).abs() < 1e-12);
-    assert!((ece - (adapting.ece.expect("known") - usual.ece.expect("known"))).abs() < 1e-12);
-    for (value, interval) in [
-        (usual.auc_locations, row.usual.auc_locations_interval),
-        (adapting.auc_locations, found.auc_locations_interval),
-        (usual.ece, row.usual.ece_interval),
-    ] {
+    for (value, interval) in
+        [(row.detection.auc_locations, row.auc_locations_interval), (row.detection.ece, row.ece_interval)]
+    {
         let (value, [from, to]) = (value.expect("known"), interval.expect("known"));
         assert!(from < to && (0.0..=1.0).contains(&from) && value <= to, "{value} ({from} to {to})");
     }
@@ -148,7 +106,7 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
 #[test]
 fn the_battery_that_comes_with_the_program_has_its_cohorts() {
     let battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("a battery");
-    assert_eq!(battery.cohorts.len(), 17);
+    assert_eq!(battery.cohorts.len(), 18);
     let defaults = battery.cohorts.iter().filter(|cohort| cohort.population == Some(Population::default())).count();
     assert_eq!(defaults, 0, "a cohort names a population that is the default");
     let named = |cohort: &&CohortSpec| cohort.name.get_ref() == "as in sessions/paper.toml";

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
-use tomcom::communication::Sender;
+use tomcom::communication::{HighlightSet, Sender};
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{DishId, LocationId};
@@ -58,8 +58,8 @@ fn a_wizard_who_sees_nothing_says_nothing_and_no_hand_signals_in_its_place() {
     let mut spec = paper(120).spec;
     (spec.trial.condition, spec.plan) = (Condition::Wizard, None);
     let session = Session::new(Arc::new(files.kitchen.kitchen.clone()), spec, 0);
-    let (_, signal) = tomcom::communication::signals(&session.kitchen, false).swap_remove(3);
-    let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None };
+    let (_, signal) = tomcom::communication::signals(&session.kitchen, session.highlights()).swap_remove(3);
+    let event = Event::SignalShown { by: Sender::Wizard, signal, offer: None };
     let refused = hygiene(&session, SessionTime::ZERO, &event).expect_err("nobody signals beside the script");
     assert!(refused.contains("scripted"), "{refused}");
 }
@@ -86,7 +86,7 @@ fn a_wizard_tells_what_was_not_looked_at_and_nothing_that_was() {
     let mut filled = wanted;
     filled.set_content(pot, kitchen.content_named("rice raw").expect("an item"));
     let mut said = |looks: bool| {
-        let mut wizard = ScriptedWizard::new(kitchen.clone(), spec.clone(), false, 1, 0);
+        let mut wizard = ScriptedWizard::new(kitchen.clone(), spec.clone(), HighlightSet::usual(&kitchen), 1, 0);
         wizard.on_trial_start(wanted);
         wizard.on_change(second(1.0), wanted, filled);
         if looks {
@@ -125,7 +125,8 @@ fn reader(offers: OfferReading, rest_s: f64) -> ScriptedWizard {
         offers: Some(offers),
         ..WizardSpec::default()
     };
-    let mut wizard = ScriptedWizard::new(kitchen.clone(), spec, false, 1, 0).reading_offers(1, 0);
+    let mut wizard =
+        ScriptedWizard::new(kitchen.clone(), spec, HighlightSet::usual(&kitchen), 1, 0).reading_offers(1, 0);
     wizard.on_trial_start(kitchen.empty_state());
     wizard
 }

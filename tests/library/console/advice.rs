@@ -84,7 +84,7 @@ fn the_offer_alone_is_inverse_in_the_colour_of_signals() {
         assert_eq!(inverse_signals(&paused, size).len(), 1, "{size:?}");
         let mut shown = advised(false);
         let signal = Signal::Highlight("cutting_board".to_string());
-        shown.at(30.0, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None });
+        shown.at(30.0, Event::SignalShown { by: Sender::Wizard, signal, offer: None });
         assert_eq!(inverse_signals(&shown, size), [""; 0], "{size:?}");
     }
 }
@@ -178,7 +178,7 @@ fn where_no_signal_is_offered_the_line_says_what_was_sent_or_why() {
         }
     };
     let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
-    let sent = |order| Event::SignalShown { by: Sender::Wizard, signal: recipe(order), accepted: None, offer: None };
+    let sent = |order| Event::SignalShown { by: Sender::Wizard, signal: recipe(order), offer: None };
     let mut stage = advised(false);
     // No signal saves anything, and that about the false belief can be sent again.
     let advice = stage.session.advice.as_mut().expect("advice");
@@ -250,7 +250,7 @@ fn enter_accepts_what_is_recommended_and_says_so() {
     seen.model.now = SessionTime::from_secs_f64(30.0);
     let accepted = input(seen.key(KeyCode::Enter));
     let offer = seen.session.offers.open().map(|offer| offer.seq);
-    let Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: taken }) = accepted else {
+    let Some(Event::SignalShown { by: Sender::Wizard, signal, offer: taken }) = accepted else {
         panic!("not accepted: {accepted:?}");
     };
     assert_eq!((signal, taken), (Signal::ShowRecipe("order_1".to_string()), offer));
@@ -266,7 +266,7 @@ fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
     let advice = stage.session.advice.clone().expect("advice");
     let sent = advice.best.clone().expect("a recommendation");
     let offer = stage.session.offers.open().map(|offer| offer.seq);
-    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, accepted: None, offer });
+    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, offer });
     stage.offer(22.6);
     stage.model.now = SessionTime::from_secs_f64(23.2);
     assert_eq!(input(stage.key(KeyCode::Enter)), None);
@@ -312,7 +312,7 @@ fn the_timeline_shows_offers_from_their_opening_to_their_close() {
     assert!(!row(&stage).contains('✓'));
     let offer = stage.session.offers.open().map(|offer| offer.seq);
     let signal = Signal::ShowRecipe("order_1".to_string());
-    stage.at(27.0, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer });
+    stage.at(27.0, Event::SignalShown { by: Sender::Wizard, signal, offer });
     stage.offer(27.0);
     assert!(row(&stage).contains("──────✓"), "taken: {}", row(&stage));
     stage.session.spec.console.visibility = WizardVisibility::Belief;

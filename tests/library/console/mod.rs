@@ -139,7 +139,6 @@ impl Stage {
             Event::SignalShown {
                 by: Sender::Wizard,
                 signal: Signal::Highlight("cutting_board".to_string()),
-                accepted: None,
                 offer: None,
             },
         );
@@ -169,12 +168,7 @@ impl Stage {
         stage.estimate(&[("assembly_board", "rice cooked + nori", 0.96)], true);
         stage.at(
             21.8,
-            Event::SignalShown {
-                by: Sender::Wizard,
-                signal: Signal::ShowRecipe("order_1".to_string()),
-                accepted: None,
-                offer: None,
-            },
+            Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()), offer: None },
         );
         stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();
         stage.model.now = SessionTime::from_secs_f64(22.6);

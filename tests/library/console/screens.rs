@@ -203,12 +203,7 @@ fn what_a_wizard_sees_at_each_size() {
     let mut highlight = Stage::sushi(ParticipantKind::Simulated);
     highlight.at(
         22.6,
-        Event::SignalShown {
-            by: Sender::Wizard,
-            signal: Signal::Highlight("cutting_board".to_string()),
-            accepted: None,
-            offer: None,
-        },
+        Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight("cutting_board".to_string()), offer: None },
     );
     let mut alarm = Stage::sushi(ParticipantKind::Simulated);
     alarm.at(22.6, Event::RobotStopped);

@@ -40,8 +40,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
         observations.push(FitObservations { seed: index, observations: of_trial, answers: Vec::new() });
         cost = world.cost;
     }
-    let people = (0..humans).map(|index| (format!("P{index}"), 0)).collect();
-    FitTrials { kitchen: kitchen.clone(), model: model.clone(), differ: false, observations, people }
+    FitTrials { kitchen: kitchen.clone(), model: model.clone(), differ: false, observations }
 }
 
 /// Fits, tells, and demands that each parameter is within so many standard errors of the truth, on the scale of the fit.

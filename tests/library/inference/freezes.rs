@@ -24,7 +24,7 @@ fn at(seconds: f64) -> SessionTime {
 fn estimates(freeze_s: f64) -> [Vec<Vec<f64>>; 2] {
     let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
     let mut cost = CostToGo::new(kitchen.clone());
-    let signal = SignalModel { noticed: 0.8, delay_s: 1.0, noticed_precision: 4.0, ..SignalModel::default() };
+    let signal = SignalModel { noticed: 0.8, delay_s: 1.0, ..SignalModel::default() };
     let mut model = HumanModel { signal, ..HumanModel::default() };
     // Forgetting shows in a few seconds.
     model.transition.recipe_half_life_s = 20.0;

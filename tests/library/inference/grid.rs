@@ -162,7 +162,6 @@ fn grid(kitchen: &Kitchen, belief: &DirichletBelief) -> (Vec<Particle>, Vec<f64>
                 of: broken(&mean, &supports, &shares),
                 read: vec![false; kitchen.locations.len()],
                 read_signal: false,
-                focus: None,
             });
             weights.push(weight);
         }

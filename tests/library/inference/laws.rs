@@ -12,6 +12,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceSettings};
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 use super::{any_number, any_state, check_proper, looks_at_nothing};
@@ -105,14 +106,7 @@ impl Bench {
 
 /// Coarse, for tests of many presses.
 fn coarse() -> HumanModel {
-    let inference = InferenceSettings {
-        beliefs: 8,
-        states: 4,
-        min_effective: 2.0,
-        max_beliefs: 16,
-        predictions: 8,
-        waiting: false,
-    };
+    let inference = InferenceSettings { beliefs: 8, states: 4, min_effective: 2.0, max_beliefs: 16, predictions: 8 };
     HumanModel { inference, ..HumanModel::default() }
 }
 
@@ -124,7 +118,6 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
         1 => ObservedEvidence::Paused,
         2 => ObservedEvidence::Resumed,
         3 => ObservedEvidence::Displayed { state: any_state(kitchen, random) },
-        12 => ObservedEvidence::Waited { longer: random.random() },
         4 => ObservedEvidence::Told { location: LocationId(random.random_range(0..kitchen.locations.len()) as u8) },
         5..=7 => {
             let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
@@ -354,7 +347,7 @@ fn an_unseen_press_of_the_robot_makes_uncertain_what_its_policy_may_change_and_n
 
 #[test]
 fn recipes_are_forgotten_with_their_half_life_and_pauses_do_not_count() {
-    let mut bench = Bench::new("sushi", HumanModel::default());
+    let mut bench = Bench::new("sushi", HumanModel { signal: PAPER_2021.signal, ..HumanModel::default() });
     bench.order(0.5, "order_1", "tuna maki");
     bench.observe(1.0, ObservedEvidence::Told { location: bench.location("order_1") });
     assert!(bench.p("recipe of tuna maki", "tuna maki") > 0.999 && bench.p("order_1", "tuna maki") > 0.999);
@@ -389,14 +382,7 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
-    let inference = InferenceSettings {
-        beliefs: 32,
-        states: 8,
-        min_effective: 30.0,
-        max_beliefs: 256,
-        predictions: 8,
-        waiting: false,
-    };
+    let inference = InferenceSettings { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
     let mut bench = Bench::new("sushi", HumanModel { inference, ..HumanModel::default() });
     bench.order(0.5, "order_1", "salmon nigiri");
     bench.look(1.0, 6.0, "order_1", 120.0);

@@ -1,28 +1,22 @@
 //! Inference of the human's belief against exact computation, against humans who are simulated from the model itself, against
 //! its own plain reference, and under whatever may come.
 
-mod adaptation;
 mod calibration;
 mod drop_outs;
 mod exact;
-mod failed_serving;
 mod fitting;
 mod fitting_answers;
 mod fitting_intervals;
-mod fitting_people;
 mod freezes;
 mod grid;
 mod laws;
 mod observed;
-mod order_focus;
+mod paper;
 mod particles;
 mod proposals;
-mod reading_begins;
-mod recall;
 mod recorded;
 mod signals;
 mod unknown_gaze;
-mod waiting;
 mod world;
 
 use rand::RngExt;
@@ -30,11 +24,12 @@ use tomcom::base::rng::Stream;
 use tomcom::kitchen::{Kitchen, LocationId, State};
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::model::{HumanModel, LookingModel};
+use tomcom::mind::named_models::PAPER_2021;
 
-/// A human who looks at nothing while the gaze is unknown.
+/// A human who looks at nothing while the gaze is unknown, and believes signals at once.
 fn looks_at_nothing() -> HumanModel {
     let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
-    HumanModel { looking, ..HumanModel::default() }
+    HumanModel { looking, signal: PAPER_2021.signal, ..HumanModel::default() }
 }
 
 /// Holds a Dirichlet against what every one must be.

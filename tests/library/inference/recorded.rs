@@ -5,7 +5,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, LocationId, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{AdaptationSettings, HumanModel};
+use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 use tomcom::mind::signal_model::SignalModel;
@@ -33,50 +33,6 @@ fn they_agree_without_gaze() {
     agree(HumanModel::default(), |what| !matches!(what, ObservedEvidence::Gaze { .. }), |same| same);
 }
 
-#[test]
-fn they_agree_where_waiting_is_evidence() {
-    let mut model = HumanModel::default();
-    model.inference.waiting = true;
-    agree(model, |_| true, with_waits);
-}
-
-#[test]
-fn they_agree_where_the_lapse_is_learned() {
-    let mut model = HumanModel::default();
-    model.adapt.lapse = true;
-    agree(model, |_| true, |same| same);
-}
-
-#[test]
-fn they_agree_where_lapse_and_attention_are_learned() {
-    let model = HumanModel { adapt: AdaptationSettings::ALL, ..HumanModel::default() };
-    agree(model, |_| true, |same| same);
-}
-
-#[test]
-fn they_agree_without_gaze_where_the_attention_is_learned() {
-    let mut model = reads_in_time();
-    model.adapt.attention = true;
-    agree(model, |what| !matches!(what, ObservedEvidence::Gaze { .. }), with_signals);
-}
-
-#[test]
-fn they_agree_where_people_consider_one_order() {
-    agree(considers_one_order(), |_| true, |same| same);
-}
-
-#[test]
-fn they_agree_without_gaze_where_people_consider_one_order() {
-    agree(considers_one_order(), |what| !matches!(what, ObservedEvidence::Gaze { .. }), |same| same);
-}
-
-/// A human who mostly considers one order.
-fn considers_one_order() -> HumanModel {
-    let mut model = HumanModel::default();
-    model.decision.one_order = 0.8;
-    model
-}
-
 /// A human who reads signals in time.
 fn reads_in_time() -> HumanModel {
     let signal = SignalModel {
@@ -84,7 +40,6 @@ fn reads_in_time() -> HumanModel {
         highlight_noticed: Some(0.6),
         delay_s: 1.0,
         misread: 0.05,
-        noticed_precision: 4.0,
         ..SignalModel::default()
     };
     HumanModel { signal, ..HumanModel::default() }
@@ -117,22 +72,7 @@ fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
     all
 }
 
-/// After every third press of the human, a second later, it has waited for longer than usual.
-fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
-    let is_own = |what: &ObservedEvidence| matches!(what, ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }));
-    let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
-    let waits: Vec<Observation> = own
-        .map(|one| Observation {
-            time: one.time + SessionTime::from_secs_f64(1.0),
-            what: ObservedEvidence::Waited { longer: 0.2 },
-        })
-        .collect();
-    let mut all = [observations, waits].concat();
-    all.sort_by_key(|one| one.time);
-    all
-}
-
-/// What a filter has after a press or a wait: the means of its estimate, and the log likelihood if it was a press of the human.
+/// What a filter has after a press: the means of its estimate, and the log likelihood if it was a press of the human.
 struct Step {
     means: Vec<Vec<f64>>,
     log_p: Option<f64>,
@@ -149,8 +89,7 @@ fn steps(
             ObservedEvidence::Pressed(Press { agent, .. }) => Some(agent),
             _ => None,
         };
-        let is_step = pressed.is_some() || matches!(observation.what, ObservedEvidence::Waited { .. });
-        let (belief, log_p) = after(observation, is_step)?;
+        let (belief, log_p) = after(observation, pressed.is_some())?;
         Some(Step { means: means(&belief), log_p: log_p.filter(|_| pressed == Some(Agent::Human)) })
     };
     observations.iter().filter_map(step).collect()

@@ -11,6 +11,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::belief_set::ParticleSet;
 use tomcom::mind::reference::person::Particle;
@@ -20,7 +21,7 @@ use super::looks_at_nothing;
 
 /// A human who reads signals in time, and looks at nothing else while the gaze is unknown.
 fn reads_in_time() -> HumanModel {
-    let signal = SignalModel { noticed: 0.8, delay_s: 1.0, noticed_precision: 4.0, ..SignalModel::default() };
+    let signal = SignalModel { noticed: 0.8, delay_s: 1.0, ..SignalModel::default() };
     HumanModel { signal, ..looks_at_nothing() }
 }
 
@@ -99,8 +100,7 @@ fn a_known_look_at_the_signal_reads_it() {
     bench.gaze(3.0, 5.0, "cooking_pot");
     let read = bench.read(5.0);
     assert!((read - expected).abs() < 0.01, "{read}");
-    let heard = bench.filter.forecast().probability(LocationKind::Order);
-    assert!((heard - (4.0 * 0.8 + read) / 5.0).abs() < 1e-9, "one more signal that was read: {heard}");
+    assert_eq!(bench.filter.forecast().probability(LocationKind::Order), 0.8);
 }
 
 #[test]
@@ -112,14 +112,6 @@ fn gaze_that_is_elsewhere_for_all_of_its_time_has_missed_it() {
     assert!(bench.learned().abs() < FORGOTTEN, "{}", bench.learned());
     let read = bench.read(5.0);
     assert!(read < 0.01, "{read}");
-    for (missed, begins) in [(1.0, 6.0), (2.0, 12.0)] {
-        let noticed = bench.filter.forecast().probability(LocationKind::Place);
-        assert!((noticed - 4.0 * 0.8 / (4.0 + missed)).abs() < 0.01, "{missed} missed: {noticed}");
-        bench.gaze(begins, begins + 0.5, "cooking_pot");
-        bench.tell(begins + 0.5);
-        bench.gaze(begins + 0.5, begins + 4.5, "cooking_pot");
-        bench.read(begins + 4.5);
-    }
 }
 
 #[test]
@@ -195,7 +187,7 @@ fn without_a_delay_a_signal_is_believed_at_once_and_never_counted() {
 
 #[test]
 fn a_signal_without_a_delay_is_one_event_that_is_noticed_or_not_and_may_be_misread() {
-    let signal = SignalModel { noticed: 0.6, highlight_noticed: Some(0.3), misread: 0.2, ..SignalModel::default() };
+    let signal = SignalModel { noticed: 0.6, highlight_noticed: Some(0.3), misread: 0.2, ..PAPER_2021.signal };
     let mut model = HumanModel { signal, ..looks_at_nothing() };
     // Beliefs that no draw of the prior makes certain.
     (model.prior.location_truth, model.prior.location_precision) = (0.5, 50.0);

@@ -12,6 +12,7 @@ use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::mind::model::HumanModel;
+use tomcom::mind::named_models::PAPER_2021;
 use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::belief_set::ParticleSet;
 use tomcom::mind::reference::person::pick;
@@ -37,6 +38,8 @@ pub fn tiny_model() -> HumanModel {
     model.prior.location_truth = 0.99999;
     model.prior.location_precision = 100.0;
     model.inference.states = 4096;
+    // The grid of exact beliefs has no signals that wait to be read.
+    model.signal = PAPER_2021.signal;
     model
 }
 

@@ -33,7 +33,7 @@ impl Trial {
 
     fn highlight(&mut self, place: &str, by: Sender) {
         let signal = Signal::Highlight(place.to_string());
-        self.event(Event::SignalShown { by, signal, accepted: None, offer: None });
+        self.event(Event::SignalShown { by, signal, offer: None });
     }
 
     /// From now on only these places are believed wrong.

@@ -1,4 +1,5 @@
-//! Traits that nobody has in the calibrated population: stubbornness, wrong recipes that one is sure of, right guesses of the robot.
+//! Traits that nobody has in the calibrated population: stubbornness, wrong recipes that one is sure of, right guesses of the
+//! robot, not knowing how to go on.
 
 use tomcom::communication::Signal;
 use tomcom::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
@@ -11,14 +12,7 @@ fn exactly(median: f64) -> TraitSpread {
 }
 
 #[test]
-fn people_without_a_trait_are_as_they_were_before_it_existed() {
-    let text = serde_json::to_string(&Population::default()).expect("JSON");
-    let answers = ["answers_wrong", "answers_from", "answer_s"];
-    for name in ["keeps_own_recipe", "misremembers", "guesses_robot"].into_iter().chain(answers) {
-        assert!(!text.contains(name), "{name} stands in every recording");
-    }
-    let read: Population = serde_json::from_str(&text).expect("a population");
-    assert_eq!(read, Population::default());
+fn a_trait_changes_no_other_trait_of_a_person() {
     // Traits are drawn one after the other from one stream: a new one does not change those before it.
     let plain = Bench::new(&Population::default(), 5);
     let stubborn = Bench::new(&Population { keeps_own_recipe: exactly(0.5), ..Population::default() }, 5);
@@ -26,6 +20,47 @@ fn people_without_a_trait_are_as_they_were_before_it_existed() {
     assert_eq!((before.keeps_own_recipe, after.keeps_own_recipe), (0.0, 0.5));
     after.keeps_own_recipe = 0.0;
     assert_eq!(before, after);
+}
+
+/// People who see everything rightly, recall no recipe anew and, after each press of theirs, do not know how to go on.
+fn stuck() -> Population {
+    let never = exactly(0.000_001);
+    Population {
+        gets_stuck: exactly(0.999_999),
+        misreads: never,
+        loses_thread_per_min: exactly(0.0001),
+        takes_hints: never,
+        ..Population::default()
+    }
+}
+
+/// Number of presses of 20 such people in half a minute after half a minute, in which `what` happens.
+fn presses_after(population: &Population, what: impl Fn(&mut Bench)) -> usize {
+    let of_one = |seed: u64| {
+        let mut bench = Bench::new(population, seed);
+        bench.order("order_1", "salmon maki");
+        bench.pass(30.0);
+        let before = bench.presses.len();
+        what(&mut bench);
+        bench.pass(30.0);
+        bench.presses.len() - before
+    };
+    (0..20).map(of_one).sum()
+}
+
+#[test]
+fn who_does_not_know_how_to_go_on_waits_until_something_changes_or_a_signal_is_read() {
+    let usual = presses_after(&Population { gets_stuck: exactly(0.0), ..stuck() }, |_| ());
+    let alone = presses_after(&stuck(), |_| ());
+    let told = presses_after(&stuck(), |bench| {
+        let counter = bench.location("counter");
+        bench.one.on_signal(bench.now, Some(counter), &Signal::Highlight("counter".to_string()));
+    });
+    let changed = presses_after(&stuck(), |bench| bench.put("counter", "crab raw"));
+    println!("presses of 20 people in 30 s: {usual}; stuck {alone}, {told} after a signal, {changed} after a change");
+    assert!(usual > 50 && alone < usual / 8, "{usual}, {alone}");
+    assert!(told >= alone + 10, "four of five read the signal: {told}, {alone}");
+    assert!(changed >= alone + 15, "they look around and see the change: {changed}, {alone}");
 }
 
 /// In how many of 100 cases the recipe is known after it was shown to somebody who did not know it.

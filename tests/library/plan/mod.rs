@@ -2,7 +2,6 @@
 //! what happens around a trial.
 
 mod assignment;
-mod fitted;
 mod progress;
 mod protocol;
 mod questionnaires;

@@ -80,10 +80,6 @@ fn an_answer_in_the_log_is_a_number_a_text_or_a_list() {
         assert_eq!(written, format!(r#"{{"what":"item_answered","item":"one","answer":{json}}}"#));
         assert_eq!(serde_json::from_str::<ProtocolEvent>(&written).expect("the same event"), event);
     }
-    // The consent of recordings from before it had place and text.
-    let before = r#"{"what":"consent_given"}"#;
-    let event: ProtocolEvent = serde_json::from_str(before).expect("an event");
-    assert_eq!(serde_json::to_string(&event).expect("JSON"), before);
 }
 
 #[test]

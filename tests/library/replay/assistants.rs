@@ -19,8 +19,8 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::ComparedContent;
-use tomcom::mind::model::AdaptationSettings;
-use tomcom::mind::signal_model::SignalModel;
+use tomcom::mind::named_models::PAPER_2021;
+use tomcom::participant::population::{Population, TraitSpread};
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::run::replay::RecordingReplay;
@@ -146,13 +146,13 @@ fn a_replay_asks_what_the_running_session_asked() {
 }
 
 #[test]
-fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
+fn what_is_asked_in_silence_comes_out_the_same_again() {
     for name in SESSIONS {
         let out = with_assistant(name, "other-moments", (2, 90.0), |spec| {
-            (spec.assistant.asks_in_silence, spec.assistant.asks_by_gaze) = (true, true);
-            spec.human.inference.waiting = true;
+            let stuck = TraitSpread { median: 0.3, sigma: 0.0 };
+            spec.participant.population = Some(Population { gets_stuck: stuck, ..Population::default() });
         });
-        let mut counts = [0; 3];
+        let mut counts = [0; 2];
         for trial in ["seed1-S001", "seed1-S002"] {
             let log = out.join(trial).join(LOG_NAME);
             let found = verify(&log).expect("a recording");
@@ -162,36 +162,14 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
             while let Some(line) = reader.next_line().expect("a line") {
                 match line.stamped.event {
                     Event::HumanWaits { .. } => counts[0] += 1,
-                    Event::SeemsUnaware { .. } => counts[1] += 1,
-                    Event::Advised(advice) => counts[2] += usize::from(asked.contains(&advice.for_seq)),
+                    Event::Advised(advice) => counts[1] += usize::from(asked.contains(&advice.for_seq)),
                     _ => continue,
                 }
                 asked.push(line.stamped.seq);
             }
         }
-        println!("{name}: silences, aspects unaware of, and advice after these: {counts:?}");
+        println!("{name}: silences, and advice after these: {counts:?}");
         assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
-    }
-}
-
-#[test]
-fn an_assistant_that_learns_lapse_and_attention_comes_out_the_same_again() {
-    for name in SESSIONS {
-        let out = ["adapting", "adapting-again"].map(|out| {
-            let out = with_assistant(name, out, (1, 60.0), |spec| {
-                (spec.assistant.asks_by_gaze, spec.human.inference.waiting) = (true, true);
-                spec.human.adapt = AdaptationSettings::ALL;
-            });
-            out.join("seed1-S001").join(LOG_NAME)
-        });
-        same(&out[0], &out[1]);
-        let found = verify(&out[0]).expect("a recording");
-        assert!(found.verified, "{name}: {:?}", found.difference);
-        let header = fs::read_to_string(&out[0]).expect("a recording");
-        assert!(
-            header.contains(r#""adapt":{"lapse":true,"attention":true}"#),
-            "{name}: the header says what is learned"
-        );
     }
 }
 
@@ -219,7 +197,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
     (files.spec.human.looking.looks_hz, files.spec.human.looking.other_looks_hz) = (0.0, 0.0);
     files.spec.human.looking.capture = 0.0;
     // A signal is believed at once: what is tried is from when on it counts.
-    files.spec.human.signal = SignalModel::default();
+    files.spec.human.signal = PAPER_2021.signal;
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
     let mut engine = SessionEngine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
     let mut random = stream(4, "presses", 0);
@@ -230,7 +208,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
         (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
-        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None })
+        (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None })
     }));
     inputs.push((80.0, Event::TrialEnded { reason: TrialEndReason::Wizard }));
     inputs.push((81.0, Event::SessionEnded));

@@ -2,6 +2,7 @@
 
 mod assistants;
 mod equality;
+mod golden;
 mod list_cache;
 mod offers;
 mod probes;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
-use tomcom::communication::{Sender, signals};
+use tomcom::communication::{HighlightSet, Sender, signals};
 use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::gaze::GazeSample;
@@ -61,7 +62,7 @@ fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> Pat
 
 /// Whatever wizard, participant and tracker may do, as a seeded mess.
 fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
-    let signals = signals(kitchen, true);
+    let signals = signals(kitchen, HighlightSet::ALL);
     let buttons = &kitchen.buttons[Agent::Human.index()];
     match random.random_range(0..40) {
         0 => Event::TrialPaused,
@@ -87,7 +88,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         }
         11..14 => {
             let (_, signal) = &signals[random.random_range(0..signals.len())];
-            Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None }
+            Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None }
         }
         14..24 => {
             let [x, y, confidence] = [1.2, 1.2, 1.0].map(|scale| scale * random.random::<f64>());

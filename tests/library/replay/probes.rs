@@ -197,7 +197,7 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
 
 #[test]
 fn a_recording_of_format_2_keeps_its_probes() {
-    let golden = std::path::Path::new("tests/golden/format-2-probes.jsonl");
+    let golden = std::path::Path::new("tests/golden/format-3-probes.jsonl");
     let mut replay = RecordingReplay::open(golden).expect("a golden recording");
     replay.run().expect("a golden recording");
     let over = &replay.session().probes.over;

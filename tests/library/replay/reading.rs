@@ -123,7 +123,7 @@ fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
             changed.collect::<Vec<String>>().join("\n") + "\n"
         }
     };
-    refused(&log, 1, &["format version 9", "format version 1 to 2"], line(1, "\"version\":2", "\"version\":9"));
+    refused(&log, 1, &["format version 9", "format version 3"], line(1, "\"version\":3", "\"version\":9"));
     refused(&log, 1, &["no header"], |text| text.split_once('\n').map_or(String::new(), |(_, rest)| rest.to_string()));
     refused(&log, 1, &["press_s = -2.4", "from 0.05 to 60 s"], line(1, "\"press_s\":2.4", "\"press_s\":-2.4"));
     refused(&log, 3, &["\"order_9\"", "a location of the layout"], line(3, "order_1", "order_9"));

@@ -32,7 +32,7 @@ fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<TimestampedEvent>) {
 
 #[test]
 fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
-    for name in ["format-1-hand.jsonl", "format-1-simulated.jsonl"] {
+    for name in ["format-3-hand.jsonl", "format-3-simulated.jsonl"] {
         let (moments, events) = shown(&Path::new("tests/golden").join(name));
         let times: Vec<SessionTime> = moments.iter().map(|moment| moment.time).collect();
         assert!(times.is_sorted(), "{name}: moments come in the order of their times");

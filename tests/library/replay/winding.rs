@@ -85,7 +85,7 @@ fn a_recording_that_is_read_bit_by_bit_is_the_same_as_one_that_is_read_at_once()
 /// What is before the trial is read, but a console begins at the trial's start.
 #[test]
 fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
-    let recording = Path::new("tests/golden/format-1-hand.jsonl");
+    let recording = Path::new("tests/golden/format-3-hand.jsonl");
     let mut whole = SeekableReplay::open(recording).expect("it opens");
     let mut slow = SeekableReplay::begin(recording).expect("it opens");
     slow.read_to_trial().expect("events");
@@ -100,7 +100,7 @@ fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
 
 #[test]
 fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
-    let recording = Path::new("tests/golden/format-1-hand.jsonl");
+    let recording = Path::new("tests/golden/format-3-hand.jsonl");
     let mut open = SeekableReplay::open(recording).expect("it opens");
     let mut blind = SeekableReplay::open(recording).expect("it opens").blinded();
     let is_signal = |film: &SeekableReplay| {

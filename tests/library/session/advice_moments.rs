@@ -1,20 +1,9 @@
-//! When the assistant is asked besides presses and changes of the task: in unusual silence, and by gaze.
+//! When the assistant is asked besides presses and changes of the task: once in every unusual silence.
 
-use std::collections::BTreeMap;
-
-use tomcom::gaze::GazeSample;
-use tomcom::run::engine::{InputResult, SessionEngine};
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
-use tomcom::session::settings::{GazeSource, SessionSpec};
 
 use super::{at, check, engine, press};
-
-/// Seconds between the first presses: of eight intervals, seven are at most 1.6 s.
-const INTERVALS_S: [f64; 8] = [1.3, 1.0, 1.7, 1.1, 1.6, 1.2, 1.5, 1.4];
-
-fn asks_in_silence(spec: &mut SessionSpec) {
-    spec.assistant.asks_in_silence = true;
-}
 
 /// A trial with presses in these intervals; the time of the last.
 fn pressed(engine: &mut SessionEngine, intervals_s: &[f64]) -> (Vec<(&'static str, f64)>, f64) {
@@ -27,122 +16,65 @@ fn pressed(engine: &mut SessionEngine, intervals_s: &[f64]) -> (Vec<(&'static st
     (check(engine, &inputs), now_s)
 }
 
+fn later(seconds: f64) -> (f64, Event) {
+    (seconds, Event::Marker { note: "later".to_string() })
+}
+
 fn waits(kinds: &[(&str, f64)]) -> Vec<f64> {
     kinds.iter().filter(|(kind, _)| *kind == "human_waits").map(|(_, seconds)| *seconds).collect()
 }
 
+/// The silences after the last press are noted at these seconds since then, and the assistant is asked at each.
+fn check_silences(engine: &mut SessionEngine, last_s: f64, until_s: f64, expected_s: &[f64]) {
+    engine.take_questions();
+    let found = waits(&check(engine, &[later(last_s + until_s)]));
+    assert_eq!(found.len(), expected_s.len(), "{found:?} after {last_s}");
+    let asked = engine.take_questions();
+    for (found, expected) in found.iter().zip(expected_s) {
+        assert!((found - last_s - expected).abs() < 1e-6, "{found} after {last_s}, {expected}");
+        assert!(asked.iter().any(|request| request.time == at(*found)), "the assistant is asked then");
+    }
+}
+
 #[test]
-fn a_silence_is_unusual_once_it_is_longer_than_four_fifths_of_the_own_intervals() {
-    let mut asking = engine(asks_in_silence);
-    let (kinds, last_s) = pressed(&mut asking, &INTERVALS_S);
-    assert!(waits(&kinds).is_empty(), "too few intervals: {kinds:?}");
-    asking.take_questions();
-    let kinds = check(&mut asking, &[(last_s + 60.0, Event::Marker { note: "later".to_string() })]);
+fn a_silence_is_unusual_after_three_usual_intervals_and_again_after_each_three() {
+    let mut slow = engine(|_| ());
+    let (kinds, last_s) = pressed(&mut slow, &[4.0, 5.0, 3.0, 9.0, 4.5]);
+    assert!(waits(&kinds).is_empty(), "{kinds:?}");
+    check_silences(&mut slow, last_s, 41.0, &[13.5, 27.0, 40.5]);
+}
+
+#[test]
+fn a_silence_of_six_seconds_is_unusual_whoever_presses_faster_or_not_at_all() {
+    let mut fast = engine(|_| ());
+    let (_, last_s) = pressed(&mut fast, &[1.0, 1.2, 0.9]);
+    check_silences(&mut fast, last_s, 13.0, &[6.0, 12.0]);
+    let mut passive = engine(|_| ());
+    check(&mut passive, &[(0.0, Event::TrialStarted)]);
+    check_silences(&mut passive, 0.0, 13.0, &[6.0, 12.0]);
+}
+
+#[test]
+fn a_press_ends_the_silence_and_a_pause_is_none() {
+    let mut engine = engine(|_| ());
+    let (_, last_s) = pressed(&mut engine, &[1.0, 1.0, 1.0]);
+    let kinds = check(&mut engine, &[later(last_s + 5.0), (last_s + 5.5, press("trash")), later(last_s + 11.0)]);
+    assert!(waits(&kinds).is_empty(), "{kinds:?}");
+    let now_s = last_s + 11.0;
+    let kinds =
+        check(&mut engine, &[(now_s, Event::TrialPaused), (now_s + 10.0, Event::TrialResumed), later(now_s + 12.0)]);
     let found = waits(&kinds);
-    assert_eq!(found.len(), 1, "once between two presses: {kinds:?}");
-    assert!((found[0] - last_s - 1.6).abs() < 1e-6, "{found:?} after {last_s}");
-    let asked = asking.take_questions();
-    assert!(asked.iter().any(|request| request.time == at(last_s + 1.6)), "the assistant is asked then");
+    assert!(found.len() == 1 && (found[0] - last_s - 5.5 - 16.0).abs() < 1e-6, "{found:?} after {last_s}");
 }
 
 #[test]
-fn with_fewer_intervals_or_without_the_setting_no_silence_is_unusual() {
-    let later = |last_s: f64| (last_s + 60.0, Event::Marker { note: "later".to_string() });
-    let mut few = engine(asks_in_silence);
-    let (_, last_s) = pressed(&mut few, &INTERVALS_S[1..]);
-    assert!(waits(&check(&mut few, &[later(last_s)])).is_empty());
-    let mut off = engine(|_| ());
-    let (_, last_s) = pressed(&mut off, &INTERVALS_S);
-    assert!(waits(&check(&mut off, &[later(last_s)])).is_empty());
-}
-
-#[test]
-fn a_pause_is_no_silence() {
-    let mut asking = engine(asks_in_silence);
-    let (_, last_s) = pressed(&mut asking, &INTERVALS_S);
-    let kinds = check(
-        &mut asking,
-        &[
-            (last_s + 1.0, Event::TrialPaused),
-            (last_s + 11.0, Event::TrialResumed),
-            (last_s + 20.0, Event::Marker { note: "later".to_string() }),
-        ],
-    );
-    let found = waits(&kinds);
-    assert!(found.len() == 1 && (found[0] - last_s - 11.6).abs() < 1e-6, "{found:?} after {last_s}");
-}
-
-#[test]
-fn where_waiting_is_evidence_it_is_recorded_and_nobody_is_asked() {
-    let mut heeds = engine(|spec| spec.human.inference.waiting = true);
-    let (_, last_s) = pressed(&mut heeds, &INTERVALS_S);
-    let before = heeds.take_questions().len();
-    let InputResult { events, .. } = heeds.input(at(last_s + 1.7), Event::Marker { note: "later".to_string() });
-    let waited = events.iter().find(|stamped| matches!(stamped.event, Event::HumanWaits { .. })).expect("a silence");
-    assert_eq!(waited.event, Event::HumanWaits { silent_ns: at(1.6) });
-    assert!(before > 0 && heeds.take_questions().iter().all(|request| request.seq != waited.seq));
-}
-
-/// Looks at one point of the display, 30 times a second, until a time; the events.
-fn gazing(engine: &mut SessionEngine, point: [f64; 2], from_s: f64, until_s: f64) -> Vec<(f64, Event)> {
-    let samples = ((until_s - from_s) * 30.0) as u32;
-    let mut events = Vec::new();
-    for number in 0..samples {
-        let now = at(from_s + f64::from(number) / 30.0);
-        let InputResult { events: new, refused } =
-            engine.input(now, Event::Gaze(GazeSample::new(point[0], point[1], 1.0)));
-        assert_eq!(refused, None);
-        events.extend(new.into_iter().map(|stamped| (stamped.time.as_secs_f64(), stamped.event)));
-    }
-    events
-}
-
-#[test]
-fn a_change_that_is_looked_past_for_a_second_leads_to_one_question() {
-    let mut asking = engine(|spec| {
-        spec.participant.gaze = GazeSource::Mouse;
-        spec.assistant.asks_by_gaze = true;
+fn the_silence_that_is_recorded_is_the_time_since_the_last_press() {
+    let mut engine = engine(|_| ());
+    let (_, last_s) = pressed(&mut engine, &[1.0]);
+    let events = engine.input(at(last_s + 13.0), Event::Marker { note: String::new() }).events;
+    let silences = events.iter().filter_map(|stamped| match stamped.event {
+        Event::HumanWaits { silent_ns } => Some(silent_ns),
+        _ => None,
     });
-    let mut events: Vec<(f64, Event)> = Vec::new();
-    let started = asking.input(at(0.0), Event::TrialStarted).events;
-    events.extend(started.into_iter().map(|stamped| (stamped.time.as_secs_f64(), stamped.event)));
-    events.extend(gazing(&mut asking, [0.001, 0.001], 0.01, 20.0));
-    let mut presses_s = Vec::new();
-    let mut told: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-    for (time_s, event) in &events {
-        match event {
-            Event::Press { .. } => presses_s.push(*time_s),
-            Event::SeemsUnaware { aspect } => told.entry(aspect.clone()).or_default().push(*time_s),
-            _ => {}
-        }
-    }
-    println!("robot presses at {presses_s:?}, seems unaware: {told:?}");
-    assert!(!told.is_empty(), "the robot changed something, and nobody looked");
-    for (aspect, times) in &told {
-        // Between two questions about one aspect lies a press of the robot, which changed it, and a second of gaze after it.
-        for (index, &time_s) in times.iter().enumerate() {
-            let since = index.checked_sub(1).map_or(0.0, |before| times[before]);
-            let is_between = |press_s: &&f64| **press_s > since && **press_s <= time_s - 1.0 + 0.04;
-            assert!(presses_s.iter().any(|press_s| is_between(&press_s)), "{aspect}: {time_s} since {since}");
-        }
-    }
-    let asked = asking.take_questions();
-    let first = told.values().flatten().copied().fold(f64::INFINITY, f64::min);
-    assert!(asked.iter().any(|request| (request.time.as_secs_f64() - first).abs() < 1e-6), "it is asked then");
-}
-
-#[test]
-fn who_looks_at_what_changes_is_not_asked_about() {
-    let mut asking = engine(|spec| {
-        spec.participant.gaze = GazeSource::Mouse;
-        spec.assistant.asks_by_gaze = true;
-    });
-    let kitchen = asking.session().kitchen.clone();
-    let hand = kitchen.hands[tomcom::kitchen::Agent::Robot.index()];
-    let point = kitchen.location(hand).display.centre();
-    let _ = asking.input(at(0.0), Event::TrialStarted);
-    let events = gazing(&mut asking, point, 0.01, 20.0);
-    let name = &kitchen.location(hand).name;
-    let told = events.iter().filter(|(_, event)| matches!(event, Event::SeemsUnaware { aspect } if aspect == name));
-    assert_eq!(told.count(), 0);
+    assert_eq!(silences.collect::<Vec<_>>(), [at(6.0), at(12.0)]);
 }

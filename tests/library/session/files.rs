@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use tomcom::communication::{Signal, signals};
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
+use tomcom::mind::named_models::{PAPER_2021, PLAIN};
 use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
-use tomcom::session::wall_display::{DisplaySpec, RobotDepiction};
 
 #[test]
 fn every_session_file_loads_and_its_keys_are_unambiguous() {
@@ -27,17 +28,48 @@ fn the_default_session_spells_out_every_default() {
     let path = Path::new("sessions/default.toml");
     let only_layout: SessionSpec = parse(path, "layout = \"../layouts/sushi.toml\"").expect("a session file");
     let spec = read_session(path).expect("the default session").spec;
-    // But for the reasons of presses without effect and the robot's hand, which a recording without the setting does not show; for the
-    // number of served orders, which such a recording shows; for the arm, which is
-    // timed where nothing is said, as in recordings of before there was another; and for what is fitted to its simulated
-    // participant: the human model.
+    // But for the arm, which is timed where nothing is said.
     let robot = RobotSpec { arm: ArmKind::Timed, ..spec.robot };
-    assert_ne!(spec.human, only_layout.human);
-    assert_eq!((spec.display.reasons, only_layout.display.reasons), (Some(true), None));
-    assert_eq!((spec.display.arm, only_layout.display.arm), (Some(RobotDepiction::Hand), None));
-    assert_eq!((spec.display.served, only_layout.display.served), (Some(false), None));
-    let display = DisplaySpec { reasons: None, served: None, arm: None, ..spec.display };
-    assert_eq!(SessionSpec { human: only_layout.human.clone(), robot, display, ..spec }, only_layout);
+    assert_eq!(SessionSpec { robot, ..spec }, only_layout);
+}
+
+#[test]
+fn a_session_names_a_model_and_sets_single_parameters_on_top_of_it() {
+    let read = |settings: &str| SessionSpec::from_toml(&format!("layout = \"\"\n{settings}"));
+    let spec = read("[human]\nmodel = \"paper-2021\"\n[human.decision]\ntau = 3.0\n").expect("settings");
+    let mut wanted = PAPER_2021;
+    wanted.decision.tau = 3.0;
+    assert_eq!(spec.human, wanted);
+    assert_eq!(spec.human.differences(), ["decision.tau = 3.0, not 4.0"]);
+    assert_eq!(read("").expect("settings").human, PLAIN);
+    let header = serde_json::to_string(&spec).expect("JSON");
+    assert_eq!(serde_json::from_str::<SessionSpec>(&header).expect("the same settings"), spec);
+    let unknown = read("[human]\nmodel = \"paper\"\n").expect_err("no such model").to_string();
+    assert!(unknown.contains("paper-2021"), "{unknown}");
+}
+
+#[test]
+fn signals_highlight_what_session_or_model_name() {
+    let setup = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let kitchen = setup.kitchen.kitchen;
+    let highlighted = |spec: &SessionSpec| {
+        let all = signals(&kitchen, spec.highlights(&kitchen)).into_iter();
+        let names = all.filter_map(|(_, signal)| match signal {
+            Signal::Highlight(name) => Some(name),
+            _ => None,
+        });
+        names.collect::<Vec<String>>()
+    };
+    let mut spec = setup.spec;
+    let usual = highlighted(&spec);
+    assert!(usual.contains(&"counter".to_string()) && !usual.contains(&"human_hand".to_string()), "{usual:?}");
+    spec.human = PAPER_2021;
+    assert_eq!(highlighted(&spec), ["robot_hand", "assembly_board"]);
+    spec.signals.highlights = Some(vec!["human_hand".to_string()]);
+    assert_eq!(highlighted(&spec), ["human_hand"]);
+    assert!(spec.check_kitchen(&kitchen).is_ok());
+    spec.signals.highlights = Some(vec!["cellar".to_string()]);
+    assert_eq!(spec.check_kitchen(&kitchen).expect_err("no such place").path, "signals.highlights");
 }
 
 #[test]

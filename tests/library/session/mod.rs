@@ -29,13 +29,18 @@ fn kitchen() -> Arc<Kitchen> {
 
 /// An engine of the default session with a person at the keyboard and a timed arm, and `change`d settings.
 fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
+    engine_of_trial(0, change)
+}
+
+/// The same for another trial.
+fn engine_of_trial(trial: u64, change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
     spec.participant.kind = ParticipantKind::Keyboard;
     spec.participant.gaze = GazeSource::None;
     spec.robot.arm = ArmKind::Timed;
     change(&mut spec);
     let kitchen = kitchen();
-    SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
+    SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen))
 }
 
 fn at(seconds: f64) -> SessionTime {

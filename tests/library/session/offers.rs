@@ -58,7 +58,7 @@ fn marker(seconds: f64) -> (f64, Event) {
 }
 
 fn sent(seconds: f64, signal: Signal) -> (f64, Event) {
-    (seconds, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None })
+    (seconds, Event::SignalShown { by: Sender::Wizard, signal, offer: None })
 }
 
 /// Gives the inputs; the changes of offers with their seconds.
@@ -180,7 +180,7 @@ fn of_two_orders_of_one_dish_the_older_one_is_offered() {
 fn enter_means_what_was_read() {
     let target = |engine: &SessionEngine, seconds: f64| {
         let meant = offers::enter(engine.session(), at(seconds)).map(|(offer, event)| {
-            assert!(matches!(&event, Event::SignalShown { offer: Some(seq), accepted: None, .. } if *seq == offer.seq));
+            assert!(matches!(&event, Event::SignalShown { offer: Some(seq), .. } if *seq == offer.seq));
             offer.signal().and_then(Signal::target).expect("a location").to_string()
         });
         meant.unwrap_or_else(|reason| reason)
@@ -218,7 +218,7 @@ fn a_taken_offer_is_named_by_its_signal_and_is_not_sent_twice() {
     assert_eq!(again.refused, None, "it is the last offer still");
     let mut unknown = advised(|_| ());
     let (signal, by) = (highlight("counter"), Sender::Wizard);
-    let refused = unknown.input(at(1.0), Event::SignalShown { by, signal, accepted: None, offer: Some(3) }).refused;
+    let refused = unknown.input(at(1.0), Event::SignalShown { by, signal, offer: Some(3) }).refused;
     assert_eq!(refused.as_deref(), Some("the event names an offer that was not the last one"));
 }
 
@@ -255,9 +255,7 @@ fn whether_a_wizard_could_see_an_offer_is_recorded() {
 }
 
 #[test]
-fn an_assistant_that_acts_makes_no_offers_and_neither_does_an_old_recording() {
+fn an_assistant_that_acts_makes_no_offers() {
     let mut acting = advised(|spec| spec.trial.condition = Condition::Assistant);
     assert_eq!(changes(&mut acting, &[pot(1.0, 1.0), marker(9.0)]), []);
-    let mut old = advised(|_| ()).without_offers();
-    assert_eq!(changes(&mut old, &[pot(1.0, 1.0), marker(9.0)]), []);
 }

@@ -121,12 +121,8 @@ fn a_proposal_ends_by_another_press_by_a_change_that_spoils_it_and_after_its_tim
 
 #[test]
 fn only_the_assistant_of_dev_proposes() {
-    let propose = |by, press: &str| Event::SignalShown {
-        by,
-        signal: Signal::Propose(vec![press.to_string()]),
-        accepted: None,
-        offer: None,
-    };
+    let propose =
+        |by, press: &str| Event::SignalShown { by, signal: Signal::Propose(vec![press.to_string()]), offer: None };
     let (mut engine, _) = after_an_error(dev);
     assert!(refused(&mut engine, 2.0, propose(Sender::Wizard, "take rice")).contains("assistant"));
     assert!(refused(&mut engine, 2.0, propose(Sender::Assistant, "trash")).contains("do nothing"));

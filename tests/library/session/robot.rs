@@ -1,11 +1,22 @@
 //! The robot stopped, held, skipped and driven, and corrections of the kitchen.
 
-use tomcom::communication::Sender;
-use tomcom::kitchen::Agent;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::Event;
+use std::convert::Infallible;
 
-use super::{check, engine, press, refused};
+use tomcom::base::time::SessionTime;
+use tomcom::communication::Sender;
+use tomcom::communication::settings::ShadowMode;
+use tomcom::kitchen::Agent;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::participant::population::{Population, TraitSpread};
+use tomcom::robot::IdleReason;
+use tomcom::robot::initiative::own_ways;
+use tomcom::run::engine::SessionEngine;
+use tomcom::run::headless;
+use tomcom::session::orders::OrderList;
+use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply, silence};
+
+use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
 
 #[test]
 fn a_stopped_robot_gives_up_its_press_and_waits_for_the_wizard() {
@@ -14,8 +25,7 @@ fn a_stopped_robot_gives_up_its_press_and_waits_for_the_wizard() {
     assert!(started.contains(&("robot_intends", 0.0)), "{started:?}");
     let stopped = check(&mut engine, &[(1.0, Event::RobotStopped)]);
     assert_eq!(stopped, [("robot_stopped", 1.0), ("robot_aborts", 1.0)]);
-    let waits = check(&mut engine, &[(60.0, Event::Marker { note: String::new() })]);
-    assert_eq!(waits, [("marker", 60.0)]);
+    assert_eq!(run_on(&mut engine, 60.0), [("marker", 60.0)]);
     let goes_on = check(&mut engine, &[(61.0, Event::RobotResumed)]);
     assert_eq!(goes_on, [("robot_resumed", 61.0), ("robot_intends", 61.0)]);
 }
@@ -32,9 +42,11 @@ fn driven(button: &str) -> Event {
     Event::RobotDriven { by: Sender::Wizard, button: button.to_string() }
 }
 
-/// Lets the session run on to this time; what happened until then.
+/// Lets the session run on to this time; what happened until then, but for the silence of the human.
 fn run_on(engine: &mut SessionEngine, seconds: f64) -> Vec<(&'static str, f64)> {
-    check(engine, &[(seconds, Event::Marker { note: String::new() })])
+    let mut kinds = check(engine, &[(seconds, Event::Marker { note: String::new() })]);
+    kinds.retain(|(kind, _)| *kind != "human_waits");
+    kinds
 }
 
 #[test]
@@ -70,7 +82,7 @@ fn a_skipped_press_is_given_up_and_not_decided_for_again_at_once() {
     let only = intention(&lonely).expect("what is in the way is thrown away");
     let kinds = check(&mut lonely, &[(0.2, by_wizard(|by| Event::RobotSkipped { by }))]);
     if kinds.iter().any(|(kind, _)| *kind == "robot_idles") {
-        assert_eq!(lonely.session().robot.idle, Some(tomcom::robot::IdleReason::Skipped));
+        assert_eq!(lonely.session().robot.idle, Some((IdleReason::Skipped, Vec::new())));
         let kinds = run_on(&mut lonely, 5.3);
         assert!(kinds.contains(&("robot_intends", 5.2)), "{kinds:?}");
         assert_eq!(intention(&lonely), Some(only));
@@ -136,4 +148,140 @@ fn a_robot_whose_press_became_useless_by_a_correction_decides_anew() {
     check(&mut engine, &[(0.0, Event::TrialStarted)]);
     let kinds = check(&mut engine, &[(0.5, corrected("robot_hand", "nori"))]);
     assert_eq!(kinds, [("kitchen_corrected", 0.5), ("robot_aborts", 0.5), ("robot_intends", 0.5)]);
+}
+
+/// A trial of a person whose first orders are these.
+fn engine_with_orders(arm: ArmKind, initiative_s: f64, dishes: [&str; 2]) -> SessionEngine {
+    let kitchen = kitchen();
+    let settings = |spec: &mut SessionSpec| (spec.robot.arm, spec.robot.initiative_s) = (arm, initiative_s);
+    let spec = engine(settings).session().spec.clone();
+    let begins_with = |trial: &u64| {
+        let mut orders = OrderList::new(kitchen.dishes.len(), &spec, *trial);
+        dishes.iter().all(|dish| kitchen.dish(orders.draw()).name == *dish)
+    };
+    engine_of_trial((0..10_000).find(begins_with).expect("a trial with these orders"), settings)
+}
+
+/// The robot's presses among these events.
+fn done(events: &[TimestampedEvent]) -> Vec<String> {
+    let pressed = |stamped: &TimestampedEvent| match &stamped.event {
+        Event::Press { agent: Agent::Robot, button, .. } => Some(button.clone()),
+        _ => None,
+    };
+    events.iter().filter_map(pressed).collect()
+}
+
+/// A trial at a standstill of a recording: no press of the robot lowers the cost to go, and nine would serve an order.
+/// The human presses at the trial's start.
+fn at_a_standstill(arm: ArmKind, initiative_s: f64) -> SessionEngine {
+    let mut engine = engine_with_orders(arm, initiative_s, ["shrimp nigiri", "crab maki"]);
+    check(&mut engine, &[(0.0, Event::TrialStarted), (0.0, by_wizard(|by| Event::RobotHeld { by }))]);
+    let contents = [("assembly_board", "rice shaped + nori"), ("cooking_pot", "shrimp cooked"), ("robot_hand", "nori")];
+    check(&mut engine, &contents.map(|(location, content)| (0.0, corrected(location, content))));
+    check(&mut engine, &[(0.0, press("trash")), (0.0, by_wizard(|by| Event::RobotReleased { by }))]);
+    engine
+}
+
+#[test]
+fn a_robot_whose_human_is_passive_serves_alone_within_40_s() {
+    for arm in [ArmKind::Timed, ArmKind::Physics] {
+        let mut engine = at_a_standstill(arm, 6.0);
+        let (reason, waits_for) = engine.session().robot.idle.clone().expect("it leaves the next press to the human");
+        assert_eq!(reason, IdleReason::HumanTurn);
+        let pot = engine.session().kitchen.button_named(Agent::Human, "cooking_pot").expect("a button");
+        assert!(waits_for.contains(&pot), "the human could take the shrimp: {waits_for:?}");
+        let events = engine.input(at(40.0), Event::Marker { note: String::new() }).events;
+        let served = *engine.session().served.first().expect("it serves an order");
+        assert_eq!(engine.session().kitchen.dish(served.dish).name, "shrimp nigiri");
+        let done = done(&events);
+        println!("{arm:?}: served at {:.1} s: {done:?}", served.time.as_secs_f64());
+        assert!(["counter", "rolling_mat"].contains(&done[0].as_str()), "{done:?}");
+        let rest = [
+            "cooking_pot",
+            "cutting_board",
+            "cut",
+            "cutting_board",
+            "assembly_board",
+            "assembly_board",
+            "plate",
+            "serve 1",
+        ];
+        assert_eq!(done[1..9], rest, "{done:?}");
+    }
+}
+
+#[test]
+fn the_robot_takes_the_initiative_after_the_set_time_without_a_press_of_the_human() {
+    let first_s = |initiative_s: f64, inputs: &[(f64, Event)]| {
+        let mut engine = at_a_standstill(ArmKind::Timed, initiative_s);
+        let mut kinds = check(&mut engine, inputs);
+        kinds.extend(run_on(&mut engine, 60.0));
+        kinds.into_iter().find(|(kind, _)| *kind == "robot_intends").map(|(_, seconds)| seconds)
+    };
+    assert_eq!(first_s(3.0, &[]), Some(3.0));
+    assert_eq!(first_s(7.0, &[]), Some(7.0));
+    assert_eq!(first_s(86_400.0, &[]), None);
+    assert_eq!(first_s(6.0, &[(2.0, press("trash")), (7.0, press("trash"))]), Some(13.0));
+    assert_eq!(first_s(6.0, &[(2.0, Event::TrialPaused), (12.0, Event::TrialResumed)]), Some(16.0));
+}
+
+/// Share of its idle time in which the robot could have served an order alone, while the human was passive: over trials
+/// of simulated people.
+fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
+    let kitchen = kitchen();
+    let (mut needless_s, mut idle_s, mut all_s) = (0.0, 0.0, 0.0);
+    for trial in 0..trials {
+        let mut engine = engine_of_trial(trial, |spec| {
+            (spec.participant.kind, spec.participant.population) =
+                (ParticipantKind::Simulated, Some(population.clone()));
+            (spec.trial.condition, spec.trial.seconds, spec.trial.presses) = (Condition::None, seconds, 100_000);
+            spec.assistant.shadow = ShadowMode::Off;
+        })
+        .unassisted();
+        let mut events = Vec::new();
+        let keep = |stamped: &TimestampedEvent| {
+            events.push(stamped.clone());
+            Ok::<(), Infallible>(())
+        };
+        headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
+        let mut cost = CostToGo::new(kitchen.clone());
+        let mut session = Session::new(kitchen.clone(), engine.session().spec.clone(), trial);
+        let initiative = SessionTime::from_secs_f64(session.spec.robot.initiative_s);
+        for stamped in &events {
+            let passed_s = stamped.time.secs_since(session.time);
+            if session.is_running() {
+                all_s += passed_s;
+            }
+            let waits = matches!(session.robot.idle, Some((IdleReason::HumanTurn, _)));
+            if session.is_running() && session.robot.idle.is_some() {
+                idle_s += passed_s;
+                let recipes = kitchen.true_recipes();
+                let is_passive = silence::lasted(&session, session.time) >= initiative;
+                let can = |cost: &mut CostToGo| {
+                    kitchen
+                        .orders
+                        .iter()
+                        .any(|&order| own_ways(&kitchen, cost, session.state, &recipes, order).is_some())
+                };
+                if passed_s > 0.0 && waits && is_passive && can(&mut cost) {
+                    needless_s += passed_s;
+                }
+            }
+            apply(&mut session, stamped).expect("an event of the session");
+        }
+    }
+    println!(
+        "{name}: idle in {:.1} % of {all_s:.0} s, of that {:.2} % needlessly",
+        100.0 * idle_s / all_s,
+        100.0 * needless_s / idle_s
+    );
+    assert!(idle_s > 0.02 * all_s && needless_s < 0.02 * idle_s, "{name}: {needless_s} of {idle_s} s");
+}
+
+#[test]
+fn the_robot_does_not_idle_while_it_could_serve_a_passive_human_alone() {
+    let spread = |median: f64| TraitSpread { median, sigma: 0.1 };
+    needless("usual people", Population::default(), (2, 300.0));
+    needless("people who press every 60 s", Population { press_s: spread(60.0), ..Population::default() }, (2, 900.0));
+    needless("people who get stuck", Population { gets_stuck: spread(0.1), ..Population::default() }, (2, 300.0));
 }

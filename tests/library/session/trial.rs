@@ -10,12 +10,7 @@ use tomcom::session::{Event, TrialPhase};
 use super::{at, check, engine, press, refused};
 
 fn highlight(location: &str) -> Event {
-    Event::SignalShown {
-        by: Sender::Wizard,
-        signal: Signal::Highlight(location.to_string()),
-        accepted: None,
-        offer: None,
-    }
+    Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()), offer: None }
 }
 
 #[test]
@@ -121,7 +116,7 @@ fn what_cannot_be_is_refused_with_its_reason() {
     assert!(refused(&mut engine, 0.0, highlight("counter")).contains("while the trial runs"));
     assert!(refused(&mut engine, 0.0, Event::TrialPaused).contains("no trial runs"));
     check(&mut engine, &[(1.0, Event::TrialStarted), (1.5, highlight("counter"))]);
-    assert!(refused(&mut engine, 2.0, highlight("human_hand")).contains("own hand"));
+    assert!(refused(&mut engine, 2.0, highlight("human_hand")).contains("does not highlight"));
     assert!(refused(&mut engine, 2.0, highlight("order_1")).contains("cannot be highlighted"));
     assert!(refused(&mut engine, 2.0, highlight("cellar")).contains("no such location"));
     assert!(refused(&mut engine, 2.0, press("cellar")).contains("a button that the agent has"));

@@ -14,6 +14,7 @@ mod report;
 mod tables;
 mod tutorials;
 
+use tomcom::analysis::offer_summary::OfferSummary;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::measures::belief_basis::BeliefSource;
@@ -83,7 +84,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         signal_contents: 0,
         useful_signals: None,
         display_arm: None,
-        offers: None,
+        offers: OfferSummary::default(),
         seconds: 400.0,
         answers: Vec::new(),
         wizard: None,

@@ -199,7 +199,7 @@ fn two_raters_say_why_people_erred() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-raters");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
-    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || match reading::read(&folder, "hand", extent, None, &mut KeptCost::default()) {
         Ok(Some((_, reading))) => reading,
@@ -278,7 +278,7 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-consensus");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder");
-    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || {
         reading::read(&folder, "hand", extent, None, &mut KeptCost::default())

@@ -80,7 +80,7 @@ fn folder(name: &str) -> PathBuf {
 /// What a recording of a person gives, with errors, signals and gaze.
 fn analysis(name: &str) -> RecordingAnalysis {
     let folder = folder(name);
-    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let (_, analysis) =
         reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true }, None, &mut KeptCost::default())
             .expect("a recording")

@@ -1,16 +1,16 @@
 //! `doctor`, completions and man pages.
 
+use std::collections::HashSet;
 use std::fs;
 use std::net::TcpListener;
 use std::path::Path;
 
 use serde_json::Value;
-use serial_test::serial;
 
-use super::{check, complaint, figures, folder};
+use super::{check, complaint, figures};
+use crate::program::folder;
 
 #[test]
-#[serial]
 fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
     let out = folder("doctor");
     let found = figures(&["doctor", "--out", &out.join("new").display().to_string(), "--format", "json"], 1);
@@ -32,7 +32,6 @@ fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
 }
 
 #[test]
-#[serial]
 fn doctor_looks_at_what_a_session_names() {
     let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
     let session = folder("doctor-session").join("session.toml");
@@ -90,15 +89,24 @@ fn doctor_looks_at_what_a_session_names() {
 }
 
 #[test]
-#[serial]
 fn completions_and_man_pages_know_every_command() {
+    let text = |arguments: &[&str]| String::from_utf8_lossy(&check(arguments, 0).stdout).into_owned();
+    let help = text(&["--help"]);
+    let listed = help.split_once("Commands:\n").and_then(|(_, rest)| rest.split_once("\n\n")).expect("commands").0;
+    let commands =
+        listed.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next()).filter(|name| !name.is_empty());
+    let commands: Vec<&str> = commands.collect();
+    assert!(commands.contains(&"operate"), "{commands:?}");
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let text = String::from_utf8_lossy(&check(&["completions", shell], 0).stdout).into_owned();
-        assert!(text.contains("simulate") && text.contains("doctor"), "{shell}");
+        let words = text(&["completions", shell]);
+        let words: HashSet<&str> = words.split(|letter: char| !letter.is_alphanumeric() && letter != '-').collect();
+        let missing: Vec<&&str> = commands.iter().filter(|command| !words.contains(*command)).collect();
+        assert!(missing.is_empty(), "{shell} completes no {missing:?}");
     }
-    let page = String::from_utf8_lossy(&check(&["man"], 0).stdout).into_owned();
-    assert!(page.contains("tomcom\\-operate") || page.contains("tomcom-operate"), "{page}");
-    let page = String::from_utf8_lossy(&check(&["man", "operate"], 0).stdout).into_owned();
-    assert!(page.contains("RECORDING") && page.contains(".TH tomcom-operate"), "{page}");
+    let overview = text(&["man"]).replace("\\-", "-");
+    for command in commands.into_iter().filter(|&command| command != "help") {
+        assert!(overview.contains(&format!("tomcom-{command}(1)")), "{command} is not in the overview");
+        assert!(text(&["man", command]).contains(&format!(".TH tomcom-{command}")), "{command} has no page");
+    }
     complaint(&["man", "dance"]);
 }

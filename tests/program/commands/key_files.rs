@@ -3,12 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use serial_test::serial;
-
-use super::{check, complaint, folder};
+use super::{check, complaint};
+use crate::program::folder;
 
 #[test]
-#[serial]
 fn a_kitchen_takes_no_key_from_the_console() {
     let folder = folder("keys");
     let text = fs::read_to_string("layouts/sushi.toml").expect("the layout");
@@ -42,7 +40,6 @@ fn session_with_keys(name: &str, keys: &str) -> String {
 }
 
 #[test]
-#[serial]
 fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
     let keys = |session: &str| String::from_utf8_lossy(&check(&["keys", session], 0).stdout).into_owned();
     let printed = keys("sessions/default.toml");
@@ -68,7 +65,6 @@ fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
 }
 
 #[test]
-#[serial]
 fn a_key_file_that_is_not_there_is_told() {
     let session = session_with_keys("no-keys", "");
     fs::remove_file(Path::new(&session).with_file_name("keys.toml")).expect("a file");

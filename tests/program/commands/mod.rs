@@ -6,17 +6,15 @@ mod recordings;
 mod simulate;
 mod wrong;
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
-use crate::tmux::TOMCOM;
+use crate::program::tomcom;
 
 /// Runs the program with these arguments and demands the exit code.
 fn check(arguments: &[&str], code: i32) -> Output {
-    let output = Command::new(TOMCOM).args(arguments).output().expect("the program starts");
+    let output = tomcom(arguments);
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "tomcom {arguments:?}\n{told}");
     output
@@ -33,11 +31,4 @@ fn complaint(arguments: &[&str]) -> String {
     let output = check(arguments, 2);
     assert!(output.stdout.is_empty(), "{arguments:?} prints something although it is wrong");
     String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("commands").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
 }

@@ -4,12 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use serial_test::serial;
 
-use super::{check, complaint, figures, folder};
+use super::{check, complaint, figures};
+use crate::program::folder;
 
 #[test]
-#[serial]
 fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
     let out = folder("exclude");
     let session = out.join("session.toml");
@@ -44,7 +43,6 @@ fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
 }
 
 #[test]
-#[serial]
 fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     let out = folder("compare");
     let session = out.join("short.toml");
@@ -118,7 +116,6 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
 }
 
 #[test]
-#[serial]
 fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     let out = folder("list");
     let session = out.join("short.toml");
@@ -170,11 +167,10 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
 }
 
 #[test]
-#[serial]
 fn a_path_that_is_nearly_right_gets_a_suggestion() {
     let out = folder("nearly");
     fs::create_dir_all(out.join("seed7-S001")).expect("a folder");
-    fs::copy("tests/golden/format-1-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
+    fs::copy("tests/golden/format-3-hand.jsonl", out.join("seed7-S001/events.jsonl")).expect("a recording");
     let out = out.display().to_string();
     let wrong = format!("{out}/seed7-S01");
     let wanted = format!("{wrong} does not exist; did you mean {out}/seed7-S001?");

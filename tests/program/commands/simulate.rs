@@ -4,12 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use serial_test::serial;
 
-use super::{check, complaint, figures, folder};
+use super::{check, complaint, figures};
+use crate::program::folder;
 
 #[test]
-#[serial]
 fn kitchen_prints_the_state_space_and_the_plans() {
     let sushi = figures(&["kitchen", "layouts/sushi.toml", "--format", "json"], 0);
     assert_eq!(sushi["states"], "83878450387200000");
@@ -29,7 +28,6 @@ fn kitchen_prints_the_state_space_and_the_plans() {
 }
 
 #[test]
-#[serial]
 fn simulate_records_what_replay_verifies() {
     let out = folder("simulate");
     let out = out.to_str().expect("a path in UTF-8");
@@ -74,7 +72,6 @@ fn simulate_records_what_replay_verifies() {
 }
 
 #[test]
-#[serial]
 fn a_simulation_replaces_itself_and_no_other_recording() {
     let out = folder("replaced");
     let out = out.to_str().expect("a path in UTF-8");
@@ -103,7 +100,6 @@ least_rollouts = 2
 
 /// A wizard who is a person is not there: of a plan, the conditions are named that have no signals.
 #[test]
-#[serial]
 fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
     let folder = folder("absent");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
@@ -125,7 +121,6 @@ fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
 }
 
 #[test]
-#[serial]
 fn simulate_tells_what_holds_at_the_console_alone() {
     let folder = folder("unused");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
@@ -146,7 +141,6 @@ fn simulate_tells_what_holds_at_the_console_alone() {
 }
 
 #[test]
-#[serial]
 fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     let folder = folder("fit");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
@@ -182,47 +176,4 @@ fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     }
     assert!(complaint(&["fit", &session]).contains("events.jsonl"));
     assert!(complaint(&["fit", recording, "--probes"]).contains("no answer to a freeze probe"));
-}
-
-#[test]
-#[serial]
-fn fit_people_writes_population_and_persons_that_a_plan_uses() {
-    let folder = folder("fit-people");
-    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
-    let [session, start, out, fitted] = ["session.toml", "start.toml", "out", "fitted"].map(path);
-    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
-    let plan = "[plan]\nname = \"fitted\"\nparticipants = 2\nconditions = [\"none\", \"tom-com\"]\n";
-    let study = |human: &str| format!("layout = {layout:?}\n{human}{QUICK}\n{plan}");
-    fs::write(&session, study("")).expect("the session can be written");
-    let few = "[inference]\nbeliefs = 8\nstates = 4\nmax_beliefs = 8\npredictions = 4\n";
-    fs::write(&start, few).expect("the parameters can be written");
-    let simulate = ["simulate", &session, "--out", &out, "--trials", "4", "--format", "json"];
-    let simulated = figures(&simulate, 0);
-    let recordings: Vec<&str> =
-        simulated["recordings"].as_array().expect("recordings").iter().filter_map(Value::as_str).collect();
-    let fit = ["--people", "--start", &start, "--parameters", "lapse", "--tries", "30", "--out", &fitted];
-    let found = figures(&[&["fit"][..], &recordings, &fit, &["--format", "json"]].concat(), 0);
-    assert_eq!((&found["recordings"], &found["human_actions"]), (&Value::from(4), &simulated["human_actions"]));
-    let people = found["people"].as_array().expect("people");
-    assert_eq!(people.iter().filter_map(|one| one["code"].as_str()).collect::<Vec<_>>(), ["P01", "P02"]);
-    assert_eq!(found["held_out"]["by_person"].as_array().map(Vec::len), Some(2));
-    let [low, high] = [0, 1].map(|end| found["held_out"]["gain"]["interval"][end].as_f64().expect("an interval"));
-    let mean = found["held_out"]["gain"]["mean"].as_f64().expect("a gain");
-    assert!(low <= mean && mean <= high, "{found}");
-    // The next study names the file, whose name is free.
-    fs::write(&session, study("human_model = \"fitted\"\n")).expect("the session can be written");
-    let next = path("next");
-    let again = figures(&["simulate", &session, "--out", &next, "--trials", "4", "--format", "json"], 0);
-    for (index, person) in people.iter().enumerate() {
-        let recording = again["recordings"][2 * index].as_str().expect("a recording");
-        let log = fs::read_to_string(Path::new(recording).join("events.jsonl")).expect("a log");
-        let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");
-        let lapse = header["session"]["human"]["decision"]["lapse"].as_f64().expect("a number");
-        let own = person["parameters"][0]["value"].as_f64().expect("a number");
-        assert!((lapse - own).abs() < 1e-9, "{lapse} instead of {own}");
-        assert_eq!(header["session"]["parameters_of"], "person");
-        assert!(header["session"].get("people").is_none());
-        figures(&["replay", recording, "--verify", "--format", "json"], 0);
-    }
-    assert!(complaint(&["fit", recordings[0], recordings[1], "--people"]).contains("recordings of one person, P01"));
 }

@@ -1,9 +1,8 @@
 //! A participant at the keyboard and the mouse, and gaze from another program.
 
-use std::fs;
+use std::io::Write;
 use std::time::{Duration, Instant};
 
-use serial_test::serial;
 use tomcom::console::arrange::KitchenMap;
 use tomcom::console::map_items::KitchenMapElement;
 use tomcom::console::view::regions::PanelAreas;
@@ -13,14 +12,15 @@ use tomcom::run::replay::RecordingReplay;
 use tomcom::session::settings::WizardVisibility;
 
 use super::kitchen;
-use crate::tmux::{PATIENCE, SIZE, TOMCOM, Terminal};
+use crate::program::{PATIENCE, session_with_tracker};
+use crate::pseudo_terminal::{SIZE, Terminal};
 
 /// Makes and serves an order by hand: the person looks at the place and presses its button, the robot helps.
 fn check_by_hand(session: &str) {
-    let Some(terminal) = Terminal::open(&format!("by-hand-{session}")) else { return };
+    let terminal = Terminal::open(&format!("by-hand-{session}"));
     let kitchen = kitchen(session);
-    terminal.operate(session, "--participant keyboard --gaze mouse");
-    terminal.start();
+    terminal.operate(session, &["--participant", "keyboard", "--gaze", "mouse"]);
+    terminal.begin();
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
     let panel = PanelAreas::new(SIZE, WizardVisibility::Recommendation, None).kitchen_inside();
@@ -41,7 +41,7 @@ fn check_by_hand(session: &str) {
             next.is_some_and(|next| cost.all_orders(next, &recipes) < here)
         };
         let Some(button) = buttons.filter(|_| here > 0).find(helps) else {
-            std::thread::sleep(Duration::from_millis(50));
+            std::thread::sleep(Duration::from_millis(20));
             continue;
         };
         let button = kitchen.button(Agent::Human, button);
@@ -60,8 +60,6 @@ fn check_by_hand(session: &str) {
         let key = button.key.expect("every button of the human has a key").to_string();
         terminal.key_logs(&key, &format!("\"agent\":\"human\",\"button\":\"{}\"", button.name));
         hands += 1;
-        // The same key again at once would count as held down.
-        std::thread::sleep(Duration::from_millis(200));
     }
     terminal.see("1 served");
     assert!(hands > 4, "the person did {hands} presses of it");
@@ -71,59 +69,55 @@ fn check_by_hand(session: &str) {
     terminal.verifies();
 }
 
+/// In a terminal that reports no releases of keys.
 #[test]
-#[serial]
-fn the_same_button_pressed_twice_is_in_the_log_twice() {
-    let Some(terminal) = Terminal::open("twice") else { return };
+fn the_same_button_pressed_twice_is_in_the_log_twice_and_a_held_one_once() {
+    let terminal = Terminal::open("twice");
     let kitchen = kitchen("default.toml");
-    terminal.operate("default.toml", "--participant keyboard --gaze mouse");
-    terminal.start();
-    terminal.key("Tab");
+    terminal.operate("default.toml", &["--participant", "keyboard", "--gaze", "mouse"]);
+    terminal.send(".");
+    terminal.see("start the trial anyway");
+    terminal.send("o");
+    terminal.see("RUNNING");
+    terminal.send("\t");
     terminal.see("KEYS: PARTICIPANT");
     let button = kitchen.button_named(Agent::Human, "assembly_board").expect("a button of the sushi kitchen");
     let key = kitchen.button(Agent::Human, button).key.expect("a key").to_string();
     let presses = "\"agent\":\"human\",\"button\":\"assembly_board\"";
-    terminal.key_logs(&key, presses);
-    // Longer than between two reports of a key that is held down.
+    // All reports at once, as of a key that is held down.
+    terminal.send(&key.repeat(20));
+    terminal.see("is held down: it counts as one press");
+    // Longer than between two reports of a held key: nothing else tells them from a second press.
     std::thread::sleep(Duration::from_millis(360));
-    terminal.key_logs(&key, presses);
+    terminal.send(&key);
+    terminal.wait("a second press", || terminal.count(presses) > 1);
     assert_eq!(terminal.count(presses), 2);
     terminal.quit();
     terminal.verifies();
 }
 
 #[test]
-#[serial]
 fn an_order_is_made_and_served_by_hand_in_the_sushi_kitchen() {
     check_by_hand("default.toml");
 }
 
 #[test]
-#[serial]
 fn an_order_is_made_and_served_by_hand_in_the_burger_kitchen() {
     check_by_hand("burger.toml");
 }
 
 #[test]
-#[serial]
 fn gaze_comes_from_any_program_that_writes_lines() {
-    use std::io::Write;
-    let Some(terminal) = Terminal::open("json") else { return };
-    let free = std::net::TcpListener::bind(("127.0.0.1", 0)).and_then(|listener| listener.local_addr());
-    let port = free.expect("a free port").port();
-    let text = fs::read_to_string("sessions/default.toml").expect("the default session");
-    let root = env!("CARGO_MANIFEST_DIR");
-    let text = text.replace("../layouts", &format!("{root}/layouts")).replace("50021", &port.to_string());
-    let session = terminal.folder.join("session.toml");
-    fs::write(&session, text).expect("written");
-    let out = terminal.folder.display();
-    let arguments = "--participant keyboard --gaze json";
-    terminal.run(&format!("{TOMCOM} operate {} --out {out}/recordings {arguments}", session.display()));
+    let terminal = Terminal::open("json");
+    let (session, connect) = session_with_tracker(&terminal.folder);
+    let out = terminal.recordings();
+    terminal.run(&["operate", &session, "--out", &out, "--participant", "keyboard", "--gaze", "json"]);
     terminal.see("READY");
-    let mut tracker = std::net::TcpStream::connect(("127.0.0.1", port)).expect("it listens");
+    let mut tracker = connect();
     for step in 0..50 {
         let t = f64::from(step) / 50.0;
         writeln!(tracker, "{{\"t\": {t}, \"x\": 0.40, \"y\": 0.35, \"confidence\": 0.9}}").expect("sent");
+        // As often as a tracker.
         std::thread::sleep(Duration::from_millis(20));
     }
     // Python's json writes NaN.

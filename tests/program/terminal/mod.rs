@@ -1,5 +1,4 @@
-//! The real program in a real terminal: every test runs the binary in tmux, presses keys and moves the mouse as a person
-//! does, and reads the screen and the recording. Without tmux the tests say that they were skipped.
+//! Sessions, trainings and replays at the console.
 
 mod by_hand;
 mod leaving;

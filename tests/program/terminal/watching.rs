@@ -1,22 +1,18 @@
 //! A session watched from another terminal, and a recording coded by a rater.
 
 use std::fs;
-use std::time::Duration;
-
-use serial_test::serial;
 
 use super::kitchen;
-use crate::tmux::{self, TOMCOM, Terminal};
+use crate::program::done;
+use crate::pseudo_terminal::Terminal;
 
 #[test]
-#[serial]
 fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
-    let Some(terminal) = Terminal::open("watched") else { return };
-    let Some(other) = Terminal::open("watching") else { return };
-    terminal.operate("default.toml", "");
-    terminal.start();
-    let recording = terminal.recording();
-    other.run(&format!("{TOMCOM} replay {} --follow", recording.display()));
+    let (terminal, other) = (Terminal::open("watched"), Terminal::open("watching"));
+    terminal.operate("default.toml", &[]);
+    terminal.begin();
+    let recording = terminal.recording().display().to_string();
+    other.run(&["replay", &recording, "--follow"]);
     other.see("RUNNING");
     other.see("live");
     terminal.key_logs("a", "signal_shown");
@@ -24,8 +20,8 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     terminal.quit();
     other.see("CLOSED");
     other.key("q");
-    other.is_whole("0");
-    other.run(&format!("{TOMCOM} replay {}", recording.display()));
+    other.is_whole(0);
+    other.run(&["replay", &recording]);
     other.see("play 1x");
     assert!(!other.screen().contains("READY"), "a replay opens at the start of the trial: {}", other.screen());
     for (key, seen) in [
@@ -41,29 +37,24 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.key("Right");
     other.see("event 1/");
     other.key("q");
-    other.is_whole("0");
+    other.is_whole(0);
 }
 
-/// Presses keys, each after the delay of key repeat, and waits for what the screen says.
+/// Presses keys, and waits for what the screen says after each.
 fn press_each(terminal: &Terminal, keys: &[(&str, &str)]) {
     for (key, seen) in keys {
         terminal.key(key);
         terminal.see(seen);
-        std::thread::sleep(Duration::from_millis(800));
     }
 }
 
 #[test]
-#[serial]
 fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one() {
-    let Some(terminal) = Terminal::open("rater") else { return };
-    let out = terminal.folder.join("recordings");
-    let out = out.display().to_string();
-    let simulated =
-        tmux::tomcom(&["simulate", "sessions/default.toml", "--seed", "7", "--condition", "assistant", "--out", &out]);
-    assert!(simulated.status.success(), "{simulated:?}");
+    let terminal = Terminal::open("rater");
+    let out = terminal.recordings();
+    done(&["simulate", "sessions/default.toml", "--seed", "7", "--condition", "assistant", "--out", &out]);
     let name = terminal.recording().display().to_string();
-    terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
+    terminal.run(&["replay", &name, "--rater", "R1"]);
     terminal.see("R1: 0/");
     terminal.see("error 1 is the first without a code");
     for telling in ["Beliefs", "assistant", "Recommendation", "On the participant's display"] {
@@ -83,21 +74,21 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
         ("3", "no code given: error 3 is only selected"),
         ("Enter", "coded, 2 since opening"),
         ("3", "saved: error 3, other cause"),
-        ("DC", "saved: code of error 3 removed"),
-        ("BSpace", "2 since opening"),
+        ("Delete", "saved: code of error 3 removed"),
+        ("Backspace", "2 since opening"),
     ];
     press_each(&terminal, &first);
     terminal.key("C-c");
-    terminal.is_whole("0");
+    terminal.is_whole(0);
     terminal.see("2 since opening; all codes are saved in");
     let kept = rows(&terminal, "codes-R1.csv");
     assert!(matches!(&kept[..], [a, b] if a.ends_with(",slip,") && b.ends_with(",belief,cooking_pot")), "{kept:?}");
 
-    terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
+    terminal.run(&["replay", &name, "--rater", "R1"]);
     terminal.see("R1: 2/");
     terminal.see("error 3 is the first without a code");
     terminal.key("C-c");
-    terminal.is_whole("0");
+    terminal.is_whole(0);
 
     settle_with_another(&terminal, &name, &kept);
 }
@@ -114,7 +105,7 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     let presses: Vec<&str> = kept.iter().filter_map(|row| row.split(',').nth(1)).collect();
     let codes = format!("rater,press,cause,aspect\nR2,{},slip,\nR2,{},race,\n", presses[0], presses[1]);
     fs::write(recording.join("codes-R2.csv"), codes).expect("written");
-    terminal.run(&format!("{TOMCOM} replay {name} --settle R2 R1"));
+    terminal.run(&["replay", name, "--settle", "R2", "R1"]);
     terminal.see("error 2 is the first without a code");
     terminal.see("R1: wrong about cooking pot");
     terminal.see("R2: race");
@@ -122,46 +113,42 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
         [("2", "saved: error 2, race"), ("u", "saved: code of error 2 removed"), ("C-y", "saved: error 2, race")];
     press_each(terminal, &settled);
     terminal.key("C-c");
-    terminal.is_whole("0");
+    terminal.is_whole(0);
     let settled = rows(terminal, "consensus.csv");
     let agreed = format!("R1,slip,,R2,slip,,{},slip,", presses[0]);
     let decided = format!("R1,belief,cooking_pot,R2,race,,{},race,", presses[1]);
     assert_eq!(settled, [agreed, decided]);
     assert_eq!(rows(terminal, "codes-R1.csv"), kept, "a consensus leaves the raters' codes");
     assert_eq!(terminal.log(), log, "the log stays as it is");
-    let told = tmux::tomcom(&["codes", name]);
-    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    let told = done(&["codes", name]);
     assert!(told.contains("consensus of R1 and R2 on errors: 1 agreed, 1 settled"), "{told}");
-    terminal.run(&format!("{TOMCOM} replay {name} --settle R1 R3"));
-    terminal.is_whole("2");
+    terminal.run(&["replay", name, "--settle", "R1", "R3"]);
+    terminal.is_whole(2);
     terminal.see("no codes of the rater R3");
 }
 
 #[test]
-#[serial]
 fn a_recording_of_a_folder_is_chosen_from_a_list_by_typing() {
-    let Some(terminal) = Terminal::open("chosen") else { return };
+    let terminal = Terminal::open("chosen");
     let out = terminal.folder.join("recordings");
     for (name, golden) in [("P07-1", "hand"), ("S001", "simulated")] {
         fs::create_dir_all(out.join(name)).expect("a folder");
-        let golden = format!("tests/golden/format-1-{golden}.jsonl");
+        let golden = format!("tests/golden/format-3-{golden}.jsonl");
         fs::copy(golden, out.join(name).join("events.jsonl")).expect("a recording");
     }
-    terminal.run(&format!("{TOMCOM} replay {}", out.display()));
+    terminal.run(&["replay", &terminal.recordings()]);
     terminal.see("Which recording of");
     terminal.see("2 of 2");
     terminal.key("Space");
-    for key in ["s", "0", "0", "1"] {
-        terminal.key(key);
-    }
+    terminal.send("s001");
     terminal.see("s001_");
     terminal.see("1 of 2");
     terminal.key("Enter");
     terminal.see("play 1x");
     terminal.key("q");
-    terminal.is_whole("0");
-    terminal.run(&format!("{TOMCOM} replay {} --verify", out.display()));
+    terminal.is_whole(0);
+    terminal.run(&["replay", &terminal.recordings(), "--verify"]);
     terminal.see("Which recording of");
     terminal.key("Escape");
-    terminal.is_whole("0");
+    terminal.is_whole(0);
 }

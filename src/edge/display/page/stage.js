@@ -148,8 +148,8 @@ const Stage = (() => {
     shape();
     Sound.build(scene);
     const kitchen = element("div", "kitchen");
-    const [robot, human] = room.sides();
-    kitchen.append(buildZone("robot", robot, scene.words.robot), buildZone("human", human, scene.words.human));
+    const [robot, human] = room.sides(), robots = buildZone("robot", robot, scene.words.robot);
+    kitchen.append(robots, buildZone("human", human, scene.words.human));
     kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
     const others = room.taken();
@@ -167,7 +167,7 @@ const Stage = (() => {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, sheet, toast, flash, target, free, cards, all };
+    parts = { kitchen, robots, locations, storages, recipe, sheet, toast, flash, target, free, cards, all };
     mark({});
   }
 
@@ -291,6 +291,14 @@ const Stage = (() => {
     if (spot) partOf(spot).made.classList.add("intended");
   }
 
+  /** The title of the robot's side says what the robot waits for, if it waits. */
+  function drawWait(waits) {
+    const title = parts.robots.querySelector("h2"), words = waits ? scene.words[`robot waits ${waits}`] : scene.words.robot;
+    if (title.textContent === words) return;
+    title.textContent = words;
+    fitWords(parts.robots);
+  }
+
   /** What the buttons show of themselves: their keys, the colours of their caps, or nothing. */
   function badges() {
     if (room.isUpright) return "";
@@ -349,6 +357,7 @@ const Stage = (() => {
     sight.contents.forEach((what, index) => drawLocation(index, what));
     drawPresses(sight);
     drawIntention(sight.intention);
+    drawWait(sight.robot_waits);
     if (sight.contents.length) Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);

@@ -21,7 +21,7 @@ use tomcom::edge::{gaze_file, gaze_line, stream_head, training, written_tables};
 use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::measures::cause_codes::CodableErrors;
-use tomcom::mind::fitted_people::HumanModelFile;
+use tomcom::mind::model::HumanModel;
 use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
 use tomcom::session::header::RecordedFile;
@@ -30,7 +30,7 @@ use tomcom::session::tracker::TrackerSpec;
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
-const RECORDING: &str = include_str!("../../../golden/format-1-hand.jsonl");
+const RECORDING: &str = include_str!("../../../golden/format-3-hand.jsonl");
 
 /// What reads bytes.
 pub type Reader = fn(&[u8]);
@@ -90,9 +90,7 @@ fn questionnaire(bytes: &[u8]) {
 }
 
 fn parameters(bytes: &[u8]) {
-    shown(
-        parse::<HumanModelFile>(Path::new("parameters"), &text(bytes)).map(|file| file.population().fault().is_none()),
-    );
+    shown(parse::<HumanModel>(Path::new("parameters"), &text(bytes)).map(|model| model.fault().is_none()));
 }
 
 fn keys(bytes: &[u8]) {

@@ -5,12 +5,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use nalgebra::Point3;
-use tomcom::arm::controller::ArmController;
-use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::{Agent, ButtonId};
-use tomcom::robot::moment::ArmPhase;
+use tomcom_arm::controller::ArmController;
+use tomcom_arm::physics::CYCLE_S;
+use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_core::kitchen::{Agent, ButtonId};
+use tomcom_core::robot::moment::ArmPhase;
 
 /// So much is simulated, in seconds.
 const SIMULATED_S: f64 = 300.0;

@@ -7,15 +7,15 @@ use std::time::{Duration, Instant};
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
-use tomcom::base::rng::{Stream, stream};
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::{CostToGo, DecisionCosts, MAX_BUTTONS};
-use tomcom::kitchen::{Agent, AspectKind, ButtonId, Kitchen, Recipes, State};
-use tomcom::mind::RecordedBelief;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
 use tomcom::session::{Event, TrialPhase};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, DecisionCosts, MAX_BUTTONS};
+use tomcom_core::kitchen::{Agent, AspectKind, ButtonId, Kitchen, Recipes, State};
+use tomcom_core::mind::RecordedBelief;
 
 /// Belief samples a press, and states a sample: the least that counts as the algorithm.
 const BELIEFS: usize = 256;
@@ -58,7 +58,7 @@ fn moments(layout: &str, trial: u64) -> (Arc<Kitchen>, Vec<Moment>) {
 /// Draws a belief around what the participant believed: a Dirichlet for every aspect.
 fn draw_belief(kitchen: &Kitchen, moment: &Moment, random: &mut Stream) -> Belief {
     let aspects = kitchen.aspects.iter().zip(&moment.belief.aspects);
-    let one = |(aspect, held): (&tomcom::kitchen::StateAspect, &tomcom::mind::AspectBelief)| {
+    let one = |(aspect, held): (&tomcom_core::kitchen::StateAspect, &tomcom_core::mind::AspectBelief)| {
         let (truth, precision) = match aspect.kind {
             AspectKind::Location(location) => (moment.state.code(location), PRECISION[0]),
             AspectKind::Recipe(_) => (aspect.values[0], PRECISION[1]),
@@ -89,7 +89,7 @@ fn draw_state(kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> (State
         let value = aspect.values[reached.unwrap_or(0)];
         match aspect.kind {
             AspectKind::Location(location) => state.set_code(location, value),
-            AspectKind::Recipe(dish) => recipes.set(dish, tomcom::kitchen::ContentId(value)),
+            AspectKind::Recipe(dish) => recipes.set(dish, tomcom_core::kitchen::ContentId(value)),
         }
     }
     (state, recipes)

@@ -5,16 +5,16 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::{Concept, DecisionPoint};
-use tomcom::communication::planner::Planner;
-use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::situation::Situation;
-use tomcom::communication::{HighlightSet, available};
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{AspectId, Kitchen, OrderContent};
-use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::model::HumanModel;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::{Concept, DecisionPoint};
+use tomcom_core::communication::planner::Planner;
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::situation::Situation;
+use tomcom_core::communication::{HighlightSet, available};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{AspectId, Kitchen, OrderContent};
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom_core::mind::model::HumanModel;
 
 /// Runs the example.
 pub fn main() -> Result<(), Box<dyn Error>> {

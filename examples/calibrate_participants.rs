@@ -19,20 +19,20 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::stream;
-use tomcom::communication::settings::ShadowMode;
-use tomcom::kitchen::layout::LayoutSpec;
-use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::measures::JudgedPress;
-use tomcom::measures::attribution::ErrorCause;
-use tomcom::measures::sequences::{sequences, sequences_any_aspect};
-use tomcom::participant::population::Population;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::parallel::WorkerPool;
 use tomcom::session::SessionSpec;
 use tomcom::session::plan::Study;
+use tomcom_core::base::rng::stream;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::sequences::{sequences, sequences_any_aspect};
+use tomcom_people::participant::population::Population;
 
 /// The belief parameters that a search varies, with the least and the largest value that it tries.
 const PARAMETERS: [(&str, f64, f64); 5] = [

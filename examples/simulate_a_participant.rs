@@ -6,11 +6,11 @@ use std::convert::Infallible;
 use std::error::Error;
 use std::sync::Arc;
 
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::{Event, SessionSpec, TimestampedEvent};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen};
 
 const SETTINGS: &str = r#"
 layout = "sushi.toml"

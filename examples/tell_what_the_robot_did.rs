@@ -4,14 +4,14 @@ use std::error::Error;
 use std::fs::read_to_string;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::{Concept, DecisionPoint};
-use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::{HighlightSet, available, planner::Planner, situation::Situation};
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::{filter::BeliefFilter, model::HumanModel};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::{Concept, DecisionPoint};
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::{HighlightSet, available, planner::Planner, situation::Situation};
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::{filter::BeliefFilter, model::HumanModel};
 
 /// What the robot does, one press a second.
 const ROBOT: [&str; 5] = ["take rice", "cooking_pot", "cook", "cooking_pot", "assembly_board"];

@@ -42,7 +42,6 @@ use self::output::{OutputFormat, print, put, put_error};
 use crate::analysis::kitchen_summary::{self, KitchenSummary};
 use crate::analysis::recording_summary::RecordingSummary;
 use crate::analysis::{event_lines, timing_summary};
-use crate::base::printable::printable;
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
@@ -52,6 +51,7 @@ use crate::run::plan::{self, StudyProgress};
 use crate::run::replay::RecordingReplay;
 use crate::run::review_console as console_over;
 use crate::run::{options, standing, timing, verify};
+use tomcom_core::base::printable::printable;
 
 /// Exit code of a command that failed.
 const FAILED: u8 = 1;

@@ -2,17 +2,17 @@
 //! times that the session's settings name.
 
 use super::follower::SessionFollower;
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::concept::{Concept, ConceptName, DecisionPoint};
-use crate::communication::concepts::concept;
-use crate::communication::recommendation::Recommendation;
-use crate::communication::situation::{RobotIntent, Situation};
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, State};
-use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::signal_model::SignalReadingForecast;
 use crate::session::Session;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
+use tomcom_core::communication::concepts::concept;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{AspectId, State};
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::signal_model::SignalReadingForecast;
 
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 //! -100 %.
 
 use super::cohort_table::{CohortRow, RobustnessTable};
-use crate::base::words::decimal;
-use crate::measures::flags::MOST_FALSE_FLAGS;
+use tomcom_core::base::words::decimal;
+use tomcom_core::measures::flags::MOST_FALSE_FLAGS;
 
 /// Heading of the robustness table as text; the column of cohort names is `width` characters wide.
 pub fn heading(width: usize) -> String {

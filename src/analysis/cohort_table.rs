@@ -10,12 +10,12 @@ use serde::Serialize;
 use super::likelihood::PressLogLikelihood;
 use super::trial_bootstrap::intervals;
 use super::trial_summary::TrialSummary;
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
-use crate::measures::flags::{ThresholdChoice, chosen_thresholds};
-use crate::measures::resampled_detection::DetectionScores;
-use crate::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
+use tomcom_core::measures::flags::{ThresholdChoice, chosen_thresholds};
+use tomcom_core::measures::resampled_detection::DetectionScores;
+use tomcom_core::mind::choice_parameters::ChoiceParameters;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;

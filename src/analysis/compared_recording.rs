@@ -5,11 +5,11 @@ use super::offer_summary::{OfferSummary, TimedOffer};
 use super::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use super::wizard_log::{WizardLog, WizardSummary};
 use crate::history::comparison::SenderComparison;
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
 use crate::session::{Session, TimestampedEvent};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Compares wizard and assistants while a recording is read, event by event.
 pub struct SenderComparer {

@@ -8,15 +8,15 @@ use super::lesson_report::WizardTrainingSummary;
 use super::offer_summary::OfferSummary;
 use super::watcher::SenderComparisonSettings;
 use super::wizard_log::{self, WizardSummary};
-use crate::base::time::SessionTime;
-use crate::base::words::{count, decimal};
-use crate::communication::concept::ConceptName;
-use crate::communication::recommendation::Recommendation;
 use crate::history::belief_track::AspectBeliefSnapshot;
 use crate::history::comparison::{Communication, UnmatchedCommunication};
-use crate::kitchen::AspectId;
-use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
 use crate::session::wizard_screen::WizardScreenContent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::{count, decimal};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::kitchen::AspectId;
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
 
 /// Largest number of unmatched communications of each kind that are listed as text.
 const LISTED: usize = 20;

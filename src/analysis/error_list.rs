@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use super::follower::SessionFollower;
 use super::wizard_log::clock_at;
-use crate::base::time::SessionTime;
 use crate::history::wording;
-use crate::kitchen::Agent;
 use crate::session::TimelineEvent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
 
 /// One error of the human in a list of errors for raters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,7 +35,7 @@ impl ListedError {
         // The judged presses and the human's presses on the timeline are the same presses in the same order.
         let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
         let listed =
-            |(index, (judged, (button, effective))): (usize, (&crate::measures::JudgedPress, _))| ListedError {
+            |(index, (judged, (button, effective))): (usize, (&tomcom_core::measures::JudgedPress, _))| ListedError {
                 error: index as u64 + 1,
                 press: judged.seq,
                 time_s: clock_at(session, judged.time).as_secs_f64(),

@@ -1,23 +1,23 @@
 //! A recording as text, with one line for each event, for pipes and plain terminals.
 
 use super::follower::SessionFollower;
-use crate::base::printable::printable;
-use crate::base::words::count;
-use crate::communication::concept::ConceptName;
-use crate::communication::offer::OfferedAdvice;
-use crate::communication::recommendation::Recommendation;
 use crate::history::probe_wording;
 use crate::history::wording::{self, location as said};
-use crate::kitchen::{Agent, Kitchen};
-use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
-use crate::mind::{AspectBelief, RecordedBelief};
-use crate::robot::safety::SafetyMode;
 use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::wall_display::DisplayEvent;
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{Event, TimestampedEvent, TrialPhase};
+use tomcom_core::base::printable::printable;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::offer::OfferedAdvice;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
+use tomcom_core::mind::{AspectBelief, RecordedBelief};
+use tomcom_core::robot::safety::SafetyMode;
 
 /// Heading above the text lines of events.
 pub const HEADING: &str = " trial time  what happened";

@@ -1,25 +1,25 @@
 //! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
 //! Live sessions and replays derive these with the same code.
 
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::repeats::SignalRepeatRule;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
-use crate::measures::JudgedPress;
-use crate::measures::attribution::{ErrorAttributor, ErrorCause};
-use crate::measures::errors::PressJudge;
-use crate::measures::sequences::FalseBeliefTracker;
-use crate::mind::belief::Belief;
-use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::filter::signals_so_far::EndedSignal;
-use crate::mind::filter::{BeliefFilter, PressEvidence};
-use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
-use crate::mind::recorded_estimate::RecordedEstimate;
 use crate::session::apply::ApplyError;
 use crate::session::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::session::tracker::TrackerEvent;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent, apply};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
+use tomcom_core::measures::errors::PressJudge;
+use tomcom_core::measures::sequences::FalseBeliefTracker;
+use tomcom_core::mind::belief::Belief;
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::filter::signals_so_far::EndedSignal;
+use tomcom_core::mind::filter::{BeliefFilter, PressEvidence};
+use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
+use tomcom_core::mind::recorded_estimate::RecordedEstimate;
 
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]

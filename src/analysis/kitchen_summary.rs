@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::gaze::tags::{CELLS, DisplayTag, DisplayTags};
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
+use tomcom_core::gaze::tags::{CELLS, DisplayTag, DisplayTags};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
 /// Summary of a kitchen: size, shortest plans and display tags.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -159,7 +159,7 @@ pub fn describe(kitchen: &Kitchen, figures: &KitchenSummary) -> String {
 fn write_locations(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
     writeln!(text, "\nLOCATIONS")?;
     for (index, location) in kitchen.locations.iter().enumerate() {
-        let id = crate::kitchen::LocationId(index as u8);
+        let id = tomcom_core::kitchen::LocationId(index as u8);
         let accepts = match location.kind {
             LocationKind::Order => "an order".to_string(),
             _ => {

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::fitting::response_surface::{REACH, surface};
 use super::trial_bootstrap::interval;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
-use crate::measures::belief_detection::{BeliefsBeforePress, TrialBeliefs};
-use crate::mind::ChoiceModel;
-use crate::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen, WeightedWorlds, World};
+use tomcom_core::measures::belief_detection::{BeliefsBeforePress, TrialBeliefs};
+use tomcom_core::mind::ChoiceModel;
+use tomcom_core::mind::choice_parameters::ChoiceParameters;
 
 /// Gain below which the fit of the baseline "informed human" takes a finer surface, or ends, in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;

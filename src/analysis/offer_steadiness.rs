@@ -9,14 +9,14 @@ use rand::RngExt;
 use serde::Serialize;
 
 use super::offer_summary::{OfferSummary, TimedOffer};
-use crate::base::rng::{Stream, stream};
-use crate::base::time::SessionTime;
-use crate::base::words::{count, percent};
-use crate::communication::offer::{Offer, OfferCloseReason};
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{Signal, unavailable};
-use crate::measures::median;
 use crate::session::{Session, offers};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::{count, percent};
+use tomcom_core::communication::offer::{Offer, OfferCloseReason};
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Signal, unavailable};
+use tomcom_core::measures::median;
 
 /// Mean time between two readings of the screen by the scripted hand, in seconds.
 const BETWEEN_READINGS_S: f64 = 0.5;
@@ -272,7 +272,7 @@ pub fn describe(found: &OfferSteadinessSummary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::communication::offer::{OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication};
+    use tomcom_core::communication::offer::{OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication};
 
     /// An offer of one signal that stands for 2 s from `opened_s` on and is outdone by another one.
     fn offer(opened_s: f64, used: Option<OfferUse>) -> TimedOffer {

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::wizard_log::clock_at;
-use crate::base::time::SessionTime;
-use crate::communication::offer::{Offer, OfferCloseReason, OfferKeyKind};
-use crate::measures::median;
 use crate::session::Session;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::{Offer, OfferCloseReason, OfferKeyKind};
+use tomcom_core::measures::median;
 
 /// An offer to the wizard, with its times on the trial's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

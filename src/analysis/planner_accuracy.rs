@@ -10,13 +10,13 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::advisor::{AdviceRequest, Advisor};
-use crate::base::words::{count, decimal};
-use crate::communication::Signal;
-use crate::communication::concept::ConceptName;
-use crate::communication::reference::{ReferenceBenefit, ReferencePlanner};
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Session;
+use tomcom_core::base::words::{count, decimal};
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::reference::{ReferenceBenefit, ReferencePlanner};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Factor by which the converged answer uses more rollouts than the planner in a session.
 const CONVERGED: usize = 64;

@@ -7,15 +7,15 @@ use super::probe_record::{
     AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
 use super::seen_contents::LastSeenContents;
-use crate::base::incomplete_beta::regularized_incomplete_beta;
-use crate::base::time::SessionTime;
-use crate::kitchen::{
-    Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationKind, OrderContent, Press,
-};
-use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::RecordedBelief;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_core::base::incomplete_beta::regularized_incomplete_beta;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationKind, OrderContent, Press,
+};
+use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::RecordedBelief;
 
 /// Collects the freeze probe questions of a recording, event by event.
 #[derive(Debug, Default)]

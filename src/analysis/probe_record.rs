@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::measures::sequences::FALSE_BELOW;
 use crate::session::probes::ProbeOrigin;
 use crate::session::study_arm::StudyArm;
+use tomcom_core::measures::sequences::FALSE_BELOW;
 
 /// Kind of a probe question, by what the question asks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -78,7 +78,7 @@ pub struct AspectAtFreeze {
     pub estimate_p: BTreeMap<String, f64>,
     /// Expected probability that the participant gives to the true value, in the estimate.
     pub estimate_p_truth: f64,
-    /// Estimated probability that the participant's belief is false, as in [`crate::measures::belief_detection`].
+    /// Estimated probability that the participant's belief is false, as in [`tomcom_core::measures::belief_detection`].
     pub estimate_p_false: f64,
     /// Recorded belief of a simulated participant; `None` for people.
     pub believed: Option<RecordedBeliefAtFreeze>,

@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::probe_record::{AspectAtFreeze, ProbeQuestionKind, ProbedQuestion};
-use crate::mind::dirichlet::LEAST_MEAN;
+use tomcom_core::mind::dirichlet::LEAST_MEAN;
 
 /// Weighted mean log probability of the answered values, in nats, for several predictors of answers; higher is better.
 /// The answer "I don't know" names no value and is left out.

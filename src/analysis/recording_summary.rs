@@ -6,7 +6,7 @@ use super::exclusion_status::ExclusionStatus;
 use super::follower::SessionFollower;
 use super::gaze_summary::{self, GazeQualitySummary};
 use super::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
-use crate::base::words::count;
+use tomcom_core::base::words::count;
 
 /// Summary of one recording, as `tomcom replay RECORDING` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::base::words::count;
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
+use tomcom_core::base::words::count;
 
 /// Whether a recording is complete, cut, excluded, running or unreadable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

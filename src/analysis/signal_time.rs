@@ -1,8 +1,8 @@
 //! Time for which signals were shown on the participant's display.
 
 use super::wizard_log::clock_at;
-use crate::base::time::SessionTime;
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
 
 /// Session times at which signals appeared on the display (true) and vanished (false).
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::measures::wizard_performance::{TrainingCriterion, WizardMeasures};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::measures::wizard_performance::{TrainingCriterion, WizardMeasures};
 
 /// Record of one training session of a wizard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

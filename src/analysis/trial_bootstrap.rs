@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use crate::base::rng::stream;
+use tomcom_core::base::rng::stream;
 
 /// Number of bootstrap resamples from which an interval is computed.
 const RESAMPLES: usize = 2000;

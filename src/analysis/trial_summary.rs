@@ -6,14 +6,14 @@ use serde::Serialize;
 
 use super::follower::SessionFollower;
 use super::offer_summary::{OfferDurations, TimedOffer};
-use crate::base::path_text::PathText;
-use crate::base::words::{count, decimal};
-use crate::kitchen::{Agent, DishId};
-use crate::measures::attribution::ErrorCause;
-use crate::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
 use crate::session::TimelineEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::study_arm::StudyArm;
+use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::words::{count, decimal};
+use tomcom_core::kitchen::{Agent, DishId};
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
 
 /// Summary of one trial: presses, errors, signals, served orders.
 #[derive(Clone, Debug, Default, PartialEq)]

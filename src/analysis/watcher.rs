@@ -13,26 +13,26 @@ use std::sync::Arc;
 
 use super::advisor::{AdviceRequest, Advisor};
 use super::follower::SessionFollower;
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::concept::ConceptName;
-use crate::communication::recommendation::Recommendation;
-use crate::communication::repeats::SignalRepeatRule;
 use crate::history::belief_track::BeliefSnapshot;
 use crate::history::comparison::{
     Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
 };
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, KitchenChange, LocationId, State};
-use crate::measures::matching::CommunicationEvent;
-use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::filter::BeliefFilter;
-use crate::mind::observation::{Observation, ObservedEvidence};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, KitchenChange, LocationId, State};
+use tomcom_core::measures::matching::CommunicationEvent;
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 
 /// Communication concepts to compare with the wizard, and the window within which communications match.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,18 +1,18 @@
-//! Collects a wizard's signals event by event, for the measures of [`crate::measures::wizard_performance`].
+//! Collects a wizard's signals event by event, for the measures of [`tomcom_core::measures::wizard_performance`].
 
 use serde::Serialize;
 
 use super::follower::SessionFollower;
-use crate::base::time::SessionTime;
-use crate::base::words::count;
-use crate::communication::Sender;
-use crate::communication::recommendation::aspects_told;
-use crate::measures::sequences::FalseBeliefEpisode;
-use crate::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 use crate::session::event::SignalEndReason;
 use crate::session::settings::ParticipantKind;
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::Sender;
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::measures::sequences::FalseBeliefEpisode;
+use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 
 /// The wizard's signals, each with what the wizard's screen showed when it was sent.
 #[derive(Clone, Debug, Default)]
@@ -51,7 +51,7 @@ impl WizardLog {
             Event::SignalShown { by: Sender::Wizard, signal, .. } => {
                 let sent = WizardSignal {
                     clock: session.trial_clock(stamped.time),
-                    press: session.presses[crate::kitchen::Agent::Human.index()],
+                    press: session.presses[tomcom_core::kitchen::Agent::Human.index()],
                     aspects: aspects_told(&session.kitchen, session.state, signal),
                     to_display_ms: None,
                     taken_back: false,

@@ -5,12 +5,12 @@ use super::controller::{ArmController, ControlCycleResult};
 use super::physics::CYCLE_S;
 use super::reaching::{ReachingBehaviour, ReachingHand};
 use super::report::{ArmCycleReport, PressFailure};
-use crate::base::rng::stream;
-use crate::base::time::SessionTime;
-use crate::kitchen::{ButtonId, Kitchen, State};
-use crate::robot::moment::{ArmPhase, ArmSample};
-use crate::robot::safety::SafetyMode;
-use crate::robot::{AbortReason, RobotEvent};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{ButtonId, Kitchen, State};
+use tomcom_core::robot::moment::{ArmPhase, ArmSample};
+use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{AbortReason, RobotEvent};
 
 /// Interval between recorded samples of a moving robot arm: about twelve per second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);

@@ -7,7 +7,7 @@ use rapier3d::parry::query::details::closest_points_segment_segment_with_locatio
 
 use super::kinematics::SerialArm;
 use super::link::{CollisionSolid, LinkShape};
-use crate::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// Least clearance between the arm's links, and between links and table, in metres.
 pub const KEPT_M: f64 = 0.02;

@@ -16,9 +16,9 @@ use super::report::PressFailure;
 use super::separation::{MARGIN_M, mode_near, speed_limit};
 use super::touch::ContactTracker;
 use super::trajectory::{LegKind, TrajectoryLeg, way_over, way_to, way_up};
-use crate::kitchen::{Agent, ButtonId, Kitchen};
-use crate::robot::moment::{ArmPhase, JOINTS, JointAngles};
-use crate::robot::safety::{SLOWS_M, SafetyMode};
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
+use tomcom_core::robot::moment::{ArmPhase, JOINTS, JointAngles};
+use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
 
 /// Changes of the arm's share of its planned speed along the path, per second: while the arm slows down, stops, and
 /// speeds up.

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 
 use super::kinematics::SerialArm;
-use crate::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// The manufacturer's Denavit-Hartenberg parameters of the UR5, in metres.
 const D1: f64 = 0.089159;

@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector6};
 
 use super::link::{ArmLink, RevoluteJoint};
 use super::urdf::{UrdfError, read_links};
-use crate::robot::moment::JointAngles;
+use tomcom_core::robot::moment::JointAngles;
 
 /// The robot arm UR5 as a URDF.
 pub const UR5: &str = include_str!("ur5.urdf");
@@ -26,7 +26,7 @@ impl SerialArm {
         SerialArm::from_urdf(UR5).expect("our own file")
     }
 
-    /// Reads a robot arm from a URDF: one chain of links with [`crate::robot::moment::JOINTS`] revolute joints.
+    /// Reads a robot arm from a URDF: one chain of links with [`tomcom_core::robot::moment::JOINTS`] revolute joints.
     ///
     /// # Errors
     /// The text is no URDF, or the URDF does not describe such an arm.
@@ -87,7 +87,7 @@ mod tests {
     use nalgebra::{Matrix4, Vector3};
 
     use super::*;
-    use crate::robot::moment::JOINTS;
+    use tomcom_core::robot::moment::JOINTS;
 
     /// The parameters d, a, alpha of the manufacturer's Denavit-Hartenberg table.
     const DH: [[f64; 3]; JOINTS] = [

@@ -5,9 +5,9 @@
 use super::clearance::ArmSurroundings;
 use super::kinematics::SerialArm;
 use super::reach::{BENT, ButtonPoses};
-use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
-use crate::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen};
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// Share of the motion's duration in which the arm goes up (first), and share in which the arm goes down (last).
 const UP: f64 = 0.15;

@@ -8,9 +8,9 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use super::clearance::{ArmSurroundings, Obstruction};
 use super::inverse::turned_towards;
 use super::kinematics::SerialArm;
-use crate::kitchen::{Agent, ButtonId, Kitchen};
-use crate::robot::AbortReason;
-use crate::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
+use tomcom_core::robot::AbortReason;
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;

@@ -7,9 +7,9 @@ use rand::RngExt;
 
 use super::physics::CYCLE_S;
 use super::physics::hand_body::HandPose;
-use crate::base::rng::Stream;
-use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, Kitchen};
+use tomcom_core::base::rng::Stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, Kitchen};
 
 /// Duration of a reach of the hand in seconds: a constant part, and a part per metre of the reach.
 const REACH_S: f64 = 0.3;

@@ -1,7 +1,7 @@
 //! Results of a press and of a controller cycle of the simulated robot arm, as plain data without the physics.
 
-use crate::kitchen::ButtonId;
-use crate::robot::RobotEvent;
+use tomcom_core::kitchen::ButtonId;
+use tomcom_core::robot::RobotEvent;
 
 /// Why the robot arm failed to press a button.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@
 use super::clearance::ArmSurroundings;
 use super::kinematics::SerialArm;
 use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, UnreachableReason};
-use crate::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// Greatest speed of a joint on a leg in joint space, in radians per second.
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;

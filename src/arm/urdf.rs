@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType, Pose};
 
 use super::link::{ArmLink, CollisionSolid, LinkInertia, LinkShape, RevoluteJoint};
-use crate::robot::moment::JOINTS;
+use tomcom_core::robot::moment::JOINTS;
 
 /// Error: a URDF does not describe an arm that the program can move.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -2,9 +2,9 @@
 //! created.
 
 use super::report::ArmCycleReport;
-use crate::base::time::SessionTime;
-use crate::kitchen::{ButtonId, State};
-use crate::robot::{AbortReason, RobotEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{ButtonId, State};
+use tomcom_core::robot::{AbortReason, RobotEvent};
 
 /// The simulated arm in a build without physics: no value of this type can be created.
 #[derive(Clone, Debug)]

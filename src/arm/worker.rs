@@ -8,12 +8,12 @@ use super::body::SimulatedArm;
 #[cfg(feature = "physics")]
 use super::controller::ArmController;
 use super::report::PressFailure;
-use crate::base::rng::{Stream, stream};
-use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, ButtonId, Kitchen, State};
-use crate::robot::policy::{self, PolicyDecision};
-use crate::robot::{AbortReason, IdleReason, RobotEvent};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, State};
+use tomcom_core::robot::policy::{self, PolicyDecision};
+use tomcom_core::robot::{AbortReason, IdleReason, RobotEvent};
 
 /// Time for which a skipped press of the robot is not chosen again, in seconds.
 pub const SKIP_S: f64 = 5.0;

@@ -16,9 +16,9 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::mind::fitting::HumanModelParameter;
 use crate::run::simulate::SimulationShard;
 use crate::run::sweep::ParameterSweepAxis;
+use tomcom_core::mind::fitting::HumanModelParameter;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]

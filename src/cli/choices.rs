@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 
-use crate::communication::concept::ConceptName;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_core::communication::concept::ConceptName;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum ParticipantArg {

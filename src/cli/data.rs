@@ -9,13 +9,13 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::list::{exists, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
-use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::code_exchange::{self, ImportableCodes};
 use crate::run::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
 use crate::session::person_code;
 use crate::session::settings::is_code;
+use tomcom_core::base::words::count;
 
 /// Longest answer to a question, in bytes; no code of a participant is as long.
 const MAX_ANSWER: u64 = 1 << 12;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::base::features::MissingFeature;
 use crate::edge::file_error::FileError;
 use crate::edge::forget::ParticipantDeletionError;
 use crate::edge::log::{DecisionError, RecordingWriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
+use crate::session::features::MissingFeature;
 use crate::session::settings::SettingError;
 
 /// Failure of a command, which decides the program's exit code and message.

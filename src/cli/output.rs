@@ -11,8 +11,8 @@ use miette::{Diagnostic, LabeledSpan, Report, Severity, SourceCode};
 use serde::Serialize;
 
 use super::failure::Failure;
-use crate::base::printable::printable_lines;
 use crate::edge::terminal;
+use tomcom_core::base::printable::printable_lines;
 
 /// Format of a command's output: text or JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -7,7 +7,6 @@ use clap::Args;
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::base::words::count;
 use crate::edge::file_error::FileError;
 use crate::edge::files::{SessionSetup, read_session};
 use crate::edge::picture_file::{check_picture, write_picture};
@@ -20,6 +19,7 @@ use crate::session::settings::ArmKind;
 use crate::study::drawn_study::DrawnEffect;
 use crate::study::simulation_pool::SimulationPool;
 use crate::study::{arm_table, power_answer, power_chart};
+use tomcom_core::base::words::count;
 
 /// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use super::failure::Failure;
 use super::output::put;
-use crate::base::path_text::PathText;
-use crate::base::time::SessionTime;
 use crate::run::open_viewer::{
     OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, review, running, save,
     until_asked_to_end,
 };
+use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::time::SessionTime;
 
 impl From<RerunViewerError> for Failure {
     fn from(error: RerunViewerError) -> Failure {

@@ -8,11 +8,11 @@ use super::data::two_raters;
 use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::base::words::count;
 use crate::run::simulate::SimulationShard;
 use crate::run::study::reading::AnalysisScope;
 use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError, shards};
 use crate::study::figures::StudySummary;
+use tomcom_core::base::words::count;
 
 /// Analyses the recordings of a study: report and tables.
 ///

@@ -11,9 +11,9 @@ use super::map_items::{
     Item, KitchenMapElement, MIN_CARD, clusters, clusters_forced, ends, extent, is_order, items, owner, widths,
 };
 use super::view::regions::top;
-use crate::kitchen::{Agent, DisplayArea, Kitchen};
 use crate::session::Session;
 use crate::session::settings::ParticipantKind;
+use tomcom_core::kitchen::{Agent, DisplayArea, Kitchen};
 
 /// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]

@@ -4,9 +4,9 @@
 use ratatui::layout::Rect;
 
 use super::chord::KeyChord;
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::kitchen::AspectId;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::kitchen::AspectId;
 
 /// Action of a mouse click on the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

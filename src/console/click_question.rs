@@ -11,11 +11,11 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::KeyAction;
 use super::notice::NoticeLevel;
 use super::sending::refusal;
-use crate::communication::offer::Offer;
-use crate::communication::{Sender, Signal};
 use crate::session::offers;
 use crate::session::settings::WizardVisibility;
 use crate::session::{Event, Session};
+use tomcom_core::communication::offer::Offer;
+use tomcom_core::communication::{Sender, Signal};
 
 /// Asks the wizard whether to send a clicked signal or the clicked offer's signal; or says why the signal cannot be
 /// sent.

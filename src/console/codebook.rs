@@ -4,8 +4,8 @@ use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, RaterAction};
 use super::keys::KeyBindings;
 use super::text_columns::{width, wrap};
-use crate::kitchen::Kitchen;
-use crate::measures::cause_codes::ErrorCauseKind;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::measures::cause_codes::ErrorCauseKind;
 
 /// Columns between two codebook entries in a line.
 const GAP: u16 = 2;

@@ -1,6 +1,6 @@
 //! What to do with the result of a gaze accuracy check.
 
-use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
+use tomcom_core::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 
 /// Action that the console proposes after a gaze accuracy check, which enter carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

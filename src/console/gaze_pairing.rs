@@ -1,8 +1,8 @@
 //! Pairing code and address for gaze senders at other computers, shown while no gaze arrives.
 
-use crate::base::time::SessionTime;
 use crate::session::Session;
 use crate::session::preflight_checks::PreflightCheck;
+use tomcom_core::base::time::SessionTime;
 
 /// Address and pairing code that a gaze sender at another computer needs.
 #[derive(Clone, Debug, PartialEq, Eq)]

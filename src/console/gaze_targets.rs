@@ -8,9 +8,9 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::gaze_advice::AccuracyCheckAction;
 use super::notice::NoticeLevel;
 use super::sending::send;
-use crate::gaze::calibration::GazeAccuracy;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::{Event, Session};
+use tomcom_core::gaze::calibration::GazeAccuracy;
 
 /// Key that selects accepting the gaze without a correction.
 pub const AS_IT_IS: char = 'u';

@@ -1,7 +1,7 @@
 //! State of a wizard training at the console: the task, and feedback on each signal.
 
 use super::notice::NoticeLevel;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Content of the wizard training's panel.
 #[derive(Clone, Debug, Default, PartialEq)]

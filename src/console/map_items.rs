@@ -1,6 +1,6 @@
 //! Elements of the kitchen map (locations and storages), and how they share its columns and rows.
 
-use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
+use tomcom_core::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
 
 /// An element of the kitchen map: a location or an ingredient storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub(super) const MIN_CARD: u16 = 12;
 /// The elements of a kitchen for its map; `with_keys` reserves room for the keys of the human's storage, `own_hand` are
 /// the columns beside the name of the participant's hand.
 pub(super) fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
-    let location = |(index, location): (usize, &crate::kitchen::Location)| {
+    let location = |(index, location): (usize, &tomcom_core::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
         let thing = KitchenMapElement::Location(LocationId(index as u8));
         // Columns beside a location's name for rule, key and gap (the participant's hand seldom has a key); orders
@@ -39,7 +39,7 @@ pub(super) fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<It
         let min_columns = (location.label().chars().count() as u16 + beside).max(MIN_CARD);
         Item { thing, area: location.display, owner, min_columns }
     };
-    let storage = |(index, storage): (usize, &crate::kitchen::IngredientStorage)| Item {
+    let storage = |(index, storage): (usize, &tomcom_core::kitchen::IngredientStorage)| Item {
         thing: KitchenMapElement::Storage(index),
         area: storage.display,
         owner: Some(storage.agent),

@@ -5,8 +5,8 @@ use crossterm::event::KeyCode;
 
 use super::list_cursor::{ListCursor, ListReply};
 use crate::history::wording;
-use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
 use crate::session::Session;
+use tomcom_core::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
 
 /// Question that a list of answers asks the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +117,7 @@ impl Picker {
 fn places(session: &Session) -> Vec<PickerEntry> {
     let kitchen = &session.kitchen;
     let places = kitchen.locations.iter().enumerate().filter(|(_, location)| location.kind != LocationKind::Order);
-    let choice = |(index, location): (usize, &crate::kitchen::Location)| {
+    let choice = |(index, location): (usize, &tomcom_core::kitchen::Location)| {
         let id = LocationId(index as u8);
         let remark = kitchen.content_label(session.state, id).to_string();
         PickerEntry { answer: PickerAnswer::Place(id), label: location.label().to_string(), remark }

@@ -10,7 +10,6 @@ use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAc
 use super::playback::{Playback, ReplayAction, SPEEDS};
 use super::preflight;
 use super::sending::refusal;
-use crate::communication::Sender;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::admit::admit;
 use crate::session::event::SignalEndReason;
@@ -18,6 +17,7 @@ use crate::session::offers;
 use crate::session::probes::ProbeEvent;
 use crate::session::settings::WizardVisibility;
 use crate::session::{Event, Session, TrialPhase};
+use tomcom_core::communication::Sender;
 
 /// Whether an action would have an effect now, given the dialog or sheet that covers the console.
 pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {

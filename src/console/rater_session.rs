@@ -2,8 +2,8 @@
 
 use crate::analysis::error_list::ListedError;
 use crate::history::wording;
-use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use crate::measures::consensus::RaterConsensus;
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::consensus::RaterConsensus;
 
 /// Who codes the errors of a recording: one rater, or two raters together.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::kitchen::{Agent, ButtonAction, Kitchen};
+use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
 
 /// A location or a storage on the participant's display, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -19,7 +19,8 @@ pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> Sce
     let hand = kitchen.hands[agent.index()];
     let location = match action {
         ButtonAction::Take(item) => {
-            let is_it = |storage: &crate::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
+            let is_it =
+                |storage: &tomcom_core::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
             // Every button that takes an item belongs to a storage (`src/kitchen/compile/buttons.rs`).
             match kitchen.storages.iter().position(is_it) {
                 Some(storage) => return SceneElement::Storage(storage),

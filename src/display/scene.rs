@@ -7,11 +7,11 @@ use serde::Serialize;
 
 use super::display_place::{SceneElement, spot};
 use super::page_language::DisplayWords;
-use crate::gaze::tags::DisplayTags;
-use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 use crate::session::settings::GazeSource;
 use crate::session::wall_display::DisplayedNames;
 use crate::session::{Session, SessionSpec};
+use tomcom_core::gaze::tags::DisplayTags;
+use tomcom_core::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 
 /// Area on the display: left, top, width and height in fractions of the display's size, with the origin at the top
 /// left.
@@ -129,15 +129,15 @@ pub struct LabelledAppearance {
 pub fn scene(session: &Session) -> DisplayScene {
     let (kitchen, spec) = (&session.kitchen, &session.spec);
     let words = DisplayWords::for_kitchen(kitchen, &spec.display);
-    let rect = |area: crate::kitchen::DisplayArea| [area.x, area.y, area.w, area.h];
-    let spot = |location: &crate::kitchen::Location| DisplayLocation {
+    let rect = |area: tomcom_core::kitchen::DisplayArea| [area.x, area.y, area.w, area.h];
+    let spot = |location: &tomcom_core::kitchen::Location| DisplayLocation {
         name: location.name.clone(),
         label: words.of_name(&location.name),
         kind: kind(location.kind),
         area: rect(location.display),
         look: location.look.clone(),
     };
-    let shelf = |storage: &crate::kitchen::IngredientStorage| DisplayStorage {
+    let shelf = |storage: &tomcom_core::kitchen::IngredientStorage| DisplayStorage {
         agent: storage.agent,
         item: kitchen.content(storage.item).name.clone(),
         label: words.of_name(&storage.label),
@@ -185,7 +185,7 @@ fn kind(kind: LocationKind) -> &'static str {
 fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
     let Ok(tags) = DisplayTags::place(kitchen) else { return Vec::new() };
     let row = |cells: &[bool]| cells.iter().map(|is_black| if *is_black { '#' } else { ' ' }).collect();
-    let mark = |tag: &crate::gaze::tags::DisplayTag| TagPicture {
+    let mark = |tag: &tomcom_core::gaze::tags::DisplayTag| TagPicture {
         area: [tag.area.x, tag.area.y, tag.area.w, tag.area.h],
         rows: tag.cells().iter().map(|cells| row(cells)).collect(),
     };
@@ -193,7 +193,7 @@ fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
 }
 
 fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
-    let knob = |button: &crate::kitchen::Button| {
+    let knob = |button: &tomcom_core::kitchen::Button| {
         let does = match button.action {
             ButtonAction::Take(_) => "take",
             ButtonAction::Use(_) => "use",
@@ -207,7 +207,7 @@ fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
             _ => words.of_name(&button.name),
         };
         let (name, area) = (button.name.clone(), button.area.clone());
-        let &crate::kitchen::Button { key, gamepad, colour, .. } = button;
+        let &tomcom_core::kitchen::Button { key, gamepad, colour, .. } = button;
         DisplayButton { name, label, key, gamepad, colour, area, does, at }
     };
     kitchen.buttons[Agent::Human.index()].iter().map(knob).collect()

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::display_place::{SceneElement, spot};
-use crate::kitchen::{Agent, DishId, Kitchen};
 use crate::session::Session;
 use crate::session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
 use crate::session::tutorial::TutorialState;
+use tomcom_core::kitchen::{Agent, DishId, Kitchen};
 
 /// A step of the tutorial, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

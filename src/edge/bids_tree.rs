@@ -10,7 +10,7 @@ use super::file_error::{FileError, FileResult, read_regular};
 use crate::analysis::bids::{
     BidsFile, CODE_COLUMN, DESCRIPTION_NAME, LongTableFacts, LongTableRow, PARTICIPANTS_NAME, PROGRAM_NAME,
 };
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Advice in error messages when the data set cannot be written.
 const REMEDY: &str = "a new folder on a disk with free space";

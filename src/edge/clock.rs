@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use jiff::Timestamp;
 
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Gap between two readings of the clock after which the program counts as having been suspended.
 const STANDSTILL: Duration = Duration::from_secs(1);

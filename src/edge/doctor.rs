@@ -16,12 +16,12 @@ use super::ask::ask;
 use super::clock::WallTime;
 use super::log::RecordingLock;
 use super::terminal::theme;
-use crate::base::features::Feature;
 use crate::console::view::theme::TerminalBackground;
-use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
+use crate::session::features::Feature;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
 use crate::session::settings::ConsoleSpec;
+use tomcom_core::kitchen::Kitchen;
 
 /// Terminal size at which the console shows all panels, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);

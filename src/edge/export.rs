@@ -10,11 +10,11 @@ use std::path::{Path, PathBuf};
 use super::overwrite;
 use super::replace_file::{self, Replacement};
 use super::written_tables::{ListedTables, reader};
-use crate::base::spreadsheet::without_formula;
 use crate::study::column::{CsvCell, CsvRow, CsvTable};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 use crate::study::study_part::AnalysedRecording;
+use tomcom_core::base::spreadsheet::without_formula;
 
 /// File name of the analysis report.
 pub const REPORT_NAME: &str = "report.html";

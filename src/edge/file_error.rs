@@ -9,8 +9,8 @@ use std::sync::Arc;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
 use super::place::place_of;
-use crate::base::features::{Feature, MissingFeature};
-use crate::base::printable::{printable, printable_lines};
+use crate::session::features::{Feature, MissingFeature};
+use tomcom_core::base::printable::{printable, printable_lines};
 
 /// Result of reading a file, with an error that explains what is wrong with the file.
 pub type FileResult<T> = Result<T, FileError>;

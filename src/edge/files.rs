@@ -10,18 +10,18 @@ use super::overwrite;
 use super::parse::parse;
 use super::place::place_of;
 use crate::analysis::fitting::FITTED;
-use crate::base::number_range::OutOfRange;
-use crate::kitchen::compile::{KitchenFileError, KitchenFileKind};
-use crate::kitchen::layout::LayoutSpec;
-use crate::kitchen::recipe::RecipesSpec;
-use crate::kitchen::{Kitchen, layout_ranges};
-use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::RecordedFile;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
 use crate::session::settings::SettingError;
-use crate::wizard::settings::WizardKind;
+use tomcom_core::base::number_range::OutOfRange;
+use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
+use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_core::kitchen::recipe::RecipesSpec;
+use tomcom_core::kitchen::{Kitchen, layout_ranges};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_people::wizard::settings::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
@@ -283,8 +283,8 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
 /// Checks that the robot's arm can reach all of the robot's buttons.
 #[cfg(feature = "physics")]
 fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) -> FileResult<()> {
-    let Some((button, why)) = crate::arm::reach::out_of_reach(kitchen) else { return Ok(()) };
-    let button = kitchen.button(crate::kitchen::Agent::Robot, button);
+    let Some((button, why)) = tomcom_arm::reach::out_of_reach(kitchen) else { return Ok(()) };
+    let button = kitchen.button(tomcom_core::kitchen::Agent::Robot, button);
     let [x, y] = button.at_m;
     let place = layout.buttons().find(|spec| *spec.at_m.get_ref() == button.at_m).map(|spec| spec.at_m.span());
     let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());

@@ -284,9 +284,9 @@ mod tests {
 
     use super::*;
     use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
-    use crate::gaze::GazeSample;
     use tokio::net::TcpListener;
     use tokio::sync::mpsc::{Receiver, channel};
+    use tomcom_core::gaze::GazeSample;
 
     const ONE: ConnectionLimits = ConnectionLimits {
         most: 1,

@@ -6,12 +6,12 @@ use super::file_error::{FileError, FileResult};
 use super::gaze_table::{self, GazeTable};
 use super::log::{LOG_NAME, LogReader};
 use super::tracker_folder::{TrackerFinding, tracker_data};
-use crate::gaze::GazeSample;
-use crate::gaze::recorded_gaze::RecordedGazeSummary;
-use crate::gaze::surface::SurfaceHomography;
 use crate::session::Event;
 use crate::session::apply::apply;
 use crate::session::tracker::TrackerSpec;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
+use tomcom_core::gaze::surface::SurfaceHomography;
 
 /// Largest number of samples in a gaze file (a day at 60 Hz).
 const MAX_SAMPLES: usize = 5_184_000;

@@ -216,8 +216,8 @@ mod tests {
     use tokio::sync::mpsc::channel;
 
     use super::*;
-    use crate::base::rng::stream;
     use rand::RngExt;
+    use tomcom_core::base::rng::stream;
 
     #[test]
     fn no_sender_of_datagrams_moves_the_clock_of_another_one() {

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use serde::Deserialize;
 
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
-use crate::base::printable::printable;
-use crate::gaze::GazeSample;
+use tomcom_core::base::printable::printable;
+use tomcom_core::gaze::GazeSample;
 
 /// Largest age of a gaze sample, in seconds; a larger age is an error of the sender.
 const MAX_AGE_S: f64 = 60.0;

@@ -12,13 +12,13 @@ use encoding_rs_io::{DecodeReaderBytes, DecodeReaderBytesBuilder};
 
 use super::file_error::{FileError, FileResult, open_regular};
 use super::log::at_line;
-use crate::base::printable::printable;
-use crate::base::words::count;
-use crate::gaze::GazeSample;
-use crate::gaze::recorded_gaze::GAP_S;
-use crate::gaze::recorded_times::{RecordedTimeline, TimeLimits, median_interval};
-use crate::gaze::surface::SurfaceHomography;
 use crate::session::tracker::MissingConfidence;
+use tomcom_core::base::printable::printable;
+use tomcom_core::base::words::count;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::recorded_gaze::GAP_S;
+use tomcom_core::gaze::recorded_times::{RecordedTimeline, TimeLimits, median_interval};
+use tomcom_core::gaze::surface::SurfaceHomography;
 
 /// Description of valid gaze files, for error messages.
 const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \

@@ -9,9 +9,9 @@ use super::parse::{FileKind, ParsedFile, parse};
 use crate::console::KeyFileBindings;
 use crate::console::key_action::{KeyError, KeyErrorSource, KeyLayer};
 use crate::console::keys;
-use crate::kitchen::Kitchen;
-use crate::kitchen::layout::{LayoutSpec, is_same_key};
 use crate::session::header::RecordedFile;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::layout::{LayoutSpec, is_same_key};
 
 impl ParsedFile for KeyFileBindings {
     const KIND: FileKind = FileKind::Keys;

@@ -5,12 +5,12 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 use super::file_error::{FileError, FileResult};
-use crate::kitchen::layout::LayoutSpec;
-use crate::kitchen::recipe::RecipesSpec;
-use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::battery::BatterySpec;
 use crate::session::plan::{Questionnaire, Tutorial};
+use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_core::kitchen::recipe::RecipesSpec;
+use tomcom_core::mind::model::HumanModel;
 
 /// Kind of a file that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -25,11 +25,11 @@ use re_sdk_types::datatypes::Quaternion;
 use self::blueprint::{APPLICATION, ViewerLayout, ViewerStart};
 pub use self::blueprint::{ShownRecording, TRIAL_TIME};
 use self::viewer_server::ViewerServer;
-use crate::arm::link::{CollisionSolid, LinkShape};
-use crate::base::printable::{printable, printable_lines};
-use crate::base::time::SessionTime;
 use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SeriesStyle};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
+use tomcom_arm::link::{CollisionSolid, LinkShape};
+use tomcom_core::base::printable::{printable, printable_lines};
+use tomcom_core::base::time::SessionTime;
 
 /// Version of Rerun with which streams are written; viewers of the same version can read the streams.
 pub const VERSION: &str = "0.36.3";

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use super::arrival::Arrival;
 use super::gaze_input::TrackerMessage;
-use crate::base::time::SessionTime;
-use crate::gaze::GazeSample;
-use crate::gaze::device_clock::{ClockNews, ClockStep, DeviceClock};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::device_clock::{ClockNews, ClockStep, DeviceClock};
 
 /// Time before the sender's first message in which its samples can have been taken: a sender may begin with old ones.
 const BEFORE: Duration = Duration::from_secs(86_400);
@@ -88,7 +88,7 @@ impl SenderClock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gaze::quality::TOO_OLD_S;
+    use tomcom_core::gaze::quality::TOO_OLD_S;
 
     /// A sample with these stamps; each is of another place.
     fn sample(t: Option<f64>, number: u64) -> TrackerMessage {

@@ -169,9 +169,9 @@ mod tests {
     use std::net::Ipv4Addr;
 
     use super::*;
-    use crate::base::time::SessionTime;
     use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
     use crate::scene::EntityData;
+    use tomcom_core::base::time::SessionTime;
 
     #[test]
     fn what_is_told_is_in_the_file_when_the_stream_is_closed_and_a_taken_port_is_no_trouble() {

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::base::time::SessionTime;
-use crate::kitchen::{AspectId, Kitchen, State};
-use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::dirichlet::DirichletBelief;
 use crate::session::Session;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{AspectId, Kitchen, State};
+use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Least time between two snapshots of the belief estimate that differ little, in seconds.
 const STEP_S: f64 = 0.2;

@@ -4,18 +4,18 @@
 use std::sync::Arc;
 
 use super::belief_track::AspectBeliefSnapshot;
-use crate::base::time::SessionTime;
-use crate::base::words::count;
-use crate::communication::Signal;
-use crate::communication::concept::ConceptName;
-use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::history::wording;
-use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use crate::measures::matching::{
+use crate::session::wizard_screen::WizardScreenContent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
+use tomcom_core::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use tomcom_core::measures::matching::{
     CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
 };
-use crate::measures::sequences::FALSE_BELOW;
-use crate::session::wizard_screen::WizardScreenContent;
+use tomcom_core::measures::sequences::FALSE_BELOW;
 
 /// A belief with a P(truth) of at least this counts as certain.
 const SURE: f64 = 0.9;
@@ -301,7 +301,7 @@ fn truly(kitchen: &Kitchen, state: State) -> String {
         let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);
         let is_there = match location.kind {
             LocationKind::Order => matches!(state.order(id), OrderContent::Dish(_)),
-            _ => state.content(id) != crate::kitchen::ContentId::EMPTY,
+            _ => state.content(id) != tomcom_core::kitchen::ContentId::EMPTY,
         };
         is_there.then(|| format!("{} {}", location.label(), kitchen.content_label(state, id)))
     };

@@ -1,6 +1,6 @@
 //! Wording of what a press took, put or made.
 
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, State};
+use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, State};
 
 /// What a press with an effect took, put or made, in words: "takes cooked rice", "puts nori"; `None` where
 /// the button's name says it. The states are those before and after the press.

@@ -2,15 +2,15 @@
 //! signal corrects false?
 //!
 //! The measures of a study look at the whole trial and leave out false beliefs that led to no error
-//! ([`crate::measures::wizard_performance`]); this module judges a signal by the beliefs at the time the signal was
+//! ([`tomcom_core::measures::wizard_performance`]); this module judges a signal by the beliefs at the time the signal was
 //! sent.
 
-use crate::communication::recommendation::aspects_told;
-use crate::communication::{Sender, Signal};
-use crate::kitchen::{Agent, AspectId};
-use crate::measures::wizard_performance::LATE_PRESSES;
 use crate::session::event::SignalEndReason;
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_core::measures::wizard_performance::LATE_PRESSES;
 
 /// Counts of a sender's signals by the judgement of the signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,19 +1,6 @@
 //! Wording of buttons, locations, signals, phases and events as texts for screens and reports.
 
 use super::{press_wording, probe_wording};
-use crate::base::words::count;
-use crate::communication::offer::OfferedCommunication;
-use crate::communication::recommendation::SignalReason;
-use crate::communication::{Sender, Signal};
-use crate::gaze::quality::DroppedInputCounts;
-use crate::kitchen::no_effect::NoEffectReason;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
-use crate::measures::JudgedPress;
-use crate::measures::attribution::ErrorCause;
-use crate::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
-use crate::robot::IdleReason;
-use crate::robot::moment::ArmPhase;
-use crate::robot::safety::SafetyMode;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::{SignalEndReason, TrialEndReason};
@@ -23,9 +10,22 @@ use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::AnswerDevice;
 use crate::session::{Session, TimelineEvent, TrialPhase};
+use tomcom_core::base::words::count;
+use tomcom_core::communication::offer::OfferedCommunication;
+use tomcom_core::communication::recommendation::SignalReason;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::gaze::quality::DroppedInputCounts;
+use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
+use tomcom_core::robot::IdleReason;
+use tomcom_core::robot::moment::ArmPhase;
+use tomcom_core::robot::safety::SafetyMode;
 
 /// A button's label in words: "cutting board", "take rice".
-pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> String {
+pub fn button(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonId) -> String {
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
@@ -79,7 +79,7 @@ fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &
 }
 
 /// Location at which a button acts: the button's own location, or the agent's hand.
-pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
+pub fn place(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
         ButtonAction::Use(location) | ButtonAction::Serve(location) => location,

@@ -6,7 +6,7 @@ use std::thread;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 use crate::analysis::advisor::{AdviceRequest, Advisor};
-use crate::communication::recommendation::Recommendation;
+use tomcom_core::communication::recommendation::Recommendation;
 
 impl Advisor {
     /// Starts the assistant's thread, which ends when the returned connection is dropped.

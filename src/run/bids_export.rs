@@ -12,18 +12,18 @@ use crate::analysis::bids::{
     BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, LongTable, LongTableFacts, PressOutcome,
     QuestionnairePhenotypes, RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
-use crate::base::path_text::PathText;
-use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogEnding, LogReader};
-use crate::kitchen::KitchenChange;
-use crate::measures::errors::PressJudge;
 use crate::session::event::Event;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::{LogHeader, apply};
 use crate::study::planned_trial::{RecordingCopy, copies_in_words};
+use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::words::count;
+use tomcom_core::kitchen::KitchenChange;
+use tomcom_core::measures::errors::PressJudge;
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]

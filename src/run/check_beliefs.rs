@@ -11,10 +11,10 @@ use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_figures::ProbeSummary;
 use crate::analysis::probe_record::ProbedTrial;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::kitchen::Kitchen;
-use crate::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
-use crate::measures::flags::chosen_thresholds;
 use crate::session::settings::ParticipantKind;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
+use tomcom_core::measures::flags::chosen_thresholds;
 
 /// Checks the belief estimates of recordings in one kitchen. The thresholds for flagging false beliefs are chosen on
 /// the recordings `choose_on`, which are not checked, or by cross-fitting if there are none. `done` is called after

@@ -8,9 +8,9 @@ use super::error::RunError;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::rater_codes::{self, RaterCodeRow};
 use crate::edge::log::{RecordingLock, RecordingWriteError, consensus_file};
-use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use crate::measures::consensus::RaterConsensus;
 use crate::session::person_code;
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::consensus::RaterConsensus;
 
 /// Advice in error messages on how the table names a rater.
 const RATER: &str = "a rater's code of a letter and up to 15 letters, digits, - and _, never a name; or two codes such as \

@@ -7,15 +7,15 @@ use serde::Serialize;
 
 use super::replay::RecordingReplay;
 use crate::analysis::error_list::ListedError;
-use crate::base::words::{count, decimal};
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{consensus_file, rater_codes};
 use crate::history::wording;
-use crate::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
-use crate::measures::consensus::{RaterConsensus, unsettled};
-use crate::measures::rater_choice::{RaterPair, of_most};
 use crate::session::settings::ParticipantKind;
 use crate::study::figures::IdenticalCodes;
+use tomcom_core::base::words::{count, decimal};
+use tomcom_core::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
+use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
+use tomcom_core::measures::rater_choice::{RaterPair, of_most};
 
 /// A recording with raters' codes of its errors.
 #[derive(Clone, Debug)]

@@ -6,9 +6,9 @@ use crate::analysis::error_list::ListedError;
 use crate::console::rater_session::{CodingRaters, RaterSession};
 use crate::edge::file_error::FileError;
 use crate::edge::log::{RecordingWriteError, consensus_file, rater_codes};
-use crate::measures::cause_codes::{CodableErrors, RaterCodes};
-use crate::measures::consensus::{RaterConsensus, unsettled};
 use crate::session::person_code;
+use tomcom_core::measures::cause_codes::{CodableErrors, RaterCodes};
+use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
 
 /// The coding session of one rater, with the codes that the rater gave earlier.
 ///

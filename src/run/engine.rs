@@ -25,16 +25,6 @@ use std::sync::Arc;
 use self::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
 use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::analysis::follower::SessionFollower;
-use crate::arm::worker::RobotTaskExecutor;
-use crate::base::time::SessionTime;
-use crate::communication::Sender;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::JudgedPress;
-use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::dirichlet::DirichletBelief;
-use crate::participant::gaze_gaps::GazeDropoutSchedule;
-use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
@@ -44,7 +34,17 @@ use crate::session::probes::ProbeEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
 use crate::session::{AppliedEvent, Event, LogHeader, Session, SessionSpec, TimestampedEvent};
-use crate::wizard::{ScriptedWizard, WizardAction};
+use tomcom_arm::worker::RobotTaskExecutor;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Sender;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
+use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 
 /// Runs a session: raises due events, accepts external ones, and stamps all of them.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use crate::console::key_action::KeyError;
 use crate::edge::file_error::FileError;
 use crate::edge::log::RecordingWriteError;
 use crate::edge::lsl::LslError;
-use crate::gaze::tags::TagError;
+use tomcom_core::gaze::tags::TagError;
 
 /// Error of a command: a file cannot be read, or a result cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -9,7 +9,6 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 
 use super::desk::{OperatorDesk, PageInput};
 use super::error::TerminalError;
-use crate::communication::recommendation::Recommendation;
 use crate::console::question::StartQuestion;
 use crate::console::recording_picker::RecordingPicker;
 use crate::console::view::theme::Theme;
@@ -17,6 +16,7 @@ use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::terminal::TerminalScreen;
 use crate::session::Session;
+use tomcom_core::communication::recommendation::Recommendation;
 
 /// Least time between two frames of the console (30 frames per second).
 pub(super) const FRAME: Duration = Duration::from_millis(33);

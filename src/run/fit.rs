@@ -10,14 +10,14 @@ use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::fitting::fitted_answers::IntervalNarrowing;
 use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings};
 use crate::edge::file_error::{FileError, FileResult};
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
-use crate::mind::model::HumanModel;
-use crate::mind::observation::Observation;
 use crate::session::Event;
 use crate::session::probe_sampling;
 use crate::session::probes::{ProbeEvent, ProbeQuestion};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::Observation;
 
 /// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]

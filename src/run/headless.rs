@@ -1,9 +1,9 @@
 //! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
 
 use super::engine::SessionEngine;
-use crate::base::time::SessionTime;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
 
 /// Time after which a simulated attendant resumes an arm that has stopped by itself, in seconds.
 const LOOKS_S: f64 = 3.0;

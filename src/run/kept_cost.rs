@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Cost to go of the last recording's or trial's kitchen. Most recordings that a command reads, and all trials that it
 /// simulates, are of one kitchen, so the tables and caches that one of them filled serve the next. They change computing

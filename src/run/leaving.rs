@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::options::SessionStart;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::base::words::count;
 use crate::session::Session;
+use tomcom_core::base::words::count;
 
 /// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

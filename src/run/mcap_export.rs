@@ -8,14 +8,14 @@ use serde::Serialize;
 
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::foxglove::McapMessageConverter;
-use crate::base::path_text::PathText;
-use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogEnding, LogReader};
 use crate::edge::mcap_file::McapFile;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::LogHeader;
 use crate::session::study_arm::StudyArm;
+use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::words::count;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Summary of a recording's export as MCAP.
 #[derive(Clone, Debug, Serialize)]

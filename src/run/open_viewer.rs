@@ -9,7 +9,6 @@ use std::time::Duration;
 use tempfile::TempPath;
 
 use super::replay::RecordingReplay;
-use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
 use crate::edge::overwrite;
@@ -20,10 +19,11 @@ use crate::edge::stream::{PORTS, is_free};
 use crate::edge::stream_head;
 use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, ViewerAvailability};
-use crate::mind::dirichlet::DirichletBelief;
 use crate::scene::entity_content::slug;
 use crate::scene::{SceneInputs, SessionScene};
 use crate::session::TimestampedEvent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// First network ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;

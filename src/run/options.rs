@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::analysis::watcher::SenderComparisonSettings;
-use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::{self, SessionSetup};
-use crate::kitchen::Kitchen;
 use crate::session::LogHeader;
 use crate::session::plan::PlanSpec;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::kitchen::Kitchen;
 
 /// What a live session starts from: a new session, a repeated trial, or a recording to continue.
 #[derive(Clone, Debug)]

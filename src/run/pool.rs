@@ -11,15 +11,15 @@ use super::simulate::SimulationShard;
 use super::{headless, parallel};
 use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::SessionSetup;
-use crate::kitchen::Kitchen;
 use crate::session::plan::{Participants, Study};
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
 use crate::session::{SessionSpec, TimestampedEvent};
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::Kitchen;
 
 /// Request to simulate a pool of participants, from which studies are drawn.
 #[derive(Clone, Debug)]

@@ -11,8 +11,8 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use crate::edge::log::{LogEnding, LogReader};
 use crate::edge::recordings;
-use crate::measures::errors::PressJudge;
 use crate::session::apply;
+use tomcom_core::measures::errors::PressJudge;
 
 /// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

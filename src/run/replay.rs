@@ -6,13 +6,13 @@ use std::sync::Arc;
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::watcher::follows_at_once;
-use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogLine, LogReader};
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Kitchen, KitchenChange};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::{Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Kitchen, KitchenChange};
 
 /// A recording that is being replayed, with the session at the replay's present position.
 #[derive(Debug)]

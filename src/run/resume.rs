@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::engine::SessionEngine;
 use super::verify::RepeatedRecording;
-use crate::base::time::SessionTime;
 use crate::edge::file_error::FileError;
 use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued};
 use crate::session::header::PreviousPart;
 use crate::session::{Event, LogHeader, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
 
 /// Why a recording cannot be continued.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -12,7 +12,6 @@ use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
 use super::seekable_replay::SeekableReplay;
 use super::watch_desk::ComparisonThreadHandle;
 use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use crate::base::time::SessionTime;
 use crate::console::compared::SenderComparisonView;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{Playback, ReplayAction};
@@ -22,7 +21,8 @@ use crate::edge::key_file::key_map;
 use crate::edge::log::{LogEnding, RecordingLock};
 use crate::edge::terminal::TerminalScreen;
 use crate::history::wording;
-use crate::kitchen::cost_to_go::CostToGo;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Time spent on reading the rest of a recording, of the 50 ms between two ticks for files.
 const READING: Duration = Duration::from_millis(35);

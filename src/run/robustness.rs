@@ -14,12 +14,12 @@ use crate::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::CohortBattery;
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
 use crate::session::battery::CohortSpec;
 use crate::session::settings::{Condition, SessionSpec};
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
 
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]

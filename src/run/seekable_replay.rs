@@ -10,13 +10,13 @@ use std::path::Path;
 use super::replay::RecordingReplay;
 use super::standing::exclusion_status;
 use crate::analysis::exclusion_status::ExclusionStatus;
-use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::LogPlace;
 use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use crate::history::landmark::ReplayLandmark;
 use crate::session::settings::WizardVisibility;
 use crate::session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
+use tomcom_core::base::time::SessionTime;
 
 /// Largest number of events in a chunk.
 const CHUNK: usize = 4096;

@@ -7,9 +7,9 @@ use super::parallel;
 use super::standing::exclusion_status;
 use crate::analysis::compared_recording::{RecordingSenderComparison, SenderComparer};
 use crate::analysis::watcher::SenderComparisonSettings;
-use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::LogReader;
+use tomcom_core::base::words::count;
 
 /// Matching windows that the option `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;

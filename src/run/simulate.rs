@@ -19,16 +19,16 @@ use super::replay::RecordingReplay;
 use super::{headless, options};
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
-use crate::base::words::count;
-use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
 use crate::edge::files::SessionSetup;
 use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated, ruling};
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
 use crate::session::study_arm::StudyArm;
 use crate::session::{LogHeader, TimestampedEvent};
+use tomcom_core::base::words::count;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]

@@ -13,17 +13,17 @@ use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_t
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
-use crate::base::path_text::PathText;
-use crate::base::words::decimal;
-use crate::communication::concept::ConceptName;
-use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
 use crate::edge::log::RecordingWriteError;
 use crate::edge::overwrite;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::HumanModelParameter;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
+use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::words::decimal;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::mind::fitting::HumanModelParameter;
 
 /// Name of the results table's file in the folder of the recordings; shards have file names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";

@@ -8,9 +8,9 @@ use super::replay::RecordingReplay;
 use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::analysis::follower::InferenceTiming;
 use crate::analysis::timing_summary::{DurationPercentiles, TimingSummary};
-use crate::base::time::SessionTime;
 use crate::edge::file_error::FileResult;
-use crate::kitchen::cost_to_go::CostToGo;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Nanoseconds on the monotonic clock since this function was first called.
 pub(super) fn monotonic_ns() -> u64 {

@@ -17,8 +17,8 @@ use crate::console::playback::SPEEDS;
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::training;
-use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use crate::session::settings::{Condition, WizardVisibility};
+use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 
 /// Request of `tomcom train`.
 #[derive(Clone, Debug)]

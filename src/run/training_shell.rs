@@ -10,9 +10,6 @@ use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use crate::analysis::lesson_report;
 use crate::analysis::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
-use crate::base::time::SessionTime;
-use crate::base::words::count;
-use crate::communication::recommendation::aspects_told;
 use crate::console::console_model::Dialog;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
 use crate::console::notice::NoticeLevel;
@@ -21,13 +18,16 @@ use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, 
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
 use crate::history::wording;
-use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::wizard_performance::{
-    FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, verdicts,
-};
-use crate::mind::RecordedBelief;
 use crate::session::event::SignalEndReason;
 use crate::session::{Event, TimestampedEvent, apply};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::measures::wizard_performance::{
+    FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, verdicts,
+};
+use tomcom_core::mind::RecordedBelief;
 
 /// The training console for one recording.
 pub(super) struct TrainingShell {

@@ -8,12 +8,12 @@ use super::error::LiveError;
 use super::options::SessionStart;
 use super::resume::resume;
 use crate::analysis::watcher::SenderComparisonSettings;
-use crate::base::time::SessionTime;
 use crate::edge::log::RecordingLock;
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// A session that is prepared to be run and recorded.
 pub(super) struct PreparedSession {

@@ -10,14 +10,14 @@ use serde::Serialize;
 use super::engine::SessionEngine;
 use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::analysis::follower::SessionFollower;
-use crate::base::path_text::PathText;
-use crate::base::words::count;
-use crate::communication::recommendation::Recommendation;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogEnding, LogLine, LogReader, event_line};
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
 use crate::session::{Event, TimestampedEvent};
+use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Whether a recording verifies: the result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 use super::desk::{OperatorDesk, hear_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
-use crate::base::time::SessionTime;
 use crate::console::ConsoleMessage;
 use crate::console::pasting::refusal_of_paste;
 use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
 use crate::display::ConsentHold;
 use crate::session::wall_display::AnswerDevice;
+use tomcom_core::base::time::SessionTime;
 
 /// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);

@@ -4,19 +4,19 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SeriesStyle, slug};
-use crate::arm::kinematics::SerialArm;
-use crate::arm::link::{CollisionSolid, LinkShape};
-use crate::arm::motion::JointMotion;
-use crate::arm::physics::hand_body::HandPose;
-use crate::arm::reach::BUTTON_M;
-use crate::arm::reaching::resting_place;
-use crate::base::time::SessionTime;
 use crate::history::wording;
-use crate::kitchen::{Agent, Button, ButtonId, Kitchen, KitchenChange, Press};
-use crate::robot::moment::{ArmSample, JointAngles};
-use crate::robot::safety::SafetyMode;
 use crate::session::settings::ArmKind;
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_arm::kinematics::SerialArm;
+use tomcom_arm::link::{CollisionSolid, LinkShape};
+use tomcom_arm::motion::JointMotion;
+use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::reach::BUTTON_M;
+use tomcom_arm::reaching::resting_place;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen, KitchenChange, Press};
+use tomcom_core::robot::moment::{ArmSample, JointAngles};
+use tomcom_core::robot::safety::SafetyMode;
 
 /// Period of updates of a moving arm, in nanoseconds.
 const EVERY_NS: u64 = 50_000_000;

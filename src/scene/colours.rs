@@ -1,7 +1,7 @@
 //! Colours of the scene in Rerun, which can be told apart and read on a dark and on a light background. An agent has
 //! the same colour everywhere in the scene; ingredients that look alike have similar colours.
 
-use crate::kitchen::{Agent, AspectId, ContentId, Kitchen};
+use tomcom_core::kitchen::{Agent, AspectId, ContentId, Kitchen};
 
 /// A colour: red, green, blue and opacity, each from 0 to 255.
 pub type SceneColour = [u8; 4];

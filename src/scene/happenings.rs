@@ -3,15 +3,15 @@
 use super::EntityUpdate;
 use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, MarkShape, SceneLogLevel, SeriesStyle, slug};
-use crate::communication::offer::{OfferCloseReason, OfferedAdvice};
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, Signal, signals};
 use crate::history::wording;
-use crate::kitchen::{Agent, AspectId, Kitchen};
-use crate::measures::JudgedPress;
 use crate::session::event::SignalEndReason;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Session, TimelineEntry, TimelineEvent, TimestampedEvent};
+use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Sender, Signal, signals};
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::measures::JudgedPress;
 
 /// Path of the error marks below the belief curves.
 const ERROR_MARKS: &str = "human/errors/marks";

@@ -12,15 +12,15 @@ mod happenings;
 mod place_entities;
 mod probe_entities;
 
-use crate::base::time::SessionTime;
-use crate::kitchen::KitchenChange;
-use crate::measures::JudgedPress;
-use crate::mind::dirichlet::DirichletBelief;
 use crate::session::{Event, Session, TimestampedEvent, apply};
 use arm::RobotArmScene;
 use belief_entities::BeliefScene;
 pub use entity_content::{EntityData, EntityUpdate};
 use probe_entities::ProbeScene;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::KitchenChange;
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
 pub const VERSION: u32 = 6;

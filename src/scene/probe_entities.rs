@@ -4,10 +4,10 @@ use super::EntityUpdate;
 use super::colours;
 use super::entity_content::{EntityData, SceneLogLevel, slug};
 use crate::history::{probe_wording, wording};
-use crate::kitchen::Agent;
-use crate::mind::dirichlet::DirichletBelief;
 use crate::session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
 use crate::session::{Session, probe_sampling};
+use tomcom_core::kitchen::Agent;
+use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Path of the lane with the question that is being asked.
 const ASKED: &str = "human/probes/asked";

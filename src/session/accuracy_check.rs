@@ -5,9 +5,9 @@ pub use super::gaze_check::{AcceptedGazeCheck, GazeCheckEvent, GazeCheckResult, 
 use super::participant_settings::GazeSource;
 use super::phase::TrialPhase;
 use super::session_state::Session;
-use crate::base::time::SessionTime;
-use crate::gaze::GazeSample;
-use crate::gaze::calibration::{GazeAccuracy, ViewingGeometry};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::calibration::{GazeAccuracy, ViewingGeometry};
 
 impl Session {
     /// Size of the wall display, and distance of the participant's eyes from the wall display.

@@ -9,10 +9,10 @@ use super::session_state::Session;
 use super::settings::{ArmKind, Condition, ParticipantKind};
 use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, interventions, probes, tracker};
-use crate::base::time::SessionTime;
-use crate::communication::concept::ConceptName;
-use crate::communication::{self, Sender, Signal};
-use crate::kitchen::Agent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::{self, Sender, Signal};
+use tomcom_core::kitchen::Agent;
 
 /// Whether the session accepts this event now (admits it).
 ///

@@ -8,11 +8,11 @@ use super::session_effect::{SessionEffect, Timer};
 use super::session_state::{ServedOrder, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, offers, probes, protocol, robot_changes, silence, trial_clock};
-use crate::base::time::SessionTime;
-use crate::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, Signal};
-use crate::kitchen::{
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::{
     Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, Press, State,
 };
 

@@ -5,8 +5,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::settings::{Condition, GazeSource, SessionSpec};
-use crate::communication::settings::ShadowMode;
-use crate::participant::population::Population;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_people::participant::population::Population;
 
 /// A file with a battery of cohorts (populations of simulated people).
 #[derive(Clone, Debug, Deserialize)]

@@ -12,18 +12,18 @@ use super::protocol_event::ProtocolEvent;
 use super::tracker::TrackerEvent;
 use super::wall_display::DisplayEvent;
 use super::wizard_screen::WizardScreenContent;
-use crate::base::time::SessionTime;
-use crate::communication::concept::ConceptName;
-use crate::communication::offer::{OfferCloseReason, OfferedAdvice};
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, Signal};
-use crate::gaze::GazeSample;
-use crate::kitchen::Agent;
-use crate::mind::RecordedBelief;
-use crate::mind::recorded_estimate::RecordedEstimate;
-use crate::robot::moment::ArmSample;
-use crate::robot::safety::SafetyMode;
-use crate::robot::{AbortReason, IdleReason};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::Agent;
+use tomcom_core::mind::RecordedBelief;
+use tomcom_core::mind::recorded_estimate::RecordedEstimate;
+use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{AbortReason, IdleReason};
 
 /// An event with its sequence number in the log and its time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::base::time::SessionTime;
-use crate::gaze::calibration::{GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure};
-use crate::gaze::{GazeSample, MIN_CONFIDENCE};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::calibration::{GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure};
+use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 
 /// Largest number of gaze samples kept per target of the accuracy check: 1,000 Hz for longer than a target is shown.
 const MOST_SAMPLES: usize = 4096;

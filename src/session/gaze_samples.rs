@@ -3,9 +3,9 @@
 use super::accuracy_check;
 use super::gaze_status::{GazeStatus, RateMeasurement};
 use super::session_state::Session;
-use crate::base::time::SessionTime;
-use crate::gaze::{GazeSample, MIN_CONFIDENCE};
-use crate::kitchen::LocationId;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
+use tomcom_core::kitchen::LocationId;
 
 /// A gap between gaze samples of this length makes the sampling rate be measured anew, in seconds.
 const GAP_S: f64 = 0.5;

@@ -1,9 +1,9 @@
 //! The participant's gaze in a session: the sampling rate, faults of samples, and the locations looked at.
 
-use crate::base::time::SessionTime;
-use crate::gaze::GazeSample;
-use crate::gaze::quality::{GazeFault, GazeFaultDetector};
-use crate::kitchen::state::MAX_LOCATIONS;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::quality::{GazeFault, GazeFaultDetector};
+use tomcom_core::kitchen::state::MAX_LOCATIONS;
 
 /// State of the participant's gaze stream in a session.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::code_correction::CodeCorrection;
 use super::settings::SessionSpec;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// The name of the log's format, as every log's header has it.
 pub const FORMAT: &str = "tomcom-session";

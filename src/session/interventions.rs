@@ -4,8 +4,8 @@
 use super::event::Event;
 use super::phase::TrialPhase;
 use super::session_state::Session;
-use crate::communication::Sender;
-use crate::kitchen::{ContentId, LocationKind};
+use tomcom_core::communication::Sender;
+use tomcom_core::kitchen::{ContentId, LocationKind};
 
 /// Whether the session accepts a manual intervention of the experimenter now.
 ///

@@ -27,6 +27,7 @@ pub mod code_correction;
 mod condition;
 mod console_settings;
 pub mod event;
+pub mod features;
 mod gaze_check;
 pub mod gaze_samples;
 mod gaze_status;

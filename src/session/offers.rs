@@ -9,14 +9,14 @@ use super::event::Event;
 use super::phase::TrialPhase;
 use super::session_state::Session;
 use super::settings::{Condition, WizardVisibility};
-use crate::base::time::SessionTime;
-use crate::communication::offer::{
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::{
     GAP, HOLD, Offer, OfferCloseReason, OfferCloseThresholds, OfferKeyKind, OfferUse, OfferWorth, OfferedAdvice,
     OfferedCommunication, TAKEN_AFTER, UNREAD,
 };
-use crate::communication::recommendation::{Recommendation, SignalOption};
-use crate::communication::{Sender, Signal, unavailable};
-use crate::kitchen::OrderContent;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
+use tomcom_core::communication::{Sender, Signal, unavailable};
+use tomcom_core::kitchen::OrderContent;
 
 /// Whether the recommendations of a session become offers to the wizard. An assistant that acts by itself sends its
 /// recommendation at once.

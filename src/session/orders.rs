@@ -3,8 +3,8 @@
 use rand::RngExt;
 
 use super::settings::SessionSpec;
-use crate::base::rng::{Stream, shuffle, stream};
-use crate::kitchen::DishId;
+use tomcom_core::base::rng::{Stream, shuffle, stream};
+use tomcom_core::kitchen::DishId;
 
 /// Number of orders in a run: after each run, all matched lists of orders contain the same dishes.
 const RUN: usize = 3;

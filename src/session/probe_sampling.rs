@@ -16,8 +16,8 @@ use rand::RngExt;
 use super::probe_event::{ProbeQuestion, ProbeSubject};
 use super::probe_settings::ProbeSpec;
 use super::session_state::Session;
-use crate::base::rng::{Stream, shuffle, stream};
-use crate::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
+use tomcom_core::base::rng::{Stream, shuffle, stream};
+use tomcom_core::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
 
 /// Number of strata of aspects from which questions are drawn.
 const STRATA: usize = 4;

@@ -8,8 +8,8 @@ use rand::RngExt;
 
 use super::probe_settings::ProbeSpec;
 use super::settings::SessionSpec;
-use crate::base::rng::{Stream, shuffle, stream};
-use crate::base::time::SessionTime;
+use tomcom_core::base::rng::{Stream, shuffle, stream};
+use tomcom_core::base::time::SessionTime;
 
 /// A freeze probe of the trial's schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::setting_checks::SettingError;
-use crate::kitchen::Kitchen;
+use tomcom_core::kitchen::Kitchen;
 
 /// Settings of freeze probes: how often the task stands still for questions about the participant's beliefs. A session
 /// file without these settings has no freeze probes.

@@ -3,7 +3,7 @@
 use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeOrigin, ProbeQuestion};
 use super::probe_schedule::ScheduledProbe;
 use super::wall_display::AnswerDevice;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// All freeze probes of a trial: the present one, past ones, and the schedule.
 #[derive(Clone, Debug, Default, PartialEq)]

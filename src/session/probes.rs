@@ -15,7 +15,7 @@ pub use super::probe_state::{ProbeAnswer, StartedProbe, TrialProbes, WaitingProb
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use super::trial_clock;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Time between the freeze of the task and the first question, in seconds: the kitchen disappears from the display
 /// before any question is shown.

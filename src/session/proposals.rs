@@ -3,8 +3,8 @@
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
-use crate::communication::{Signal, unavailable};
-use crate::kitchen::Agent;
+use tomcom_core::communication::{Signal, unavailable};
+use tomcom_core::kitchen::Agent;
 
 /// Names of the proposed presses on the display that the human has still to make; `None` if no proposal is on the
 /// display. After a press of another button, no proposed presses are left.

@@ -6,7 +6,7 @@ pub use super::protocol_event::{ProtocolEvent, StudyPhase};
 pub use super::protocol_state::{ItemAnswer, PracticeResult, StudyProtocolState};
 use super::session_state::Session;
 use super::tutorial;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 impl Session {
     /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.

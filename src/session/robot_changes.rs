@@ -3,7 +3,7 @@
 use super::event::Event;
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Applies an event of the simulated arm to the session's state of the robot.
 pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {

@@ -1,10 +1,10 @@
 //! State of the robot in a session: its present press, its stops, and its arm.
 
-use crate::base::time::SessionTime;
-use crate::kitchen::ButtonId;
-use crate::robot::moment::ArmSample;
-use crate::robot::safety::SafetyMode;
-use crate::robot::{AbortReason, IdleReason};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::ButtonId;
+use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{AbortReason, IdleReason};
 
 /// State of the robot in a session.
 #[derive(Clone, Debug, Default, PartialEq)]

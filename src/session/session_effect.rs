@@ -1,7 +1,7 @@
 //! Actions that a running session has to perform after an event, and its timers.
 
-use crate::base::time::SessionTime;
-use crate::kitchen::LocationId;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::LocationId;
 
 /// An action that the running session must perform after an event. A replay performs none.
 #[derive(Clone, Debug, PartialEq)]

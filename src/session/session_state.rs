@@ -12,14 +12,14 @@ use super::settings::{Condition, SessionSpec, WizardVisibility};
 use super::study_arm::StudyArm;
 use super::timeline_entry::{TimelineEntry, TimelineEvent};
 use super::tracker::TrackerStatus;
-use crate::base::rng::of_trial;
-use crate::base::time::SessionTime;
-use crate::communication::offer::OfferHistory;
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{HighlightSet, Sender, Signal};
-use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{DishId, Kitchen, LocationId, State};
-use crate::wizard::settings::WizardKind;
+use tomcom_core::base::rng::of_trial;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::OfferHistory;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{HighlightSet, Sender, Signal};
+use tomcom_core::kitchen::state::MAX_LOCATIONS;
+use tomcom_core::kitchen::{DishId, Kitchen, LocationId, State};
+use tomcom_people::wizard::settings::WizardKind;
 
 /// Time without a gaze sample after which gaze counts as missing, in seconds.
 const SILENT_S: f64 = 1.0;
@@ -49,7 +49,7 @@ pub struct Session {
     pub state: State,
     /// Session time of the last change of each location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
-    /// Number of presses during the trial by each agent, indexed by [`crate::kitchen::Agent::index`].
+    /// Number of presses during the trial by each agent, indexed by [`tomcom_core::kitchen::Agent::index`].
     pub presses: [u32; 2],
     /// The orders that were served in the trial.
     pub served: Vec<ServedOrder>,

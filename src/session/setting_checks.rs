@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::base::number_range::OutOfRange;
+use tomcom_core::base::number_range::OutOfRange;
 
 /// Error: an invalid setting in a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -15,12 +15,12 @@ pub use super::setting_checks::{SettingError, is_code};
 use super::stream_settings::RerunSpec;
 use super::tracker::TrackerSpec;
 use super::wall_display::DisplaySpec;
-use crate::communication::HighlightSet;
-use crate::communication::settings::{AssistantSpec, ShadowMode};
-use crate::kitchen::{Kitchen, LocationKind};
-use crate::mind::model::{HumanModel, HumanModelName};
-use crate::participant::population::Population;
-use crate::wizard::settings::{WizardKind, WizardSpec};
+use tomcom_core::communication::HighlightSet;
+use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
+use tomcom_core::kitchen::{Kitchen, LocationKind};
+use tomcom_core::mind::model::{HumanModel, HumanModelName};
+use tomcom_people::participant::population::Population;
+use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
 
 /// The settings of a session file: who takes part, under which condition, and for how long.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,8 +7,8 @@
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
-use crate::base::time::SessionTime;
-use crate::kitchen::Agent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
 
 /// Number of the human's usual intervals between presses after which silence is unusual.
 const INTERVALS: u64 = 3;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
-use crate::communication::concept::ConceptName;
+use tomcom_core::communication::concept::ConceptName;
 
 /// An arm of a study. A wizard who sees the assistant's recommendations is another arm than a wizard who does not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

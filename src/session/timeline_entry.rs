@@ -3,11 +3,11 @@
 use super::event::SignalEndReason;
 use super::phase::TrialPhase;
 use super::probe_event::ProbeEvent;
-use crate::base::time::SessionTime;
-use crate::communication::{Sender, Signal};
-use crate::kitchen::no_effect::NoEffectReason;
-use crate::kitchen::{Agent, ButtonId, LocationId, State};
-use crate::robot::safety::SafetyMode;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::{Agent, ButtonId, LocationId, State};
+use tomcom_core::robot::safety::SafetyMode;
 
 /// An entry of the session's timeline.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::session_effect::Timer;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Pending timers in the order in which they are due; timers due at once keep the order in which they were set.
 #[derive(Clone, Debug, Default)]

@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::participant_settings::GazeSource;
 use super::setting_checks::SettingError;
-use crate::base::time::SessionTime;
-use crate::gaze::quality::DroppedInputCounts;
-use crate::gaze::stamp_check::StampFault;
-use crate::gaze::surface::SurfaceHomography;
-use crate::gaze::tags::{DisplayTags, TagError};
-use crate::kitchen::Kitchen;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::quality::DroppedInputCounts;
+use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::{DisplayTags, TagError};
+use tomcom_core::kitchen::Kitchen;
 
 /// Settings of the eye tracker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 
 use super::phase::TrialPhase;
 use super::session_state::Session;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Pauses the trial and stops its clock.
 pub(super) fn pause(session: &mut Session, now: SessionTime) {

@@ -4,8 +4,8 @@ use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use super::session_state::Session;
 pub use super::tutorial_event::{TutorialEvent, TutorialPageTurner};
 pub use super::tutorial_state::{TutorialPress, TutorialState};
-use crate::base::time::SessionTime;
-use crate::kitchen::Agent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
 
 impl Session {
     /// The tutorial of the present phase and the tutorial's state; `None` if the phase has no tutorial.

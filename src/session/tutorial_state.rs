@@ -1,9 +1,9 @@
 //! State of the participant's tutorial: its step, its kitchen, and the answers so far.
 
 use super::plan::{Tutorial, TutorialStep, TutorialStepKind};
-use crate::base::time::SessionTime;
-use crate::kitchen::no_effect::NoEffectReason;
-use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 
 /// A press of the participant in a tutorial.
 #[derive(Clone, Copy, Debug, PartialEq)]

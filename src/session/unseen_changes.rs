@@ -2,8 +2,8 @@
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
-use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, LocationId};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, LocationId};
 
 impl Session {
     /// Agent whose press changed a location at this session time, from the timeline.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::setting_checks::SettingError;
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// `[display]` of a session file: settings of the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,11 +2,11 @@
 //! signals and the participant's presses. Neither estimates nor recorded beliefs are part of this trace.
 
 use crate::analysis::looks::LocationDwells;
-use crate::base::time::SessionTime;
-use crate::communication::recommendation::aspects_told;
-use crate::gaze::MIN_CONFIDENCE;
-use crate::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
 use crate::session::{Event, Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::gaze::MIN_CONFIDENCE;
+use tomcom_core::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
 
 /// Event of a trial that can change or show the participant's belief.
 #[derive(Clone, Debug, PartialEq)]

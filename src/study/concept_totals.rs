@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::prevention::PreventionCounts;
-use crate::communication::concept::ConceptName;
+use tomcom_core::communication::concept::ConceptName;
 
 /// Prevention counts of a concept with one parameter value in one unassisted trial.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
 use crate::session::{LogHeader, Session};
-use crate::wizard::settings::{WizardKind, WizardSpec};
+use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
 
 /// Settings and circumstances by name (key), from one or several recordings; every value that occurred is kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

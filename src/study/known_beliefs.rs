@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 
 use super::belief_trace::BeliefEvidence;
 use super::rater_episodes::rater_episodes;
-use crate::kitchen::Kitchen;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::JudgedPress;
-use crate::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::RaterCodes;
-use crate::measures::sequences::FalseBeliefEpisode;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::cause_codes::RaterCodes;
+use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
 /// Known false beliefs of a participant in one trial.
 #[derive(Clone, Debug, PartialEq)]

@@ -69,8 +69,8 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::base::rng::stream;
-    use crate::measures::median;
+    use tomcom_core::base::rng::stream;
+    use tomcom_core::measures::median;
 
     #[test]
     fn the_order_is_that_of_the_sorted_list_of_all_differences() {

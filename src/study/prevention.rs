@@ -13,11 +13,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::known_beliefs::KnownFalseBeliefs;
-use crate::base::time::SessionTime;
-use crate::kitchen::{AspectId, Kitchen};
-use crate::measures::JudgedPress;
-use crate::measures::belief_basis::BeliefSource;
-use crate::measures::sequences::FalseBeliefEpisode;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{AspectId, Kitchen};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
 /// Number of nanoseconds in a millisecond; session time is in nanoseconds.
 const NANOS_PER_MS: u64 = 1_000_000;

@@ -7,15 +7,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
-use crate::base::time::SessionTime;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, OrderContent, Press, State,
     World,
 };
-use crate::measures::JudgedPress;
-use crate::measures::attribution::FalseBeliefTarget;
-use crate::measures::sequences::FalseBeliefEpisode;
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::FalseBeliefTarget;
+use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
 /// The rule by which false belief episodes follow from raters' codes, as printed in the report.
 pub const RULE: &str = "Of people, from the codes of two raters: their consensus, else only the false beliefs that both gave to an error \

@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::concept_totals::{ConceptPreventionCounts, ConceptTotals};
 use super::prevention::{PreventionCounts, PreventionRates};
-use crate::base::rng::stream;
-use crate::communication::concept::ConceptName;
+use tomcom_core::base::rng::stream;
+use tomcom_core::communication::concept::ConceptName;
 
 /// Smallest cost of communication in the paper, in presses. The planner is less accurate for smaller benefits.
 pub const LEAST_COST: f64 = 0.5;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 use super::pairwise_differences::PairwiseDifferences;
-use crate::base::rng::{shuffle, stream};
+use tomcom_core::base::rng::{shuffle, stream};
 
 /// Result of an F test in an analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

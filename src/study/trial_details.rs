@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::concept_totals::ConceptPreventionCounts;
 use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::measures::matching::CommunicationEvent;
+use tomcom_core::measures::matching::CommunicationEvent;
 
 /// Details of a trial beside its statistics.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

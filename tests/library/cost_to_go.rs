@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity, ProofBudget, ProvenCost};
-use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
 use tomcom::session::{Event, TrialPhase};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity, ProofBudget, ProvenCost};
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
 use crate::oracle::Oracle;
 

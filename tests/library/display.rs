@@ -4,16 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::Value;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::{Sender, Signal, signals};
 use tomcom::display::page_language::DisplayWords;
 use tomcom::display::{DisplayStage, scene, sight};
 use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::language::LanguageFile;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::parse::parse;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
 use tomcom::session::event::TrialEndReason;
@@ -21,6 +17,10 @@ use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom::session::wall_display::{AnswerDevice, DisplayEvent, DisplaySpec};
 use tomcom::session::{Event, LogHeader, Session};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::{Sender, Signal, signals};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen};
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
@@ -146,9 +146,9 @@ pub(super) fn check(session: &Session) {
     // A reason is one of the page's words, at a location: neither a content nor a recipe.
     let words = DisplayWords::for_display(&session.spec.display).of_page();
     let on_display = |name: &String| {
-        let places = (0..kitchen.locations.len()).map(|index| tomcom::kitchen::LocationId(index as u8));
+        let places = (0..kitchen.locations.len()).map(|index| tomcom_core::kitchen::LocationId(index as u8));
         places.into_iter().any(|place| {
-            let aspect = tomcom::kitchen::AspectId::of_location(place);
+            let aspect = tomcom_core::kitchen::AspectId::of_location(place);
             let label = &kitchen.aspects[aspect.index()].labels[kitchen.true_value(session.state, aspect)];
             let is_order = kitchen.orders.contains(&place);
             let items = if is_order { &[][..] } else { &kitchen.content(session.state.content(place)).items[..] };
@@ -338,7 +338,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
 #[test]
 fn every_shape_is_drawn() {
     let art = include_str!("../../src/edge/display/page/art.js");
-    for shape in tomcom::kitchen::look::SHAPES {
+    for shape in tomcom_core::kitchen::look::SHAPES {
         assert!(art.contains(&format!("    {shape}(")) || art.contains(&format!("    {shape}: (")), "{shape}");
     }
 }

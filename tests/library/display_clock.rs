@@ -1,11 +1,11 @@
 //! The trial's clock and the number of served orders on the participant's display.
 
-use tomcom::base::time::SessionTime;
 use tomcom::display::{TrialClockState, scene, sight, time_left};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::wall_display::DisplaySpec;
+use tomcom_core::base::time::SessionTime;
 
 use super::display::{engine, files};
 

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use serde_json::Value;
-use tomcom::base::time::SessionTime;
 use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
-use tomcom::kitchen::{AspectId, AspectKind, Kitchen};
 use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom::session::settings::ParticipantKind;
 use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, Session, TimestampedEvent, apply};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen};
 
 use super::display::{engine, files};
 

@@ -1,13 +1,13 @@
 //! The words of the participant's display: contents as the kitchen's files word them, and why a press has no effect.
 
 use serde_json::Value;
-use tomcom::base::time::SessionTime;
 use tomcom::display::page_language::DisplayWords;
 use tomcom::display::{scene, sight};
-use tomcom::kitchen::Agent;
 use tomcom::session::Event;
 use tomcom::session::settings::{ArmKind, ParticipantKind};
 use tomcom::session::wall_display::DisplaySpec;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
 
 use super::display::{check, engine, files};
 

@@ -9,19 +9,19 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::analysis::event_lines;
 use tomcom::analysis::follower::SessionFollower;
-use tomcom::base::printable::{printable, printable_lines};
-use tomcom::base::time::SessionTime;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::read_kitchen;
 use tomcom::edge::parse::parse;
-use tomcom::kitchen::Kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::layout::LayoutSpec;
 use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply};
+use tomcom_core::base::printable::{printable, printable_lines};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::layout::LayoutSpec;
 
 /// Clears the screen, sets the title of the window, reverses the direction of writing, and begins a sequence in one byte.
 const HOSTILE: &str = "a\x1b[2J\x1b]0;title\x07b\u{202e}c\u{9b}31md\r\ne";

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpStream, UdpSocket};
 use tokio::time::timeout;
-use tomcom::base::time::SessionTime;
 use tomcom::console::console_model::ConsoleModel;
 use tomcom::console::keymap::KeyFileBindings;
 use tomcom::console::keys::KeyBindings;
@@ -19,12 +18,13 @@ use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::preflight_checks::RejectedGaze;
 use tomcom::session::settings::{GazeSenders, GazeSource, ParticipantKind};
 use tomcom::session::{Event, SessionSpec};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 /// Nothing that is waited for takes longer; that it does not come is the failure.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use miette::Diagnostic;
 use rand::RngExt;
-use tomcom::base::rng::stream;
 use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::{compile_kitchen, read_kitchen};
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{
     Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State,
 };
 
@@ -213,7 +213,7 @@ fn a_burger_is_made_of_four_things_in_fourteen_presses() {
 /// All the ingredients in the kitchen, sorted.
 fn ingredients(kitchen: &Kitchen, state: State) -> Vec<usize> {
     let places = kitchen.locations.iter().enumerate().filter(|(_, location)| location.kind != LocationKind::Order);
-    let contents = places.map(|(index, _)| state.content(tomcom::kitchen::LocationId(index as u8)));
+    let contents = places.map(|(index, _)| state.content(tomcom_core::kitchen::LocationId(index as u8)));
     let items = contents.flat_map(|content| kitchen.content(content).items.clone());
     let mut all: Vec<usize> = items.filter_map(|item| kitchen.content(item).ingredient).collect();
     all.sort_unstable();
@@ -222,7 +222,7 @@ fn ingredients(kitchen: &Kitchen, state: State) -> Vec<usize> {
 
 #[test]
 fn random_presses_create_and_lose_nothing() {
-    use tomcom::kitchen::ButtonAction;
+    use tomcom_core::kitchen::ButtonAction;
     for kitchen in layouts() {
         let mut random = stream(1, "kitchen test", 0);
         let recipes = kitchen.true_recipes();

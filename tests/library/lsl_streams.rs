@@ -10,12 +10,10 @@ use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::lsl::{
     LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
 };
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogReader;
 use tomcom::edge::lsl::{LslError, load};
 use tomcom::history::belief_track::BeliefSnapshot;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::probes::ProbeEvent;
 use tomcom::session::protocol::ProtocolEvent;
@@ -24,6 +22,8 @@ use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::tutorial::TutorialEvent;
 use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Name of the recording.
 const RECORDING: &str = "2026-03-14-P07-1";

@@ -7,7 +7,7 @@ use std::panic;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use tomcom::base::rng::stream;
+use tomcom_core::base::rng::stream;
 
 use crate::display_server::{LOCAL, page, serve, status};
 use crate::readers::mutate;

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use mcap::MessageStream;
 use serde_json::Value;
 use tomcom::analysis::foxglove::McapChannel;
-use tomcom::arm::kinematics::UR5;
-use tomcom::robot::moment::JOINT_NAMES;
 use tomcom::run::mcap_export::export;
+use tomcom_arm::kinematics::UR5;
+use tomcom_core::robot::moment::JOINT_NAMES;
 
 /// A golden recording in a folder of its own.
 fn golden(name: &str, test: &str) -> PathBuf {

@@ -3,20 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::{Concept, DecisionPoint};
-use tomcom::communication::planner::Planner;
-use tomcom::communication::reference::ReferencePlanner;
-use tomcom::communication::repeats::SignalRepeatRule;
-use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::situation::{RobotIntent, Situation};
-use tomcom::communication::{HighlightSet, Signal, signals};
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
-use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::signal_model::SignalReadingForecast;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::{Concept, DecisionPoint};
+use tomcom_core::communication::planner::Planner;
+use tomcom_core::communication::reference::ReferencePlanner;
+use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::communication::{HighlightSet, Signal, signals};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::signal_model::SignalReadingForecast;
 
 /// Salmon nigiri is wanted and the base is ready; its recipe is taken for another one.
 pub struct WrongRecipe {

@@ -4,7 +4,7 @@
 use std::collections::{BinaryHeap, HashMap};
 use std::hash::{BuildHasherDefault, Hasher};
 
-use tomcom::kitchen::{
+use tomcom_core::kitchen::{
     Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent, Recipes, State,
 };
 
@@ -32,7 +32,7 @@ impl Hasher for StateHasher {
         for chunk in bytes.chunks(8) {
             let mut word = [0; 8];
             word[..chunk.len()].copy_from_slice(chunk);
-            self.0 = tomcom::base::rng::mix(self.0 ^ u64::from_le_bytes(word));
+            self.0 = tomcom_core::base::rng::mix(self.0 ^ u64::from_le_bytes(word));
         }
     }
 

@@ -3,7 +3,7 @@
 use std::fs;
 
 use rand::RngExt;
-use tomcom::base::rng::{Stream, stream};
+use tomcom_core::base::rng::{Stream, stream};
 
 #[path = "../fuzz/targets/read/mod.rs"]
 mod read;
@@ -78,7 +78,7 @@ fn input(reader: &str) -> Vec<u8> {
         "recipes" => file("recipes/sushi.toml"),
         "session" => file("sessions/study.toml"),
         "questionnaire" => file("sessions/questionnaires/acceptance.toml"),
-        "parameters" => toml::to_string(&tomcom::mind::model::HumanModel::default()).expect("TOML").into_bytes(),
+        "parameters" => toml::to_string(&tomcom_core::mind::model::HumanModel::default()).expect("TOML").into_bytes(),
         "keys" => b"[console]\nhelp = [\"?\", \"f1\"]\n[signals]\nplate = \"l\"\n".to_vec(),
         "language" => b"\"Press start\" = \"Appuyez\"\n".to_vec(),
         "log" => log(),

@@ -4,20 +4,20 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::arm::clearance::{ArmSurroundings, Obstruction};
-use tomcom::arm::inverse::{twist, wrapped};
-use tomcom::arm::kinematics::SerialArm;
-use tomcom::arm::motion::JointMotion;
-use tomcom::arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, OrderContent, State};
-use tomcom::robot::IdleReason;
-use tomcom::robot::initiative::own_ways;
-use tomcom::robot::moment::JointAngles;
-use tomcom::robot::policy::{PolicyDecision, decide};
+use tomcom_arm::clearance::{ArmSurroundings, Obstruction};
+use tomcom_arm::inverse::{twist, wrapped};
+use tomcom_arm::kinematics::SerialArm;
+use tomcom_arm::motion::JointMotion;
+use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, OrderContent, State};
+use tomcom_core::robot::IdleReason;
+use tomcom_core::robot::initiative::own_ways;
+use tomcom_core::robot::moment::JointAngles;
+use tomcom_core::robot::policy::{PolicyDecision, decide};
 
 fn sushi() -> Arc<Kitchen> {
     Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("the sushi kitchen loads").kitchen)

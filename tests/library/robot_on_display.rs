@@ -1,14 +1,14 @@
 //! The robot's hand on the participant's display: where it is told to be, and that nothing of what comes is told.
 
 use serde_json::json;
-use tomcom::base::time::SessionTime;
 use tomcom::display::{RobotHand, RobotHandPose, scene};
 use tomcom::edge::files::read_session;
-use tomcom::kitchen::{Agent, ButtonAction, Kitchen};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::wall_display::RobotDepiction;
 use tomcom::session::{Event, Session, TimelineEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
 
 use super::display::{engine, files};
 
@@ -57,8 +57,9 @@ fn middle(kitchen: &Kitchen, action: ButtonAction) -> [f64; 2] {
     let hand = kitchen.hands[Agent::Robot.index()];
     let location = match action {
         ButtonAction::Take(item) => {
-            let is_it =
-                |storage: &&tomcom::kitchen::IngredientStorage| storage.agent == Agent::Robot && storage.item == item;
+            let is_it = |storage: &&tomcom_core::kitchen::IngredientStorage| {
+                storage.agent == Agent::Robot && storage.item == item
+            };
             return kitchen.storages.iter().find(is_it).expect("a storage").display.centre();
         }
         ButtonAction::Use(location) | ButtonAction::Serve(location) => location,

@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Deserialize;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::{Concept, ConceptName, DecisionPoint};
-use tomcom::communication::concepts::{SilentConcept, concept};
-use tomcom::communication::dev::DevConcept;
-use tomcom::communication::planner::Planner;
-use tomcom::communication::recommendation::{Recommendation, SignalOption};
-use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::situation::{RobotIntent, Situation};
-use tomcom::communication::tom::TomConcept;
-use tomcom::communication::{HighlightSet, Signal, signals};
 use tomcom::edge::files;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};
-use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::model::HumanModel;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
+use tomcom_core::communication::concepts::{SilentConcept, concept};
+use tomcom_core::communication::dev::DevConcept;
+use tomcom_core::communication::planner::Planner;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::communication::tom::TomConcept;
+use tomcom_core::communication::{HighlightSet, Signal, signals};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom_core::mind::model::HumanModel;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

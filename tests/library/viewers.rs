@@ -9,17 +9,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::read_session;
 use tomcom::edge::rerun::StreamIdentity;
 use tomcom::edge::rrd;
 use tomcom::edge::stream::RerunStream;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom::session::Event;
 use tomcom::session::settings::Condition;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 pub const SERVICE: &str = "/rerun.sdk_comms.v1alpha1.MessageProxyService";
 /// What is waited for comes within this time, however busy the machine is.

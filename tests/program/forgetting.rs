@@ -109,7 +109,7 @@ fn record(wizard: &str, recordings: &[&str]) -> String {
     let judged = |name: &&str| {
         format!(
             "{{\"recording\":\"{name}\",\"complete\":true,\"presses\":1,\"signals\":[],\"beliefs\":[],\"measures\":{},\"kappa_with_oneself\":null}}",
-            serde_json::to_string(&tomcom::measures::wizard_performance::WizardMeasures::from_signals(&[], None))
+            serde_json::to_string(&tomcom_core::measures::wizard_performance::WizardMeasures::from_signals(&[], None))
                 .expect("JSON")
         )
     };

@@ -4,17 +4,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
 use tomcom::edge::parse::parse;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, LogHeader, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use crate::forgetting::RecordingsFolder;
 

@@ -3,10 +3,6 @@
 use serde::Serialize;
 
 use super::tsv::{or_nothing, seconds};
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::offer::OfferedCommunication;
-use crate::gaze::stamp_check::StampFault;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::Event;
@@ -15,6 +11,10 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::DisplayEvent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::offer::OfferedCommunication;
+use tomcom_core::gaze::stamp_check::StampFault;
 
 /// The cells of an event's row in the BIDS table that follow from the event alone; a cell is empty where the event says
 /// nothing about the column.

@@ -6,7 +6,6 @@ use super::event_columns::{EVENTS, WORDS};
 use super::sample_rows::{LongTable, LongTableFacts, LongTableRow, SampleRows, ViewingFacts};
 use super::spans::OpenSpans;
 use super::tsv::{self, BidsFile, TaskFacts, or_nothing, seconds, yes};
-use crate::base::time::SessionTime;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::event::{Event, TrialEndReason};
 use crate::session::plan::AnswerFormat;
@@ -15,6 +14,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::wall_display::DisplayEvent;
 use crate::session::{Session, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
 
 /// Whether a press had an effect, and whether it was an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::time::SessionTime;
-use crate::kitchen::Agent;
 use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::event::Event;
 use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::wall_display::DisplayEvent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
 
 /// Something that lasts from one event to another in a recording, such as a pause or a signal.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

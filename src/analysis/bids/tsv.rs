@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value, json};
 
-use crate::base::spreadsheet::without_formula;
-use crate::base::time::SessionTime;
+use tomcom_core::base::spreadsheet::without_formula;
+use tomcom_core::base::time::SessionTime;
 
 /// Text of a cell in a BIDS table that has no value.
 pub(super) const NOTHING: &str = "n/a";

@@ -205,7 +205,7 @@ mod tests {
     use rand::RngExt;
 
     use super::*;
-    use crate::base::rng::stream;
+    use tomcom_core::base::rng::stream;
 
     /// Measurements of 2 variables with standard deviation 1, in pairs around their means, so that the means are 0.7 of
     /// the first 100 and -1.2 of the last 24, and their standard errors are 0.1 and 0.2.

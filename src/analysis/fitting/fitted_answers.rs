@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::base::words::count;
-use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
+use tomcom_core::base::words::count;
+use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
 
 /// Effect of the answers to freeze probes on a fit of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -21,9 +21,9 @@ use self::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
 pub use self::fitted_answers::ProbeAnswerFit;
 use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use self::surface_search::BoundReached;
-use crate::base::words::count;
-use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
-use crate::mind::model::HumanModel;
+use tomcom_core::base::words::count;
+use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
+use tomcom_core::mind::model::HumanModel;
 
 /// Half width of a 95 % interval, in standard errors or standard deviations.
 const HALF_WIDTH: f64 = 1.96;

@@ -115,7 +115,7 @@ mod tests {
 
     use super::super::response_surface::REACH;
     use super::*;
-    use crate::base::rng::{Stream, stream};
+    use tomcom_core::base::rng::{Stream, stream};
 
     /// A number from a distribution with mean 0 and variance 1: the sum of twelve uniform numbers (Irwin and Hall).
     fn normal(random: &mut Stream) -> f64 {

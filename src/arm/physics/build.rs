@@ -8,8 +8,8 @@ use rapier3d::prelude::{
 
 use super::hand_body::single;
 use super::{PhysicsWorld, button};
-use crate::arm::link::{ArmLink, LinkShape};
-use crate::robot::moment::{JOINTS, JointAngles};
+use crate::link::{ArmLink, LinkShape};
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// Reflected rotor inertia of the arm's large and small drives (rotor inertia times gear ratio squared), in kg m². The
 /// values are estimates: the manufacturer does not publish the inertia.

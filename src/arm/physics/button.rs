@@ -5,7 +5,7 @@ use rapier3d::prelude::{
     MotorModel, Pose, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation, Vector,
 };
 
-use crate::arm::reach::BUTTON_M;
+use crate::reach::BUTTON_M;
 
 /// Travel of the button's cap, and the depths of the cap at which the electrical contact closes and opens, in metres.
 const TRAVEL_M: f32 = 0.004;

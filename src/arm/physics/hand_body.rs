@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Vector};
 
-use crate::arm::clearance::Capsule;
+use crate::clearance::Capsule;
 
 /// Effective mass of a hand, in kilograms (ISO/TS 15066, annex A).
 const MASS_KG: f32 = 0.6;

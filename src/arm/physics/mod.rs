@@ -23,9 +23,9 @@ use rapier3d::prelude::{
 
 use super::clearance::Capsule;
 use super::kinematics::SerialArm;
-use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
 use hand_body::{HandPose, PhysicalHand, double, single};
+use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
 pub const CYCLE_S: f64 = 0.008;

@@ -7,18 +7,18 @@ use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
-use crate::base::time::SessionTime;
-use crate::base::words::count;
 use crate::console::beliefs::{BeliefCorrectness, EstimatedBelief, are_by_cost, name, percent, value, visibility};
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
 use crate::console::text_columns::{fit, width, wrap};
 use crate::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
-use crate::kitchen::AspectId;
-use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Session;
 use crate::session::settings::WizardVisibility;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
+use tomcom_core::kitchen::AspectId;
+use tomcom_core::measures::sequences::FALSE_BELOW;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;

@@ -9,9 +9,6 @@ use super::paint::Painter;
 use super::popup::open;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::base::time::SessionTime;
-use crate::base::words::count;
-use crate::communication::Sender;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
@@ -20,10 +17,13 @@ use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use crate::console::text_columns::width;
 use crate::history::signal_judge::SignalJudgementCounts;
 use crate::history::wording;
-use crate::kitchen::{Agent, Dish};
-use crate::robot::safety::SafetyMode;
 use crate::session::settings::{ArmKind, ParticipantKind, WizardVisibility};
 use crate::session::{Session, TimelineEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::Sender;
+use tomcom_core::kitchen::{Agent, Dish};
+use tomcom_core::robot::safety::SafetyMode;
 
 /// Width of a card, and least width of the names in its left column.
 const COLUMNS: u16 = 62;

@@ -13,8 +13,8 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::rater_session::{CodingRaters, RaterSession};
 use crate::console::text_columns::{fit, width, wrap};
 use crate::history::wording;
-use crate::measures::cause_codes::ErrorCauseCode;
 use crate::session::Session;
+use tomcom_core::measures::cause_codes::ErrorCauseCode;
 
 /// Columns of the number of an error in a rater's list, and of the error's time.
 const NUMBER: u16 = 4;

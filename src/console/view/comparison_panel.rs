@@ -8,14 +8,14 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use super::timeline::{axis, columns_ago};
-use crate::base::time::SessionTime;
-use crate::base::words::decimal;
 use crate::console::compared::ComparisonAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::width;
 use crate::history::comparison::{Communication, CommunicationContent, SenderComparison, UnmatchedCommunication};
 use crate::session::Session;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::decimal;
 
 /// Time that one terminal column of the comparison stands for, in seconds.
 const COLUMN_S: f64 = 1.0;

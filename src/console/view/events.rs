@@ -5,8 +5,8 @@ use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
 use crate::history::wording;
-use crate::kitchen::Agent;
 use crate::session::{Session, TimelineEvent};
+use tomcom_core::kitchen::Agent;
 
 /// Columns for the name of the agent; the longest is "assistant".
 const WHO: u16 = 10;

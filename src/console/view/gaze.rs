@@ -6,15 +6,15 @@ use ratatui::style::Modifier;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::base::words::count;
 use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::console::text_columns::{fit, width};
-use crate::gaze::nearest_location;
-use crate::kitchen::LocationId;
 use crate::session::Session;
 use crate::session::gaze_samples::faults;
+use tomcom_core::base::words::count;
+use tomcom_core::gaze::nearest_location;
+use tomcom_core::kitchen::LocationId;
 
 /// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;

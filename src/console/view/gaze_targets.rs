@@ -12,8 +12,8 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::gaze_advice::AccuracyCheckAction;
 use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, REPEAT, chosen};
 use crate::console::text_columns::width;
-use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
+use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 
 const COLUMNS: u16 = 76;
 /// Column, inside the frame, at which the measured values of the gaze accuracy check begin.
@@ -108,7 +108,7 @@ fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {
 
 /// Measured gaze accuracy at every target, in degrees.
 fn targets(found: &GazeAccuracy) -> String {
-    let one = |target: &crate::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
+    let one = |target: &tomcom_core::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
         Some(deg) => format!("{deg:.1}"),
         None => "no gaze".to_string(),
     };

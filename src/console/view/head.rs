@@ -5,15 +5,15 @@ use ratatui::style::Style;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
-use crate::base::time::SessionTime;
 use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
 use crate::console::text_columns::width;
 use crate::history::wording;
-use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
 use crate::session::tracker::TrackerConnection;
 use crate::session::{Session, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::robot::safety::SafetyMode;
 
 /// Draws the head line of the console: phase, clock, condition, devices.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

@@ -10,7 +10,6 @@ use super::paint::Painter;
 use super::place_buttons;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, KitchenMapBox};
 use crate::console::beliefs::EstimatedBelief;
 use crate::console::chord::KeyChord;
@@ -19,9 +18,10 @@ use crate::console::key_action::KeyLayer;
 use crate::console::map_items::KitchenMapElement;
 use crate::console::text_columns::{squeeze, width, wrap, wrap_to};
 use crate::history::wording;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;
 use crate::session::settings::Condition;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 
 /// Short text in place of the falsely believed value, where there is no room for that value.
 const FALSE_BELIEF: &str = "false belief";

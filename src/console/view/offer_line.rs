@@ -6,22 +6,22 @@ use super::paint::Painter;
 use super::recommendation_panel::NOTHING;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
-use crate::base::words::count;
-use crate::communication::concept::ConceptName;
-use crate::communication::offer::OfferedCommunication;
-use crate::communication::recommendation::SignalReason;
-use crate::communication::{Sender, Signal, unavailable};
 use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, percent};
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::console::text_columns::{width, wrap};
 use crate::history::wording;
-use crate::kitchen::{AspectId, LocationId};
 use crate::session::admit::may_send;
 use crate::session::offers;
 use crate::session::settings::{Condition, WizardVisibility};
 use crate::session::{Session, TimelineEvent, TrialPhase};
+use tomcom_core::base::words::count;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::offer::OfferedCommunication;
+use tomcom_core::communication::recommendation::SignalReason;
+use tomcom_core::communication::{Sender, Signal, unavailable};
+use tomcom_core::kitchen::{AspectId, LocationId};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {

@@ -6,10 +6,6 @@ use ratatui::layout::Rect;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
-use crate::base::words::count;
-use crate::communication::Sender;
-use crate::communication::concept::ConceptName;
-use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::wrap;
@@ -17,6 +13,10 @@ use crate::history::wording;
 use crate::session::Session;
 use crate::session::admit::may_send;
 use crate::session::settings::Condition;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::Sender;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 
 /// Width of a benefit bar in columns; a column stands for half a saved press, or for the concept ToM a twelfth of the
 /// belief deviation.

@@ -5,17 +5,17 @@ use std::f64::consts::TAU;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::base::words::count;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::key_action::ManualAction;
 use crate::console::text_columns::width;
 use crate::history::wording;
-use crate::kitchen::Agent;
-use crate::robot::moment::ArmSample;
-use crate::robot::safety::{SLOWS_M, SafetyMode};
 use crate::session::settings::ArmKind;
 use crate::session::{Session, TrialPhase};
+use tomcom_core::base::words::count;
+use tomcom_core::kitchen::Agent;
+use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
 
 /// Draws the robot panel.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

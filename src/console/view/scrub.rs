@@ -6,11 +6,11 @@ use ratatui::layout::Rect;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
-use crate::base::time::SessionTime;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::width;
 use crate::session::{Session, TrialPhase};
+use tomcom_core::base::time::SessionTime;
 
 /// Words before the times while the trial has not started: the longest of all phases.
 const BEFORE: &str = " before the trial, ";

@@ -3,12 +3,12 @@
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::communication::Signal;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::{width, wrap};
 use crate::history::wording;
 use crate::session::{Session, ShownSignal, TrialPhase, proposals};
+use tomcom_core::communication::Signal;
 
 /// Draws the panel that tells which signal the participant sees now.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

@@ -6,19 +6,19 @@ use ratatui::layout::Rect;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::offer::OfferKeyKind;
 use crate::console::beliefs::visibility;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::width;
-use crate::kitchen::Agent;
 use crate::session::event::SignalEndReason;
 use crate::session::offers;
 use crate::session::probes::ProbeEvent;
 use crate::session::settings::WizardVisibility;
 use crate::session::{Session, TimelineEntry, TimelineEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::offer::OfferKeyKind;
+use tomcom_core::kitchen::Agent;
 
 /// Time that one terminal column of the timeline stands for, in seconds.
 const COLUMN_S: f64 = 0.5;

@@ -4,16 +4,16 @@
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
-use crate::base::printable::printable;
 use crate::edge::file_error::FileError;
 use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
-use crate::gaze::tags::TagError;
-use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
+use tomcom_core::base::printable::printable;
+use tomcom_core::gaze::tags::TagError;
+use tomcom_core::kitchen::Kitchen;
 
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;

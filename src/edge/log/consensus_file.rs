@@ -9,9 +9,9 @@ use super::decision_file::check_single;
 use super::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::edge::replace_file;
-use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode};
-use crate::measures::consensus::{ConsensusCode, RaterConsensus};
 use crate::session::person_code;
+use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode};
+use tomcom_core::measures::consensus::{ConsensusCode, RaterConsensus};
 
 /// Name of the consensus file in the folder of a recording.
 pub const CONSENSUS_NAME: &str = "consensus.csv";

@@ -7,13 +7,13 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::RecordingWriteError;
-use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult, MAX_TEXT, open_regular, read_bytes};
 use crate::edge::gaze_table::SEPARATORS;
 use crate::edge::overwrite;
 use crate::edge::replace_file;
-use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use crate::session::person_code;
+use tomcom_core::base::words::count;
+use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 
 /// Columns of the file of one rater's codes; an export of several recordings has one column more, before these. The file
 /// says whose codes it has, since its name can change when it is copied.

@@ -11,11 +11,11 @@ use super::lock::is_same;
 use super::{LOG_NAME, RecordingLock};
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::files::compile_kitchen;
-use crate::kitchen::Kitchen;
 use crate::session::apply::ApplyError;
 use crate::session::header::{FORMAT, PreviousPart, VERSION};
 use crate::session::settings::SettingError;
 use crate::session::{Event, LogHeader, Session, TimestampedEvent};
+use tomcom_core::kitchen::Kitchen;
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
 pub const MAX_LINE: usize = 1 << 24;

@@ -10,11 +10,11 @@ use serde_json::ser::Formatter;
 use super::guarded::GuardedFile;
 use super::lock::{LOCK_NAME, RecordingLock, is_same};
 use super::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
-use crate::base::time::SessionTime;
 use crate::edge::file_error::read_regular;
 use crate::edge::replace_file::{self, new_beside, replaced_name};
 use crate::edge::rescue::{RescueNote, new_rescue_folder};
 use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
 
 /// Longest time, in session time, for which gaze samples are held back before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);

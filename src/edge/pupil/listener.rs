@@ -13,8 +13,8 @@ use super::message::{self, CaptureNotification, PupilBlink, PupilFixation, Pupil
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
 use crate::edge::compared_clock::ClockOffsetEstimator;
 use crate::edge::gaze_input::{TrackerFixation, TrackerMessage, TrackerTime};
-use crate::gaze::GazeSample;
-use crate::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::surface::SurfaceHomography;
 
 /// The display's surface counts as lost after this long without a datum about it.
 const UNSEEN: Duration = Duration::from_secs(1);

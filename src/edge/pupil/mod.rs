@@ -18,12 +18,12 @@ use tokio::time::sleep;
 
 use super::compared_clock::ClockOffsetEstimator;
 use super::gaze_input::{TrackerMessage, WAITING};
-use crate::gaze::surface::SurfaceHomography;
 use capture_desk::CaptureClient;
 use listener::Listener;
 use message::{SURFACES, TOPICS};
 use recorder::CaptureRecordingControl;
 pub use recorder::CaptureRequest;
+use tomcom_core::gaze::surface::SurfaceHomography;
 use zmtp::{SocketRole, ZmtpConnection};
 
 /// Time between attempts to connect to Pupil Capture.

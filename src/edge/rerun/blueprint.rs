@@ -13,7 +13,7 @@ use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
 
-use crate::base::time::SessionTime;
+use tomcom_core::base::time::SessionTime;
 
 /// Application name of all streams, by which recordings share one layout in the Rerun viewer.
 pub(super) const APPLICATION: &str = "tomcom";

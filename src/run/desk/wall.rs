@@ -1,6 +1,5 @@
 //! The participant's display at the operator's desk.
 
-use crate::base::time::SessionTime;
 use crate::display::page_language::DisplayWords;
 use crate::display::{ConsentHold, consent_sight, scene};
 pub(in crate::run) use crate::edge::display::PageInput;
@@ -8,6 +7,7 @@ use crate::edge::display::{DisplayServer, ParticipantResponse};
 use crate::run::error::LiveError;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Session, SessionSpec};
+use tomcom_core::base::time::SessionTime;
 
 /// The server of the participant's display, if the session has one.
 #[derive(Default)]

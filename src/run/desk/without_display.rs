@@ -1,9 +1,9 @@
 //! Stand-in for the participant's display at the operator's desk, in a build without the feature `display`.
 
-use crate::base::time::SessionTime;
 use crate::display::ConsentHold;
 use crate::run::error::LiveError;
 use crate::session::{Session, SessionSpec};
+use tomcom_core::base::time::SessionTime;
 
 /// Input of a participant's page, which never occurs in this build; so the type has no values.
 pub(in crate::run) enum PageInput {}

@@ -2,24 +2,24 @@
 
 use std::sync::Arc;
 
-#[cfg(feature = "physics")]
-use crate::arm::body::SimulatedArm;
-#[cfg(feature = "physics")]
-use crate::arm::reaching::ReachingBehaviour;
-use crate::arm::worker::RobotTaskExecutor;
-#[cfg(not(feature = "physics"))]
-use crate::base::features::{Feature, MissingFeature};
-use crate::base::rng::stream;
-use crate::kitchen::Kitchen;
-use crate::participant::SimulatedParticipant;
-use crate::participant::gaze_gaps::GazeDropoutSchedule;
-use crate::participant::population::Experience;
 use crate::session::SessionSpec;
+#[cfg(not(feature = "physics"))]
+use crate::session::features::{Feature, MissingFeature};
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
 use crate::session::settings::{ArmKind, RobotSpec};
 use crate::session::tracker::GazeGapSpec;
-use crate::wizard::ScriptedWizard;
+#[cfg(feature = "physics")]
+use tomcom_arm::body::SimulatedArm;
+#[cfg(feature = "physics")]
+use tomcom_arm::reaching::ReachingBehaviour;
+use tomcom_arm::worker::RobotTaskExecutor;
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_people::participant::SimulatedParticipant;
+use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::population::Experience;
+use tomcom_people::wizard::ScriptedWizard;
 
 /// The simulated participant of a trial. In a study plan, one simulated participant has several trials and improves
 /// with practice.

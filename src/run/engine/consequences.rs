@@ -2,15 +2,15 @@
 //! measured gaze accuracy, the assistant's signal, the end of a proposal.
 
 use super::SessionEngine;
-use crate::base::time::SessionTime;
-use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, Signal};
-use crate::kitchen::Agent;
 use crate::session::admit::admit;
 use crate::session::event::SignalEndReason;
 use crate::session::proposals;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::Agent;
 
 impl SessionEngine {
     /// Records at the end of a practice trial (familiarisation) whether its criterion is met.

@@ -2,10 +2,10 @@
 //! into an event.
 
 use super::SessionEngine;
-use crate::base::time::SessionTime;
 use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::silence;
 use crate::session::{Event, SessionEffect, Timer};
+use tomcom_core::base::time::SessionTime;
 
 impl SessionEngine {
     /// Performs what an applied event asks of the running session.

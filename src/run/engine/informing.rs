@@ -2,14 +2,14 @@
 //! console.
 
 use super::SessionEngine;
-use crate::base::time::SessionTime;
-use crate::communication::offer::{OfferedAdvice, OfferedCommunication};
-use crate::communication::recommendation::SignalReason;
-use crate::kitchen::KitchenChange;
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::event::SignalEndReason;
 use crate::session::offers;
 use crate::session::{Event, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
+use tomcom_core::communication::recommendation::SignalReason;
+use tomcom_core::kitchen::KitchenChange;
 
 impl SessionEngine {
     /// Tells the simulated participant the part of an applied event that a participant can notice.

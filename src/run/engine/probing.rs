@@ -2,13 +2,13 @@
 //! participant answer.
 
 use super::SessionEngine;
-use crate::base::time::SessionTime;
-use crate::kitchen::AspectId;
-use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Event;
 use crate::session::probe_sampling::{aspect, questions};
 use crate::session::probes::{DueProbeEvent, ProbeEvent, ProbeSubject, of_trial, upcoming};
 use crate::session::wall_display::AnswerDevice;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::AspectId;
+use tomcom_core::measures::sequences::FALSE_BELOW;
 
 impl SessionEngine {
     /// Session time of the next event of a freeze probe.

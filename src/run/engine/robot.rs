@@ -1,12 +1,12 @@
 //! The robot in a running session: turns the robot's activities into events, and tells it about events that concern it.
 
 use super::SessionEngine;
-use crate::arm::worker::RobotTaskExecutor;
-use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, ButtonId, KitchenChange};
-use crate::participant::SimulatedParticipant;
-use crate::robot::RobotEvent;
 use crate::session::{Event, TimestampedEvent};
+use tomcom_arm::worker::RobotTaskExecutor;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, ButtonId, KitchenChange};
+use tomcom_core::robot::RobotEvent;
+use tomcom_people::participant::SimulatedParticipant;
 
 impl SessionEngine {
     /// The session's robot, for experiments with the robot's arm.

@@ -2,14 +2,10 @@
 
 use std::time::Instant;
 
-use crate::base::printable::printable;
-use crate::base::time::SessionTime;
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
 use crate::edge::display::{DisplayHandle, DisplayServer, ParticipantResponse};
-use crate::gaze::GazeSample;
-use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::admit::admit;
 use crate::session::probes::ProbeEvent;
@@ -18,6 +14,10 @@ use crate::session::settings::GazeSource;
 use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use crate::session::wall_display::{AnswerDevice, DisplayEvent};
 use crate::session::{Event, Session};
+use tomcom_core::base::printable::printable;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::Agent;
 
 /// Number of characters that a message to the wizard shows of a name that the participant's page sent.
 const SHOWN_NAME: usize = 40;

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::base::time::SessionTime;
 use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{TrackerMessage, TrackerTime};
-use crate::gaze::GazeSample;
-use crate::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
-use crate::gaze::stamp_check::StampFault;
 use crate::run::desk::GazeTracker;
 use crate::session::tracker::{MissingConfidence, TrackerEvent};
 use crate::session::{Event, Session, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
+use tomcom_core::gaze::stamp_check::StampFault;
 
 /// Gaze input of one recording.
 #[derive(Debug, Default)]

@@ -10,7 +10,6 @@ use super::viewing::StreamedSession;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::analysis::watcher::SenderComparisonFollower;
-use crate::communication::recommendation::Recommendation;
 use crate::console::compared::SenderComparisonView;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
@@ -20,7 +19,6 @@ use crate::edge::doctor::free_bytes;
 use crate::edge::key_file::key_map;
 use crate::edge::log::{LogWriter, RecordingLock, RecordingWriteError};
 use crate::edge::terminal::{TerminalScreen, theme};
-use crate::kitchen::cost_to_go::CostToGo;
 use crate::run::advisor_desk::{AdvisorThreadHandle, next_advice};
 use crate::run::desk::{GazeTracker, OperatorDesk};
 use crate::run::engine::SessionEngine;
@@ -35,6 +33,8 @@ use crate::session::settings::GazeSource;
 use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{Event, LogHeader, Session};
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 /// Period of redrawing clocks and ages on the console while the trial is running.
 const RUNNING: Duration = Duration::from_millis(100);

@@ -3,7 +3,6 @@
 
 use std::net::SocketAddr;
 
-use crate::base::time::SessionTime;
 use crate::console::console_model::RerunStreamStatus;
 use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{StreamIdentity, uri};
@@ -12,6 +11,7 @@ use crate::edge::stream::RerunStream;
 use crate::run::engine::SessionEngine;
 use crate::scene::{SceneInputs, SessionScene};
 use crate::session::{LogHeader, Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
 
 /// Delay with which motion between events is streamed, so that no event with an earlier time can follow.
 const BEHIND: SessionTime = SessionTime(100_000_000);

@@ -1,10 +1,10 @@
 //! Stand-in for the participant's display in a live session, in a build without the feature `display`.
 
-use crate::base::time::SessionTime;
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::{Event, Session};
+use tomcom_core::base::time::SessionTime;
 
 /// The participant's display, which this build lacks; so the type has no values.
 pub(super) enum ParticipantDisplay {}

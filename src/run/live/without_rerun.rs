@@ -1,12 +1,12 @@
 //! Stand-in for the live stream to Rerun in a build without the feature `rerun`; the wizard is told if the session asks
 //! for a stream.
 
-use crate::base::features::{Feature, MissingFeature};
-use crate::base::time::SessionTime;
 use crate::console::console_model::RerunStreamStatus;
 use crate::edge::log::LogWriter;
 use crate::run::engine::SessionEngine;
+use crate::session::features::{Feature, MissingFeature};
 use crate::session::{LogHeader, Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
 
 /// The stream to Rerun, which this build lacks; so the type has no values.
 pub(super) enum StreamedSession {}

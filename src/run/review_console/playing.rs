@@ -3,11 +3,11 @@
 use std::time::{Duration, Instant};
 
 use super::Review;
-use crate::base::time::SessionTime;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{ReplayAction, SPEEDS};
 use crate::history::landmark::ReplayLandmark;
 use crate::session::Event;
+use tomcom_core::base::time::SessionTime;
 
 /// Longest time per frame that is spent on applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);

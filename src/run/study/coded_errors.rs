@@ -4,13 +4,13 @@
 use crate::analysis::follower::SessionFollower;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, consensus_file, rater_codes};
-use crate::kitchen::Kitchen;
-use crate::measures::JudgedPress;
-use crate::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use crate::measures::rater_choice::{RaterChoice, RaterPair};
 use crate::session::settings::ParticipantKind;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::measures::rater_choice::{RaterChoice, RaterPair};
 
 /// Raters' codes of the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -30,7 +30,6 @@ use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
 use crate::edge::file_error::FileError;
 use crate::edge::frozen_file::read_frozen;
 use crate::edge::log::{LogReader, header_digest, rater_codes};
-use crate::kitchen::Kitchen;
 use crate::study::column::CsvTable;
 use crate::study::detail_totals::DetailTotals;
 use crate::study::dictionary::{DataDictionaryRow, dictionary};
@@ -49,6 +48,7 @@ use crate::study::tables::probe_table::probes;
 use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::tables::tutorial_answers::TutorialQuestionRow;
 use crate::study::trial_statistics::{TrialStatistics, arrange};
+use tomcom_core::kitchen::Kitchen;
 
 /// Error of analysing a study.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

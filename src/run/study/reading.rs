@@ -14,20 +14,9 @@ use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_record::ProbedTrial;
 use crate::analysis::wizard_log::{WizardLog, clock_at};
-use crate::base::time::SessionTime;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogEnding, LogReader, rater_codes};
 use crate::history::comparison::CommunicationContent;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
-use crate::measures::attribution::{ErrorAttributor, ErrorCause};
-use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_kinds::BeliefErrorCounts;
-use crate::measures::matching::{CommunicationEvent, WINDOW};
-use crate::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect};
-use crate::measures::{JudgedPress, median};
-use crate::mind::belief::Belief;
-use crate::mind::dirichlet::DirichletBelief;
 use crate::run::kept_cost::KeptCost;
 use crate::run::standing::exclusion_status;
 use crate::session::protocol::ProtocolEvent;
@@ -41,6 +30,17 @@ use crate::study::prevention::TrialGroundTruth;
 use crate::study::robot_tally::{RobotEventSummary, RobotEventTally};
 use crate::study::trial_details::TrialDetails;
 use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
+use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
+use tomcom_core::measures::matching::{CommunicationEvent, WINDOW};
+use tomcom_core::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect};
+use tomcom_core::measures::{JudgedPress, median};
+use tomcom_core::mind::belief::Belief;
+use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Result of analysing one recording.
 #[derive(Debug)]
@@ -93,7 +93,7 @@ impl ByEstimate {
 }
 
 /// A belief state whose probabilities are the expected probabilities of the estimate.
-fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &DirichletBelief) -> Belief {
+fn expected(kitchen: &Kitchen, state: tomcom_core::kitchen::State, estimate: &DirichletBelief) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {
         let aspect = AspectId(index as u8);

@@ -3,13 +3,13 @@
 use super::sweep::ConceptSweep;
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use crate::communication::concept::ConceptName;
-use crate::kitchen::KitchenChange;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::matching::WINDOW;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
 use crate::session::{Session, TimestampedEvent};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::kitchen::KitchenChange;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::matching::WINDOW;
 
 /// Replay of a recording together with the hypothetical signals that its condition needs.
 #[derive(Debug)]

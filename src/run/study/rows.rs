@@ -5,16 +5,7 @@ use super::coded_errors::CodedErrors;
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::wizard_log::clock_at;
-use crate::base::time::SessionTime;
 use crate::edge::export::TableRows;
-use crate::gaze::{MIN_CONFIDENCE, nearest_location};
-use crate::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
-use crate::measures::JudgedPress;
-use crate::measures::attribution::ErrorCause;
-use crate::measures::matching::{CommunicationEvent, MatchCriterion, matched};
-use crate::measures::sequences::ErrorSequence;
-use crate::mind::RecordedBelief;
-use crate::mind::recorded_estimate::RecordedEstimate;
 use crate::session::{Event, Session, TimestampedEvent};
 use crate::study::column::{CsvRow, CsvTable};
 use crate::study::known_beliefs::KnownFalseBeliefs;
@@ -23,6 +14,15 @@ use crate::study::tables::aspect_beliefs::BeliefRow;
 use crate::study::tables::communications::CommunicationRow;
 use crate::study::tables::gaze_runs::{GazeRow, GazeRun};
 use crate::study::tables::offer_table::OfferRow;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::{MIN_CONFIDENCE, nearest_location};
+use tomcom_core::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCriterion, matched};
+use tomcom_core::measures::sequences::ErrorSequence;
+use tomcom_core::mind::RecordedBelief;
+use tomcom_core::mind::recorded_estimate::RecordedEstimate;
 
 /// Collects the rows of the tables of events of one recording.
 #[derive(Debug)]

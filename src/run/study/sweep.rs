@@ -5,22 +5,22 @@
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
 use crate::analysis::watcher::follows_at_once;
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::concept::{Concept, ConceptName};
-use crate::communication::planner::Planner;
-use crate::communication::recommendation::{SignalOption, aspects_told};
-use crate::communication::repeats::SignalRepeatRule;
-use crate::communication::settings::AssistantSpec;
-use crate::communication::tom::TomConcept;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, KitchenChange};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::{AppliedEvent, Event, Session, TimestampedEvent};
 use crate::study::concept_totals::ConceptPreventionCounts;
 use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, parameters};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::{Concept, ConceptName};
+use tomcom_core::communication::planner::Planner;
+use tomcom_core::communication::recommendation::{SignalOption, aspects_told};
+use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::tom::TomConcept;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, KitchenChange};
 
 /// A concept with one value of its parameter, and the signals that the concept would have sent.
 #[derive(Debug)]

@@ -11,20 +11,20 @@ use std::collections::VecDeque;
 use std::path::Path;
 
 use crate::analysis::follower::SessionFollower;
-use crate::base::time::SessionTime;
-use crate::communication::Signal;
-use crate::communication::recommendation::aspects_told;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogReader, event_line};
-use crate::kitchen::AspectId;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::attribution::ErrorCause;
-use crate::measures::sequences::FalseBeliefEpisode;
 use crate::run::engine::SessionEngine;
 use crate::run::headless::SimulatedRobotOperator;
 use crate::session::admit::is_external;
 use crate::session::settings::Condition;
 use crate::session::{Event, Session, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::kitchen::AspectId;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
 /// Which errors a signal can prevent.
 enum SignalScope {

@@ -7,15 +7,15 @@ use super::plan_spec::PlanSpec;
 use super::questionnaire::Questionnaire;
 use super::step::{PhaseSpec, PlanPosition, PracticeCriterion};
 use super::tutorial::Tutorial;
-use crate::base::rng::mix;
-use crate::communication::settings::ShadowMode;
 use crate::session::protocol_event::ProtocolEvent;
 use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, SessionSpec, WizardVisibility};
 use crate::session::stream_settings::RerunSpec;
 use crate::session::study_arm::StudyArm;
 use crate::session::tracker::TrackerSpec;
 use crate::session::wall_display::{AnswerDevice, DisplaySpec};
-use crate::wizard::settings::WizardKind;
+use tomcom_core::base::rng::mix;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_people::wizard::settings::WizardKind;
 
 /// A planned trial in a participant's series (familiarisation or counted trial): it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

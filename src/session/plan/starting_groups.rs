@@ -3,7 +3,7 @@
 
 use super::groups::{StartingGroup, orders};
 use super::plan_spec::PlanSpec;
-use crate::base::rng::{shuffle, stream};
+use tomcom_core::base::rng::{shuffle, stream};
 
 impl PlanSpec {
     /// The starting group of the participant with this index: a function of plan and seed alone.

@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use crate::session::setting_checks::{SettingError, is_code};
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
 /// Longest time for which a tutorial may show the recipe cards, in seconds.
 const LONGEST_S: f64 = 3600.0;

@@ -1,6 +1,6 @@
 //! Allowed ranges of the parameters of the human model.
 
-use crate::base::number_range::NumberRange;
+use tomcom_core::base::number_range::NumberRange;
 
 /// Range of rates of looks (how often people look at a location), per second.
 const LOOKS: [f64; 2] = [0.0, 100.0];

@@ -1,6 +1,6 @@
 //! Allowed ranges of settings of simulated people: the population of participants, and the scripted wizard.
 
-use crate::base::number_range::NumberRange;
+use tomcom_core::base::number_range::NumberRange;
 
 const SECONDS: &str = "s";
 const CHANCE: &str = "the setting is a probability";

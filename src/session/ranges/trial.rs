@@ -1,6 +1,6 @@
 //! Allowed ranges of settings of trial, robot, signals, assistant, devices and plan.
 
-use crate::base::number_range::NumberRange;
+use tomcom_core::base::number_range::NumberRange;
 
 const SECONDS: &str = "s";
 const CHANCE: &str = "the setting is a probability";

@@ -7,10 +7,10 @@ use super::elements::{
 };
 use crate::analysis::probe_accuracy::{ProbeAccuracyGrouping, ProbeAnswerAccuracy};
 use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, RecordedBeliefComparison};
-use crate::base::words;
-use crate::measures::belief_detection::CALIBRATED;
 use crate::study::charts;
 use crate::study::figures::StudySummary;
+use tomcom_core::base::words;
+use tomcom_core::measures::belief_detection::CALIBRATED;
 
 /// Section of the report on what participants knew; empty without freeze probes.
 pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Markup {

@@ -3,12 +3,12 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
-use crate::base::words::count;
-use crate::measures::belief_basis::BeliefSource;
 use crate::study::charts::{self, MOST_SIGNALS};
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::SignalSenderResults;
 use crate::study::roc::EQUAL_SIGNALS;
+use tomcom_core::base::words::count;
+use tomcom_core::measures::belief_basis::BeliefSource;
 
 /// Section of the report that compares communication concepts by the errors that they prevent.
 pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Markup {

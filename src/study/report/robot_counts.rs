@@ -3,11 +3,11 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, arm, count, nothing, number, section};
-use crate::base::words;
-use crate::robot::AbortReason;
 use crate::study::arm_group::RobotArmTotals;
 use crate::study::figures::StudySummary;
 use crate::study::robot_tally::ArmSafetySummary;
+use tomcom_core::base::words;
+use tomcom_core::robot::AbortReason;
 
 /// Table of robot statistics with one column per kind of robot arm.
 pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {

@@ -3,9 +3,6 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
-use crate::base::words;
-use crate::measures::belief_basis::BeliefSource;
-use crate::measures::cause_codes::RaterAgreement;
 use crate::session::event::TrialEndReason;
 use crate::study::column::CsvTable;
 use crate::study::definitions::DEFINITIONS;
@@ -13,6 +10,9 @@ use crate::study::figures::{StudySummary, pairs_in_words};
 use crate::study::missing_trials::in_words;
 use crate::study::planned_trial::copies_in_words;
 use crate::study::trial_statistics::TrialStatistics;
+use tomcom_core::base::words;
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::cause_codes::RaterAgreement;
 
 /// Least number of participants with both trials from which on r and p are shown among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;

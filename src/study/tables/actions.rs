@@ -1,11 +1,11 @@
 //! Table of the presses of both agents, for the CSV file of actions.
 
-use crate::kitchen::{Agent, Kitchen, Press};
-use crate::measures::JudgedPress;
-use crate::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use crate::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
-use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use tomcom_core::kitchen::{Agent, Kitchen, Press};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
+use tomcom_core::mind::recorded_estimate::rounded;
 
 /// A recorded press of either agent with its time and number.
 #[derive(Clone, Copy, Debug)]

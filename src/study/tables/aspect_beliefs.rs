@@ -1,8 +1,8 @@
 //! Table of the beliefs about each state aspect before each human press.
 
-use crate::mind::AspectBelief;
-use crate::mind::recorded_estimate::AspectEstimate;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use tomcom_core::mind::AspectBelief;
+use tomcom_core::mind::recorded_estimate::AspectEstimate;
 
 /// Row of the table of beliefs: estimated and recorded belief about one state aspect before a press of the human.
 #[derive(Clone, Copy, Debug)]

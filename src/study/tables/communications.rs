@@ -1,9 +1,9 @@
 //! Table of communications that were sent, and of those that a concept would have sent.
 
-use crate::kitchen::Kitchen;
-use crate::measures::matching::{CommunicationEvent, CommunicationKind};
-use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind};
+use tomcom_core::mind::recorded_estimate::rounded;
 
 /// Row of the table of communications: a communication that was sent, or that a concept would have sent.
 #[derive(Clone, Copy, Debug)]

@@ -1,11 +1,11 @@
 //! Table of errors that communication concepts would have prevented.
 
-use crate::communication::concept::ConceptName;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::concept_totals::ConceptPreventionCounts;
 use crate::study::prevention::PreventionCounts;
 use crate::study::trial_details::TrialDetails;
 use crate::study::trial_statistics::TrialStatistics;
+use tomcom_core::communication::concept::ConceptName;
 
 /// Row of the table of concepts: a concept with one value of its parameter in an unassisted trial.
 #[derive(Clone, Copy, Debug)]

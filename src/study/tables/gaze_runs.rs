@@ -1,9 +1,9 @@
 //! Table of gaze runs: series of successive gaze samples on the same location.
 
-use crate::base::time::SessionTime;
-use crate::kitchen::{Kitchen, LocationId};
-use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Kitchen, LocationId};
+use tomcom_core::mind::recorded_estimate::rounded;
 
 /// A gaze run: successive gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]

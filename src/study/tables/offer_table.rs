@@ -1,10 +1,10 @@
 //! Table of the offers that a wizard could see in a trial.
 
 use crate::analysis::offer_summary::TimedOffer;
-use crate::communication::Signal;
-use crate::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
-use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
+use tomcom_core::mind::recorded_estimate::rounded;
 
 /// Row of the table of offers: an offer to the wizard in a recording.
 #[derive(Clone, Copy, Debug)]

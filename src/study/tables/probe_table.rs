@@ -1,12 +1,12 @@
 //! Table of the questions of freeze probes.
 
 use crate::analysis::probe_record::{AspectAtFreeze, ProbeResponse, ProbedQuestion};
-use crate::mind::WORTH_TELLING;
-use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::StudyMeasure;
 use crate::study::trial_details::TrialDetails;
 use crate::study::trial_statistics::TrialStatistics;
+use tomcom_core::mind::WORTH_TELLING;
+use tomcom_core::mind::recorded_estimate::rounded;
 
 /// Measure of situation awareness: share of wrong answers to freeze probes.
 pub const PROBES_WRONG: StudyMeasure = StudyMeasure {

@@ -3,10 +3,6 @@
 use super::trial_column::TrialColumn::{self, Compared};
 use super::trial_column::plain;
 use crate::analysis::offer_summary::OfferSummary;
-use crate::base::spreadsheet::GUARDED;
-use crate::measures::cause_kinds::BeliefErrorCounts;
-use crate::measures::wizard_performance::WizardMeasures;
-use crate::robot::AbortReason;
 use crate::session::event::TrialEndReason;
 use crate::session::wall_display::RobotDepiction;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
@@ -16,6 +12,10 @@ use crate::study::robot_tally::ArmSafetySummary;
 use crate::study::tables::arm_columns;
 use crate::study::tables::probe_table::PROBES_WRONG;
 use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean_length};
+use tomcom_core::base::spreadsheet::GUARDED;
+use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
+use tomcom_core::measures::wizard_performance::WizardMeasures;
+use tomcom_core::robot::AbortReason;
 
 /// Main measure of the report, which is the first of the compared measures.
 pub const HEADLINE: StudyMeasure = StudyMeasure {

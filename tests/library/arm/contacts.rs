@@ -2,14 +2,14 @@
 
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
-use tomcom::arm::controller::{ArmController, ControlCycleResult};
-use tomcom::arm::kinematics::SerialArm;
-use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand_body::HandPose;
-use tomcom::arm::report::PressFailure;
-use tomcom::base::rng::{Stream, stream};
-use tomcom::robot::moment::{ArmPhase, JOINTS, JointAngles};
-use tomcom::robot::safety::SafetyMode;
+use tomcom_arm::controller::{ArmController, ControlCycleResult};
+use tomcom_arm::kinematics::SerialArm;
+use tomcom_arm::physics::CYCLE_S;
+use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::report::PressFailure;
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::robot::moment::{ArmPhase, JOINTS, JointAngles};
+use tomcom_core::robot::safety::SafetyMode;
 
 use super::{AT_REST, STILL_RAD, any_button, at, until_report};
 

@@ -1,11 +1,11 @@
 //! The human hand in the physics: when it sets out, where it goes, and what it keeps off.
 
 use nalgebra::Point3;
-use tomcom::arm::physics::hand_body::HandPose;
-use tomcom::arm::reaching::{ReachingBehaviour, ReachingHand};
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
-use tomcom::kitchen::{Agent, ButtonId};
+use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::reaching::{ReachingBehaviour, ReachingHand};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, ButtonId};
 
 use super::SUSHI;
 

@@ -12,14 +12,14 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use rand::RngExt;
-use tomcom::arm::controller::{ArmController, ControlCycleResult};
-use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::physics::hand_body::HandPose;
-use tomcom::arm::report::PressFailure;
-use tomcom::base::rng::Stream;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom::robot::moment::ArmPhase;
+use tomcom_arm::controller::{ArmController, ControlCycleResult};
+use tomcom_arm::physics::CYCLE_S;
+use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::report::PressFailure;
+use tomcom_core::base::rng::Stream;
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
+use tomcom_core::robot::moment::ArmPhase;
 
 static SUSHI: LazyLock<Kitchen> =
     LazyLock::new(|| read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);

@@ -1,11 +1,11 @@
 //! Presses and contacts in the physics, counted: limits are kept, nobody is touched without a stop, the joints come out bit for bit.
 
-use tomcom::arm::kinematics::SerialArm;
-use tomcom::arm::physics::CYCLE_S;
-use tomcom::arm::trajectory::JOINT_SPEED_RAD_S;
-use tomcom::base::rng::stream;
-use tomcom::kitchen::{Agent, ButtonId};
-use tomcom::robot::moment::JointAngles;
+use tomcom_arm::kinematics::SerialArm;
+use tomcom_arm::physics::CYCLE_S;
+use tomcom_arm::trajectory::JOINT_SPEED_RAD_S;
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::{Agent, ButtonId};
+use tomcom_core::robot::moment::JointAngles;
 
 use super::{AT_REST, Came, SUSHI, any_button, at, until_report};
 

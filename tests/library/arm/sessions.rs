@@ -4,20 +4,20 @@ use std::path::Path;
 use std::sync::Arc;
 
 use nalgebra::Point3;
-use tomcom::arm::clearance::Capsule;
-use tomcom::arm::controller::ArmController;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::Sender;
-use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::read_session;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::robot::AbortReason;
-use tomcom::robot::moment::{ArmPhase, ArmSample, JOINTS};
-use tomcom::robot::safety::SafetyMode;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
+use tomcom_arm::clearance::Capsule;
+use tomcom_arm::controller::ArmController;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Sender;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::robot::AbortReason;
+use tomcom_core::robot::moment::{ArmPhase, ArmSample, JOINTS};
+use tomcom_core::robot::safety::SafetyMode;
 
 use super::{STILL_RAD, SUSHI};
 

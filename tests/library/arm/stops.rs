@@ -1,14 +1,14 @@
 //! Stops and faults of the arm alone: protective and emergency stops, a joint that gives way, a button that does not click, a way that is blocked.
 
 use nalgebra::Point3;
-use tomcom::arm::clearance::{Capsule, Obstruction};
-use tomcom::arm::kinematics::SerialArm;
-use tomcom::arm::physics::hand_body::HandPose;
-use tomcom::arm::reach::UnreachableReason;
-use tomcom::arm::report::PressFailure;
-use tomcom::kitchen::{Agent, ButtonId};
-use tomcom::robot::moment::JOINTS;
-use tomcom::robot::safety::SafetyMode;
+use tomcom_arm::clearance::{Capsule, Obstruction};
+use tomcom_arm::kinematics::SerialArm;
+use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::reach::UnreachableReason;
+use tomcom_arm::report::PressFailure;
+use tomcom_core::kitchen::{Agent, ButtonId};
+use tomcom_core::robot::moment::JOINTS;
+use tomcom_core::robot::safety::SafetyMode;
 
 use super::{AT_REST, Came, SUSHI, until_report};
 

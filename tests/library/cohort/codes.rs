@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use tomcom::edge::log::rater_codes::{read_all, write};
 use tomcom::edge::log::{LOG_NAME, RecordingLock, consensus_file};
-use tomcom::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use tomcom::measures::consensus::{RaterConsensus, unsettled};
-use tomcom::measures::rater_choice::RaterChoice;
 use tomcom::run::code_exchange::{self, export};
 use tomcom::run::codes::{CodedRecording, InterRaterSummary, describe};
 use tomcom::run::error::RunError;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
+use tomcom_core::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
+use tomcom_core::measures::rater_choice::RaterChoice;
 
 use super::{folder, paper, run};
 

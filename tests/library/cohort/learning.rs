@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen};
-use tomcom::participant::SimulatedParticipant;
-use tomcom::participant::population::{Experience, Population};
+use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen};
+use tomcom_people::participant::SimulatedParticipant;
+use tomcom_people::participant::population::{Experience, Population};
 
 use super::paper;
 

@@ -6,8 +6,6 @@ use tomcom::analysis::cohort_lines::{describe_end, describe_row, name_width};
 use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable};
 use tomcom::edge::battery_file::{CohortBattery, read_battery};
 use tomcom::edge::files::read_session;
-use tomcom::measures::flags::ThresholdSource;
-use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
 use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::robustness::{RobustnessRequest, measure};
@@ -15,6 +13,8 @@ use tomcom::run::simulate::SimulationShard;
 use tomcom::session::battery::CohortSpec;
 use tomcom::session::settings::{ArmKind, Condition};
 use tomcom::study::cohort_chart::robustness;
+use tomcom_core::measures::flags::ThresholdSource;
+use tomcom_people::participant::population::Population;
 
 use super::{folder, run};
 

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::communication::concept::ConceptName;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::run::kept_cost::KeptCost;
@@ -11,6 +10,7 @@ use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::settings::{ArmKind, Condition};
 use tomcom::study::trial_statistics::TrialStatistics;
+use tomcom_core::communication::concept::ConceptName;
 
 use super::{folder, run};
 

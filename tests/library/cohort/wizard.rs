@@ -3,19 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::{HighlightSet, Sender};
 use tomcom::edge::files::read_session;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{DishId, LocationId};
 use tomcom::run::simulate::SimulationShard;
 use tomcom::run::verify::verify;
 use tomcom::session::admit::hygiene;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::session::{Event, Session, TimestampedEvent};
-use tomcom::wizard::settings::{OfferReading, WizardKind, WizardSpec};
-use tomcom::wizard::{ScriptedWizard, WizardAction};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::{HighlightSet, Sender};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{DishId, LocationId};
+use tomcom_people::wizard::settings::{OfferReading, WizardKind, WizardSpec};
+use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 
 use super::{events, folder, paper, run};
 
@@ -58,7 +58,7 @@ fn a_wizard_who_sees_nothing_says_nothing_and_no_hand_signals_in_its_place() {
     let mut spec = paper(120).spec;
     (spec.trial.condition, spec.plan) = (Condition::Wizard, None);
     let session = Session::new(Arc::new(files.kitchen.kitchen.clone()), spec, 0);
-    let (_, signal) = tomcom::communication::signals(&session.kitchen, session.highlights()).swap_remove(3);
+    let (_, signal) = tomcom_core::communication::signals(&session.kitchen, session.highlights()).swap_remove(3);
     let event = Event::SignalShown { by: Sender::Wizard, signal, offer: None };
     let refused = hygiene(&session, SessionTime::ZERO, &event).expect_err("nobody signals beside the script");
     assert!(refused.contains("scripted"), "{refused}");
@@ -82,7 +82,7 @@ fn a_wizard_tells_what_was_not_looked_at_and_nothing_that_was() {
     let place = |name: &str| kitchen.location_named(name).expect("a place of the kitchen");
     let (pot, order) = (place("cooking_pot"), kitchen.orders[0]);
     let mut wanted = empty;
-    wanted.set_order(order, tomcom::kitchen::OrderContent::Dish(DishId(0)));
+    wanted.set_order(order, tomcom_core::kitchen::OrderContent::Dish(DishId(0)));
     let mut filled = wanted;
     filled.set_content(pot, kitchen.content_named("rice raw").expect("an item"));
     let mut said = |looks: bool| {

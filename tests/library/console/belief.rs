@@ -1,10 +1,10 @@
 //! The belief panel, and the track of estimates behind it.
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
 use tomcom::history::belief_track;
 use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_core::base::time::SessionTime;
 
 use super::{SIZES, Stage, panels};
 use crate::check_snapshot;

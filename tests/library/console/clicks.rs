@@ -1,9 +1,6 @@
 //! Clicks: on signals and the offer, on hints, rows, beliefs and the timeline. A click does what a key does.
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::Signal;
-use tomcom::communication::offer::{OfferedAdvice, OfferedCommunication};
 use tomcom::console::click_question;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
@@ -12,6 +9,9 @@ use tomcom::console::view::click_targets;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::session::Event;
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
 
 use super::{SIZES, Stage, input};
 

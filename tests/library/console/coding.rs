@@ -6,10 +6,10 @@ use tomcom::console::key_action::{KeyAction, RaterAction};
 use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::rater_session::{CodingRaters, RaterSession};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom::measures::consensus::RaterConsensus;
 use tomcom::session::TimelineEvent;
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::consensus::RaterConsensus;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

@@ -3,10 +3,6 @@
 use std::sync::Arc;
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::Signal;
-use tomcom::communication::concept::ConceptName;
-use tomcom::communication::recommendation::{Recommendation, SignalOption};
 use tomcom::console::compared::SenderComparisonView;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::panel::Panel;
@@ -16,8 +12,12 @@ use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::history::comparison::{
     Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
 };
-use tomcom::measures::matching::CommunicationEvent;
 use tomcom::session::settings::ParticipantKind;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
+use tomcom_core::measures::matching::CommunicationEvent;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

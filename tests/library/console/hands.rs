@@ -1,11 +1,11 @@
 //! The wizard's hands in the kitchen: corrections, and the robot held, skipped and driven.
 
 use crossterm::event::KeyCode;
-use tomcom::communication::Sender;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::settings::ParticipantKind;
+use tomcom_core::communication::Sender;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;

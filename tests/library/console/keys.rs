@@ -1,15 +1,15 @@
 //! Keys: what they send, how often, and that none has two meanings.
 
 use crossterm::event::{KeyCode, KeyEventKind};
-use tomcom::communication::Sender;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::key_action::{KeyErrorSource, KeyLayer};
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom::kitchen::{Agent, Kitchen, LocationKind};
 use tomcom::session::SessionSpec;
 use tomcom::session::event::{Event, SignalEndReason, TrialEndReason};
 use tomcom::session::settings::ParticipantKind;
+use tomcom_core::communication::Sender;
+use tomcom_core::kitchen::{Agent, Kitchen, LocationKind};
 
 use super::{SIZES, Stage, input, kitchen};
 

@@ -1,18 +1,18 @@
 //! Notices, alarms, notes and ages on the screen.
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
 use tomcom::console::console_model::{LslStatus, RerunStreamStatus};
 use tomcom::console::gaze_pairing::GazePairing;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::robot::safety::SafetyMode;
 use tomcom::session::TimelineEvent;
 use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom::session::tracker::TrackerEvent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::robot::safety::SafetyMode;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;

@@ -79,7 +79,7 @@ fn the_first_action_of_the_palette_is_likely_and_never_stops_or_ends_anything() 
 #[test]
 fn an_action_is_found_by_typing_and_done_as_by_its_key() {
     for (typed, expected) in [
-        ("hold", Event::RobotHeld { by: tomcom::communication::Sender::Wizard }),
+        ("hold", Event::RobotHeld { by: tomcom_core::communication::Sender::Wizard }),
         ("stoprobot", Event::RobotStopped),
         ("stpause", Event::TrialPaused),
     ] {

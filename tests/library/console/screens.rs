@@ -1,8 +1,6 @@
 //! Whole screens at each size: everything that a wizard has to recognise at a glance.
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::{Sender, Signal};
 use tomcom::console::console_model::{Dialog, RecordingStatus};
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::notice::NoticeLevel;
@@ -12,10 +10,12 @@ use tomcom::console::screen::screen;
 use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::Agent;
 use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::Agent;
 
 use super::{SIZES, Stage, panels};
 use crate::check_snapshot;

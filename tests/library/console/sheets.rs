@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::form::{FormContent, sheet};
 use tomcom::edge::files::read_session;
@@ -14,6 +13,7 @@ use tomcom::session::plan::{QuestionnaireSpec, TutorialStepKind, WantedRecording
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
+use tomcom_core::base::time::SessionTime;
 
 use super::{SIZES, Stage, kitchen};
 use crate::check_snapshot;

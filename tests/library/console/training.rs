@@ -1,12 +1,12 @@
 //! The training of a wizard: its task, its feedback and its report.
 
 use crossterm::event::KeyCode;
-use tomcom::base::time::SessionTime;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_core::base::time::SessionTime;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

@@ -3,15 +3,15 @@
 use std::time::{Duration, Instant};
 
 use rmpv::Value;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom::edge::pupil::{CaptureConfiguration, follow};
-use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::session::settings::GazeSource;
 use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::{Event, preflight_checks};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::surface::SurfaceHomography;
 
 use super::engine;
 

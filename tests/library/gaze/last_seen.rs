@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::analysis::seen_contents::LastSeenContents;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::{Agent, KitchenChange, LocationId};
 use tomcom::session::probes::{ProbeEvent, ProbeOrigin};
 use tomcom::session::{Event, Session, TimestampedEvent, apply};
 use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::{Agent, KitchenChange, LocationId};
 
 /// A session with what was last seen in it, event by event.
 struct Look {

@@ -14,10 +14,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::edge::files::{read_kitchen, read_session};
-use tomcom::kitchen::Kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::SessionSpec;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 fn load(layout: &str) -> Kitchen {
     match read_kitchen(Path::new(layout)) {

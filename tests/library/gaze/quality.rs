@@ -1,11 +1,11 @@
 //! Streams of samples: faults, delays, sampling rates, and floods.
 
-use tomcom::base::time::SessionTime;
-use tomcom::gaze::GazeSample;
-use tomcom::gaze::quality::{GazeFault, GazeRateLimiter};
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::quality::{GazeFault, GazeRateLimiter};
 
 use super::engine;
 

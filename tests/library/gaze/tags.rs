@@ -1,8 +1,8 @@
 //! The tags in the corners of the wall display, and the map from a tracker's surface to it.
 
-use tomcom::gaze::surface::SurfaceHomography;
-use tomcom::gaze::tags::{CELLS, DisplayTags};
-use tomcom::kitchen::DisplayArea;
+use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::{CELLS, DisplayTags};
+use tomcom_core::kitchen::DisplayArea;
 
 use super::load;
 

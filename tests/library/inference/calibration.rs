@@ -1,13 +1,13 @@
 //! Humans who are simulated from the model itself: what is inferred of them must be what they hold, as often as it says.
 
 use rand::RngExt;
-use tomcom::base::rng::{Stream, stream};
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{AspectId, Kitchen, State};
-use tomcom::measures::detection::Calibration;
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::reference::person::{draw, pick};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{AspectId, Kitchen, State};
+use tomcom_core::measures::detection::Calibration;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::reference::person::{draw, pick};
 
 use super::particles::ParticleFilter;
 use super::world::{Human, World, kitchen, live, tiny_model};

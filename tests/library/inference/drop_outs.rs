@@ -4,15 +4,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{AspectId, AspectKind, Kitchen, State};
-use tomcom::mind::filter::BeliefFilter;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource};
 use tomcom::session::tracker::GazeGapSpec;
 use tomcom::session::{Event, SessionSpec, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen, State};
+use tomcom_core::mind::filter::BeliefFilter;
 
 /// Seed and number of the sessions.
 const SEED: u64 = 61;
@@ -34,7 +34,7 @@ enum Tracker {
 fn settings(files: &SessionSetup, tracker: Tracker) -> SessionSpec {
     let mut spec = files.spec.clone();
     (spec.seed, spec.trial.condition, spec.robot.arm) = (SEED, Condition::None, ArmKind::Timed);
-    spec.assistant.shadow = tomcom::communication::settings::ShadowMode::Off;
+    spec.assistant.shadow = tomcom_core::communication::settings::ShadowMode::Off;
     match tracker {
         Tracker::Full => {}
         Tracker::DropsOut => {

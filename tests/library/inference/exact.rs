@@ -1,12 +1,12 @@
 //! On a kitchen small enough to go through all beliefs on a grid.
 
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Kitchen, Press};
-use tomcom::mind::dirichlet::DirichletBelief;
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::ReferenceFilter;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Kitchen, Press};
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::ReferenceFilter;
 
 use super::grid::{GridFilter, quadrature};
 use super::particles::ParticleFilter;

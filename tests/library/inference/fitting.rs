@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use tomcom::analysis::fitting::{FitSettings, FitSummary, describe};
-use tomcom::kitchen::Kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::mind::fitting::{FitObservations, HumanModelParameter};
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::Observation;
 use tomcom::run::fit::{FitTrials, fit};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::mind::fitting::{FitObservations, HumanModelParameter};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::Observation;
 
 use super::world::{Human, World, kitchen, live};
 

@@ -2,18 +2,18 @@
 
 use rand::RngExt;
 use tomcom::analysis::fitting::{FitSettings, describe};
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, AspectKind};
-use tomcom::mind::dirichlet::Dirichlet;
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::fitting::{
+use tomcom::run::fit::{FitTrials, fit};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, AspectKind};
+use tomcom_core::mind::dirichlet::Dirichlet;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::fitting::{
     FitObservations, HumanModelParameter, ProbeAnswerObservation, TrialLikelihood, likelihood, p_answer,
 };
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::run::fit::{FitTrials, fit};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 
 use super::world::{Human, World, kitchen, live};
 

@@ -4,8 +4,8 @@
 use rand::RngExt;
 use tomcom::analysis::fitting::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
 use tomcom::analysis::fitting::surface_search::BoundReached;
-use tomcom::base::rng::{Stream, stream};
-use tomcom::mind::fitting::HumanModelParameter;
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::mind::fitting::HumanModelParameter;
 
 const BUTTONS: usize = 8;
 /// Combinations of three facts that are known or not.

@@ -3,17 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, DishId, OrderContent};
-use tomcom::mind::dirichlet::DirichletBelief;
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::ReferenceFilter;
-use tomcom::mind::signal_model::SignalModel;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, DishId, OrderContent};
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::ReferenceFilter;
+use tomcom_core::mind::signal_model::SignalModel;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)

@@ -7,16 +7,16 @@
 
 use std::sync::Arc;
 
-use tomcom::base::rng::stream;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, Kitchen};
-use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::gaze_presence::UnknownGazeTimer;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::belief_set::ParticleSet;
-use tomcom::mind::reference::person::Particle;
-use tomcom::mind::reference::reading_effect::LookTracker;
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::belief_set::ParticleSet;
+use tomcom_core::mind::reference::person::Particle;
+use tomcom_core::mind::reference::reading_effect::LookTracker;
 
 use super::looks_at_nothing;
 

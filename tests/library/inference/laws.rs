@@ -4,16 +4,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::{Stream, stream};
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{HumanModel, InferenceSettings};
-use tomcom::mind::named_models::PAPER_2021;
-use tomcom::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{
+    Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State,
+};
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::{HumanModel, InferenceSettings};
+use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 use super::{any_number, any_state, check_proper, looks_at_nothing};
 

@@ -20,11 +20,11 @@ mod unknown_gaze;
 mod world;
 
 use rand::RngExt;
-use tomcom::base::rng::Stream;
-use tomcom::kitchen::{Kitchen, LocationId, State};
-use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
-use tomcom::mind::model::{HumanModel, LookingModel};
-use tomcom::mind::named_models::PAPER_2021;
+use tomcom_core::base::rng::Stream;
+use tomcom_core::kitchen::{Kitchen, LocationId, State};
+use tomcom_core::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
+use tomcom_core::mind::model::{HumanModel, LookingModel};
+use tomcom_core::mind::named_models::PAPER_2021;
 
 /// A human who looks at nothing while the gaze is unknown, and believes signals at once.
 fn looks_at_nothing() -> HumanModel {

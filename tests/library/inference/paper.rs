@@ -3,21 +3,21 @@
 
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::Signal;
-use tomcom::communication::concept::{Concept, DecisionPoint};
-use tomcom::communication::planner::Planner;
-use tomcom::communication::settings::AssistantSpec;
-use tomcom::communication::situation::{RobotIntent, Situation};
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
-use tomcom::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, OrderContent, Recipes, State};
-use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief, LEAST_MEAN};
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::named_models::PAPER_2021;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::robot::policy;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::{Concept, DecisionPoint};
+use tomcom_core::communication::planner::Planner;
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, OrderContent, Recipes, State};
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief, LEAST_MEAN};
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::robot::policy;
 
 use super::grid::quadrature;
 use super::world::kitchen;
@@ -91,7 +91,7 @@ fn points_of(dirichlet: &Dirichlet) -> Vec<(Vec<f64>, f64)> {
 fn observed(kitchen: &Kitchen, location: usize, model: &HumanModel) -> Vec<Vec<f64>> {
     let aspect = &kitchen.aspects[location];
     let alike = |a: usize, b: usize| {
-        let codes = kitchen.look_alike_codes(tomcom::kitchen::LocationId(location as u8), aspect.values[a]);
+        let codes = kitchen.look_alike_codes(tomcom_core::kitchen::LocationId(location as u8), aspect.values[a]);
         codes.contains(&aspect.values[b])
     };
     let values = aspect.values.len();

@@ -4,12 +4,12 @@
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::{Stream, stream};
-use tomcom::kitchen::Kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::belief_set::ParticleSet;
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::belief_set::ParticleSet;
 
 pub struct ParticleFilter {
     pub people: ParticleSet,

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, OrderContent};
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{HumanModel, LookingModel};
-use tomcom::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
-use tomcom::mind::reference::ReferenceFilter;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, OrderContent};
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::{HumanModel, LookingModel};
+use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
+use tomcom_core::mind::reference::ReferenceFilter;
 
 /// Fall of P(truth) about the recipe of an order by a press of its look-alike's ingredient, and ln p of that press.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ fn lessons(proposed: &[&str], follows: f64) -> [Lesson; 2] {
     let named = |name: &&str| kitchen.button_named(Agent::Human, name).expect("a button");
     let dish = kitchen.dishes.iter().position(|dish| dish.name == "shrimp nigiri").expect("a dish");
     let mut wanted = kitchen.empty_state();
-    wanted.set_order(kitchen.orders[0], OrderContent::Dish(tomcom::kitchen::DishId(dish as u8)));
+    wanted.set_order(kitchen.orders[0], OrderContent::Dish(tomcom_core::kitchen::DishId(dish as u8)));
     let order = AspectId::of_location(kitchen.orders[0]);
     let crab = kitchen.try_press(wanted, Agent::Human, named(&"take crab"));
     let story = [
@@ -42,7 +42,7 @@ fn lessons(proposed: &[&str], follows: f64) -> [Lesson; 2] {
     let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), 9706);
     model.inference.beliefs = 1500;
     let mut reference = ReferenceFilter::new(kitchen.clone(), model, 9706);
-    let recipe = kitchen.aspect_of_dish(tomcom::kitchen::DishId(dish as u8));
+    let recipe = kitchen.aspect_of_dish(tomcom_core::kitchen::DishId(dish as u8));
     let mut before = [0.0; 2];
     for (seconds, what) in story {
         let observation = Observation { time: SessionTime::from_secs_f64(seconds), what };

@@ -1,14 +1,14 @@
 //! The fast filter against the plain reference on recorded steps.
 
-use tomcom::base::time::SessionTime;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, LocationId, Press};
-use tomcom::mind::dirichlet::DirichletBelief;
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::ReferenceFilter;
-use tomcom::mind::signal_model::SignalModel;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, LocationId, Press};
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::ReferenceFilter;
+use tomcom_core::mind::signal_model::SignalModel;
 
 use super::observed::recorded;
 use super::world::{distance, kitchen};

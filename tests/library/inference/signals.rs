@@ -3,19 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::named_models::PAPER_2021;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::belief_set::ParticleSet;
-use tomcom::mind::reference::person::Particle;
-use tomcom::mind::signal_model::SignalModel;
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::belief_set::ParticleSet;
+use tomcom_core::mind::reference::person::Particle;
+use tomcom_core::mind::signal_model::SignalModel;
 
 use super::looks_at_nothing;
 

@@ -3,18 +3,18 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen, State};
-use tomcom::mind::dirichlet::Dirichlet;
-use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::gaze_presence::UnknownGazeTimer;
-use tomcom::mind::model::{HumanModel, LookingModel};
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen, State};
+use tomcom_core::mind::dirichlet::Dirichlet;
+use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
+use tomcom_core::mind::model::{HumanModel, LookingModel};
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)

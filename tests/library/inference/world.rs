@@ -5,18 +5,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::{Stream, stream};
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::gaze::GazeSample;
-use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
-use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
-use tomcom::mind::model::HumanModel;
-use tomcom::mind::named_models::PAPER_2021;
-use tomcom::mind::observation::{Observation, ObservedEvidence};
-use tomcom::mind::reference::belief_set::ParticleSet;
-use tomcom::mind::reference::person::pick;
-use tomcom::robot::policy;
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::reference::belief_set::ParticleSet;
+use tomcom_core::mind::reference::person::pick;
+use tomcom_core::robot::policy;
 
 /// From one press to the next of each agent, and from one fixation to the next, in seconds.
 const PRESS_S: [f64; 2] = [1.2, 2.8];

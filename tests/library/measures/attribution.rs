@@ -1,10 +1,10 @@
 //! Causes of errors: false beliefs and slips.
 
-use tomcom::kitchen::Agent;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::measures::attribution::{ErrorAttributor, ErrorCause};
-use tomcom::measures::errors::PressJudge;
-use tomcom::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
+use tomcom_core::measures::errors::PressJudge;
+use tomcom_core::mind::choice_parameters::ChoiceParameters;
 
 use super::{at, belief, kitchen, state};
 

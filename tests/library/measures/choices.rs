@@ -5,16 +5,16 @@ use std::convert::Infallible;
 use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::likelihood::PressLogLikelihood;
 use tomcom::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
-use tomcom::base::rng::stream;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, WeightedWorlds, World};
-use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
-use tomcom::mind::belief::Belief;
-use tomcom::mind::choice_parameters::ChoiceParameters;
-use tomcom::mind::{ChoiceModel, RecordedBelief};
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, WeightedWorlds, World};
+use tomcom_core::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
+use tomcom_core::mind::belief::Belief;
+use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::{ChoiceModel, RecordedBelief};
 
 use super::{aspect, kitchen, state};
 

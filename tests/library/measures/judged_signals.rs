@@ -1,10 +1,10 @@
 //! Signals that are judged when they are sent.
 
-use tomcom::communication::{Sender, Signal};
 use tomcom::history::signal_judge::{SignalJudge, SignalJudgementCounts};
-use tomcom::kitchen::Agent;
 use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom::session::{Session, SessionSpec, apply};
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::Agent;
 
 use super::{aspect, at, kitchen};
 

@@ -1,9 +1,9 @@
 //! The similarity of two lanes of communications.
 
 use rand::RngExt;
-use tomcom::base::rng::stream;
-use tomcom::kitchen::LocationId;
-use tomcom::measures::matching::{
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::LocationId;
+use tomcom_core::measures::matching::{
     CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
 };
 

@@ -11,10 +11,10 @@ mod wizard;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
-use tomcom::mind::belief::Belief;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
+use tomcom_core::mind::belief::Belief;
 
 fn kitchen(name: &str) -> Arc<Kitchen> {
     match read_kitchen(Path::new(&format!("layouts/{name}.toml"))) {

@@ -1,11 +1,11 @@
 //! Error sequences and false belief episodes.
 
-use tomcom::base::time::SessionTime;
-use tomcom::kitchen::{DishId, LocationId};
-use tomcom::measures::JudgedPress;
-use tomcom::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use tomcom::measures::errors::PressVerdict;
-use tomcom::measures::sequences::{ErrorSequence, FalseBeliefTracker, sequences, sequences_any_aspect};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{DishId, LocationId};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use tomcom_core::measures::errors::PressVerdict;
+use tomcom_core::measures::sequences::{ErrorSequence, FalseBeliefTracker, sequences, sequences_any_aspect};
 
 use super::{at, belief, kitchen, state};
 
@@ -102,7 +102,7 @@ fn an_episode_lasts_from_the_change_that_was_missed_to_the_look_that_mends_it() 
     believe(&mut episodes, 6.0, cooked, &unseen, &changed_at);
     episodes.erred(&kitchen, wrong);
     let tell = |episodes: &FalseBeliefTracker| {
-        let tell = |one: &tomcom::measures::sequences::FalseBeliefEpisode| {
+        let tell = |one: &tomcom_core::measures::sequences::FalseBeliefEpisode| {
             (one.began.as_secs_f64(), one.corrected.map(SessionTime::as_secs_f64), one.errors)
         };
         episodes.harmful().map(tell).collect::<Vec<_>>()

@@ -1,7 +1,7 @@
 //! How well a wizard does.
 
-use tomcom::kitchen::AspectId;
-use tomcom::measures::wizard_performance::{
+use tomcom_core::kitchen::AspectId;
+use tomcom_core::measures::wizard_performance::{
     FalseBeliefPeriod, SignalVerdict, TimeSummary, TrainingCriterion, WizardMeasures, WizardSignal, verdicts,
 };
 

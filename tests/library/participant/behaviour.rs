@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::Signal;
-use tomcom::gaze::{GazeSample, MIN_CONFIDENCE, nearest_location};
-use tomcom::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, Press, State};
-use tomcom::mind::{PressOrigin, RecordedBelief};
-use tomcom::participant::population::{Experience, Population, TraitSpread};
-use tomcom::participant::{ParticipantAction, SimulatedParticipant};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE, nearest_location};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, Press, State};
+use tomcom_core::mind::{PressOrigin, RecordedBelief};
+use tomcom_people::participant::population::{Experience, Population, TraitSpread};
+use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
 
 use super::kitchen;
 

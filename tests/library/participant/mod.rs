@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::Kitchen;
+use tomcom_core::kitchen::Kitchen;
 
 fn kitchen(name: &str) -> Arc<Kitchen> {
     match read_kitchen(Path::new(&format!("layouts/{name}.toml"))) {

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::measures::attribution::ErrorCause;
-use tomcom::measures::sequences::sequences;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::{Event, SessionSpec, TimestampedEvent};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::sequences::sequences;
 
 use super::kitchen;
 

@@ -1,9 +1,9 @@
 //! Slips of the hand: which other button is hit, and how often.
 
-use tomcom::base::rng::stream;
-use tomcom::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom::participant::population::{Population, TraitSpread};
-use tomcom::participant::slips::slipped_button;
+use tomcom_core::base::rng::stream;
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
+use tomcom_people::participant::population::{Population, TraitSpread};
+use tomcom_people::participant::slips::slipped_button;
 
 use super::behaviour::{Bench, unmoved};
 use super::kitchen;

@@ -1,9 +1,9 @@
 //! Traits that nobody has in the calibrated population: stubbornness, wrong recipes that one is sure of, right guesses of the
 //! robot, not knowing how to go on.
 
-use tomcom::communication::Signal;
-use tomcom::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
-use tomcom::participant::population::{Population, TraitSpread};
+use tomcom_core::communication::Signal;
+use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
+use tomcom_people::participant::population::{Population, TraitSpread};
 
 use super::behaviour::{Bench, unmoved};
 

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::kitchen::DishId;
 use tomcom::session::orders::OrderList;
 use tomcom::session::plan::{Participants, QuestionnaireItem, Study, WantedRecording, orders as orders_of_conditions};
 use tomcom::session::settings::{ArmKind, ColourTheme, ParticipantKind, WizardVisibility};
 use tomcom::session::wall_display::RobotDepiction;
+use tomcom_core::kitchen::DishId;
 
 use super::{folder, study};
 

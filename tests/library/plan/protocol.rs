@@ -5,12 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-use tomcom::base::time::SessionTime;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::recordings;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
 use tomcom::session::event::TrialEndReason;
@@ -19,6 +17,8 @@ use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, LogHeader, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{files, folder, study};
 

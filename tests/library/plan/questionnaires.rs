@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::log::LogWriter;
 use tomcom::edge::parse::parse;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
 use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::{Event, LogHeader};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{files, folder};
 

@@ -4,11 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::display::{DisplayStage, ShownContent, sight};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::leaving::TutorialProgress;
 use tomcom::run::verify::verify;
@@ -17,6 +15,8 @@ use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom::session::{Event, LogHeader, Session};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{files, folder, study};
 

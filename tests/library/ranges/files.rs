@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::base::number_range::NumberRange;
 use tomcom::edge::files::{read_human_model, read_kitchen, read_session};
-use tomcom::kitchen::layout_ranges;
 use tomcom::session::ranges;
+use tomcom_core::base::number_range::NumberRange;
+use tomcom_core::kitchen::layout_ranges;
 
 use super::{as_number, every_setting, extremes, folder, has, questionnaire, set};
 

@@ -8,10 +8,10 @@ mod simulated;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::base::number_range::{NumberRange, numbers};
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::{Kitchen, layout_ranges};
 use tomcom::session::ranges;
+use tomcom_core::base::number_range::{NumberRange, numbers};
+use tomcom_core::kitchen::{Kitchen, layout_ranges};
 
 /// A session file that has every setting with a range.
 const SETTINGS: &str = r#"
@@ -78,8 +78,8 @@ const SETTINGS: &str = r#"
 fn every_setting() -> toml::Table {
     let given: tomcom::session::SessionSpec = toml::from_str(SETTINGS).expect("a session");
     let mut all = toml::Table::try_from(given).expect("settings are TOML");
-    let offers = Some(tomcom::wizard::settings::OfferReading::default());
-    let wizard = tomcom::wizard::settings::WizardSpec { offers, ..Default::default() };
+    let offers = Some(tomcom_people::wizard::settings::OfferReading::default());
+    let wizard = tomcom_people::wizard::settings::WizardSpec { offers, ..Default::default() };
     all.insert("wizard".to_string(), toml::Value::try_from(wizard).expect("settings are TOML"));
     let plan = all["plan"].as_table_mut().expect("a plan");
     // Those are written to recordings; a file may leave them out.
@@ -225,13 +225,13 @@ fn check_complete(name: &str, table: &toml::Table, ranges: &[NumberRange]) {
     let numbers = numbers(table, "").expect("numbers");
     assert!(!numbers.is_empty(), "{name} has no numbers");
     for (path, value) in &numbers {
-        let range = tomcom::base::number_range::range_of(ranges, path);
+        let range = tomcom_core::base::number_range::range_of(ranges, path);
         let range = range.unwrap_or_else(|| panic!("{name}: no range for {path} = {value}"));
         assert!(range.holds(*value), "{name}: {path} = {value}, out of {range}");
     }
     for range in ranges {
         let own = std::slice::from_ref(range);
-        let is_met = numbers.iter().any(|(path, _)| tomcom::base::number_range::range_of(own, path).is_some());
+        let is_met = numbers.iter().any(|(path, _)| tomcom_core::base::number_range::range_of(own, path).is_some());
         assert!(is_met, "{name}: no number has the path {}", range.path);
     }
 }

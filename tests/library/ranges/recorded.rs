@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::log::{LOG_NAME, LogReader, SimulatedLogState};
-use tomcom::mind::choice::ChoiceModel;
-use tomcom::mind::choice_parameters::ChoiceParameters;
-use tomcom::robot::moment::ArmSample;
 use tomcom::session::{Event, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::mind::choice::ChoiceModel;
+use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::robot::moment::ArmSample;
 
 use super::folder;
 

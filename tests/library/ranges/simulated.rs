@@ -4,16 +4,16 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::base::number_range::NumberRange;
-use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::{SessionSetup, read_session};
 use tomcom::edge::log::LogReader;
-use tomcom::kitchen::layout_ranges;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::session::apply::apply;
 use tomcom::session::settings::{ArmKind, Condition, SessionSpec};
 use tomcom::session::{Event, ranges};
-use tomcom::wizard::settings::WizardKind;
+use tomcom_core::base::number_range::NumberRange;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::layout_ranges;
+use tomcom_people::wizard::settings::WizardKind;
 
 use super::{every_setting, folder, set};
 

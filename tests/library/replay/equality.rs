@@ -4,12 +4,12 @@ use std::fs;
 use std::path::PathBuf;
 
 use tomcom::edge::log::LOG_NAME;
-use tomcom::kitchen::{AspectId, LocationId};
 use tomcom::run::replay::RecordingReplay;
 use tomcom::run::verify::verify;
 use tomcom::session::TrialPhase;
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::ArmKind;
+use tomcom_core::kitchen::{AspectId, LocationId};
 
 use super::{SESSIONS, by_hand, same, simulated};
 use crate::check_snapshot;

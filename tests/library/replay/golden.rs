@@ -5,13 +5,13 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::session::SessionSpec;
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource};
+use tomcom_core::communication::settings::ShadowMode;
 
 use super::{by_hand, folder};
 

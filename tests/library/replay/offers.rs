@@ -5,11 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use tomcom::analysis::offer_summary::TimedOffer;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::offer::OfferCloseReason;
-use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::replay::RecordingReplay;
@@ -19,6 +15,10 @@ use tomcom::run::steadiness::measure;
 use tomcom::run::verify::verify;
 use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
 use tomcom::session::{Event, LogHeader};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::OfferCloseReason;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{folder, session};
 

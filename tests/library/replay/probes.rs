@@ -5,11 +5,8 @@ use std::fs;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::SessionSetup;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::replay::RecordingReplay;
 use tomcom::run::resume::resume;
@@ -20,6 +17,9 @@ use tomcom::session::probes::{ProbeEndReason, ProbeEvent};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
 use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, LogHeader};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{anything, folder, session};
 

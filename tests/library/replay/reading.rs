@@ -5,15 +5,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::base::rng::stream;
-use tomcom::base::time::SessionTime;
 use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::replay::RecordingReplay;
 use tomcom::run::verify::verify;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::{Event, LogHeader};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{by_hand, folder, session};
 

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use tomcom::communication::{Signal, signals};
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
-use tomcom::mind::named_models::{PAPER_2021, PLAIN};
 use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
+use tomcom_core::communication::{Signal, signals};
+use tomcom_core::mind::named_models::{PAPER_2021, PLAIN};
 
 #[test]
 fn every_session_file_loads_and_its_keys_are_unambiguous() {

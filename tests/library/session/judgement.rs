@@ -6,13 +6,13 @@ use std::path::Path;
 use tomcom::analysis::follower::SessionFollower;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, OrderContent};
-use tomcom::measures::errors::{PressJudge, PressVerdict};
 use tomcom::run::engine::{InputResult, SessionEngine};
 use tomcom::run::recording_list::{RecordingListDetail, list};
 use tomcom::session::probes::ProbeEvent;
 use tomcom::session::{Event, LogHeader, Session, TimestampedEvent};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, OrderContent};
+use tomcom_core::measures::errors::{PressJudge, PressVerdict};
 
 use super::probes::on_request;
 use super::{at, kitchen, press};
@@ -26,7 +26,7 @@ fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVer
     let mut state = kitchen.empty_state();
     for (order, dish) in kitchen.orders.iter().zip(dishes) {
         let dish = kitchen.dishes.iter().position(|known| known.name == *dish).expect("a dish of the menu");
-        state.set_order(*order, OrderContent::Dish(tomcom::kitchen::DishId(dish as u8)));
+        state.set_order(*order, OrderContent::Dish(tomcom_core::kitchen::DishId(dish as u8)));
     }
     let mut last = None;
     for (index, (agent, name)) in presses.iter().enumerate() {

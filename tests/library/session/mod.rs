@@ -15,13 +15,13 @@ mod trial;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::run::engine::{InputResult, SessionEngine};
 use tomcom::session::Event;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind, SessionSpec};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen};
 
 fn kitchen() -> Arc<Kitchen> {
     Arc::new(read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen)

@@ -1,15 +1,15 @@
 //! The rules of offers: opening, holding, closing, and what `enter` means.
 
-use tomcom::communication::concept::ConceptName;
-use tomcom::communication::offer::OfferCloseReason;
-use tomcom::communication::recommendation::{HumanPressProposal, Recommendation, SignalOption};
-use tomcom::communication::settings::ShadowMode;
-use tomcom::communication::{Sender, Signal};
-use tomcom::kitchen::OrderContent;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::{Condition, SessionSpec, WizardVisibility};
 use tomcom::session::wizard_screen::WizardScreenContent;
 use tomcom::session::{Event, offers};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::offer::OfferCloseReason;
+use tomcom_core::communication::recommendation::{HumanPressProposal, Recommendation, SignalOption};
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::OrderContent;
 
 use super::{at, check, engine};
 

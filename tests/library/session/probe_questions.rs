@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
-use tomcom::kitchen::AspectId;
-use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::probe_sampling::{aspect, questions};
 use tomcom::session::settings::{ParticipantKind, ProbeSpec};
 use tomcom::session::{Event, Session};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::AspectId;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 
 use super::{at, kitchen};
 

@@ -1,9 +1,5 @@
 //! Freeze probes by hand: when they begin, how they end, and what is refused.
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::settings::ShadowMode;
-use tomcom::communication::{Sender, Signal};
-use tomcom::gaze::GazeSample;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::probe_sampling::aspect;
@@ -11,6 +7,10 @@ use tomcom::session::probes::{ProbeDelayReason, ProbeEndReason, ProbeEvent, Prob
 use tomcom::session::settings::{Condition, GazeSource, ProbeSpec, SessionSpec};
 use tomcom::session::wall_display::AnswerDevice;
 use tomcom::session::{Event, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::gaze::GazeSample;
 
 use super::{at, check, engine, kitchen, press, refused};
 

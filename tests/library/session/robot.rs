@@ -2,19 +2,19 @@
 
 use std::convert::Infallible;
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::Sender;
-use tomcom::communication::settings::ShadowMode;
-use tomcom::kitchen::Agent;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::participant::population::{Population, TraitSpread};
-use tomcom::robot::IdleReason;
-use tomcom::robot::initiative::own_ways;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::orders::OrderList;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply, silence};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Sender;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::robot::IdleReason;
+use tomcom_core::robot::initiative::own_ways;
+use tomcom_people::participant::population::{Population, TraitSpread};
 
 use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
 

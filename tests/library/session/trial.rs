@@ -1,11 +1,11 @@
 //! The trial's clock, pauses and orders, and its end.
 
-use tomcom::communication::{Sender, Signal};
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Kitchen, State};
 use tomcom::session::event::{SignalEndReason, TrialEndReason};
 use tomcom::session::settings::Condition;
 use tomcom::session::{Event, TrialPhase};
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen, State};
 
 use super::{at, check, engine, press, refused};
 
@@ -96,10 +96,11 @@ fn a_served_order_is_shown_as_served_then_cleared_then_there_is_a_new_one() {
 }
 
 /// A press of the human that brings the orders nearer.
-fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<tomcom::kitchen::ButtonId> {
+fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<tomcom_core::kitchen::ButtonId> {
     let recipes = kitchen.true_recipes();
     let here = cost.all_orders(state, &recipes);
-    let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| tomcom::kitchen::ButtonId(index as u8));
+    let buttons =
+        (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| tomcom_core::kitchen::ButtonId(index as u8));
     buttons.into_iter().find(|&button| {
         let next = kitchen.press(state, &recipes, Agent::Human, button);
         next.is_some_and(|next| cost.all_orders(next, &recipes) < here)

@@ -2,7 +2,6 @@
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
-use tomcom::base::rng::stream;
 use tomcom::session::plan::StudyAims;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
@@ -11,6 +10,7 @@ use tomcom::study::effect::LeftOutParticipant;
 use tomcom::study::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
 use tomcom::study::negative_binomial_model::{CountObservation, NegativeBinomialModel};
 use tomcom::study::trial_statistics::TrialStatistics;
+use tomcom_core::base::rng::stream;
 
 use super::trial;
 

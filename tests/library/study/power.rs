@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
-use tomcom::base::rng::stream;
 use tomcom::edge::picture_file::{check_picture, write_picture};
 use tomcom::edge::pool_file::{read_pool, write_pool};
 use tomcom::edge::power_files::{check_table, write_table};
@@ -23,6 +22,7 @@ use tomcom::study::power_chart;
 use tomcom::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom::study::tables::trials::HEADLINE;
 use tomcom::study::trial_statistics::TrialStatistics;
+use tomcom_core::base::rng::stream;
 
 use super::trial;
 

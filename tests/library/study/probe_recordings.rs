@@ -9,13 +9,13 @@ use tomcom::analysis::probe_collector::ProbeCollector;
 use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectKind, Kitchen, LocationId};
-use tomcom::mind::RecordedBelief;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectKind, Kitchen, LocationId};
+use tomcom_core::mind::RecordedBelief;
 
 use super::near;
 

@@ -10,9 +10,6 @@ use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{
     AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
-use tomcom::base::rng::{Stream, stream};
-use tomcom::communication::concept::ConceptName;
-use tomcom::measures::belief_basis::BeliefSource;
 use tomcom::session::probes::ProbeOrigin;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
@@ -23,6 +20,9 @@ use tomcom::study::figures::StudySummary;
 use tomcom::study::report;
 use tomcom::study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
 use tomcom::study::trial_details::TrialDetails;
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::measures::belief_basis::BeliefSource;
 
 use super::{near, trial};
 

@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
-use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, State};
-use tomcom::measures::JudgedPress;
-use tomcom::measures::attribution::FalseBeliefTarget;
-use tomcom::measures::belief_basis::BeliefSource;
-use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom::measures::errors::PressJudge;
 use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 use tomcom::study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use tomcom::study::prevention::TrialGroundTruth;
 use tomcom::study::rater_episodes::rater_episodes;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, State};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::FalseBeliefTarget;
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::errors::PressJudge;
 
 use super::at;
 
@@ -89,7 +89,7 @@ impl Log {
     fn episodes(&mut self) -> Vec<Told> {
         let seconds = |time: SessionTime| time.as_secs_f64() as i32;
         let found = rater_episodes(&self.kitchen, &mut self.cost, &self.trace, &self.judged, &self.coded);
-        let tell = |one: &tomcom::measures::sequences::FalseBeliefEpisode| {
+        let tell = |one: &tomcom_core::measures::sequences::FalseBeliefEpisode| {
             let name = self.kitchen.aspects[one.aspect.index()].name.clone();
             (name, seconds(one.began), one.corrected.map_or(-1, seconds), one.errors)
         };

@@ -4,18 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::analysis::offer_summary::TimedOffer;
-use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::ConceptName;
-use tomcom::communication::offer::{
-    Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
-};
-use tomcom::communication::{Sender, Signal};
 use tomcom::edge::log::{consensus_file, rater_codes};
-use tomcom::measures::belief_basis::BeliefSource;
-use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom::measures::consensus::RaterConsensus;
-use tomcom::robot::AbortReason;
-use tomcom::robot::safety::SafetyMode;
 use tomcom::run::codes::CodedRecording;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::describe;
@@ -35,6 +24,17 @@ use tomcom::study::report::{self, page_head};
 use tomcom::study::robot_tally::{ArmSafetySummary, RobotEventTally};
 use tomcom::study::trial_details::TrialDetails;
 use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::offer::{
+    Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
+};
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_core::robot::AbortReason;
+use tomcom_core::robot::safety::SafetyMode;
 
 use super::{at, near, trial, trials};
 

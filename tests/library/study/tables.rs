@@ -4,11 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::base::time::SessionTime;
-use tomcom::communication::concept::ConceptName;
 use tomcom::edge::export::AnalysisFolder;
-use tomcom::kitchen::LocationId;
-use tomcom::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom::session::answer_value::AnswerValue;
@@ -26,6 +22,10 @@ use tomcom::study::tables::questionnaires::{AnswerRow, answers as answers_of};
 use tomcom::study::tables::trials::{HEADLINE, measures};
 use tomcom::study::trial_details::TrialDetails;
 use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::kitchen::LocationId;
+use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
 
 use super::probes::one_right_answer;
 

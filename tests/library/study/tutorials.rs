@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::session::plan::WantedRecording;
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
@@ -12,6 +11,7 @@ use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 use tomcom::study::column::{CsvCell, CsvRow};
 use tomcom::study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
 use tomcom::study::tutorial_summary::TutorialSummary;
+use tomcom_core::base::time::SessionTime;
 
 /// The settings of the first recording of a participant of the study, in which the tutorial is.
 fn settings(kind: ParticipantKind) -> SessionSpec {

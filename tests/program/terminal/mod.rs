@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::edge::files::read_session;
-use tomcom::kitchen::Kitchen;
+use tomcom_core::kitchen::Kitchen;
 
 fn kitchen(session: &str) -> Arc<Kitchen> {
     let files = read_session(&Path::new("sessions").join(session)).expect("a session of the project");

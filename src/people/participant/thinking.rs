@@ -1,0 +1,194 @@
+//! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and its decisions
+//! on next presses.
+
+use super::decision::{DecisionContext, Impatience};
+use super::draws::{chance, rare_chance};
+use super::habits::Lapses;
+use super::learning;
+use super::simulated::SimulatedParticipant;
+use super::true_beliefs::wanted_dish;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{
+    Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State, World,
+};
+
+/// Probability that the participant looks at the location that the participant's last press changed.
+const LOOKS_AT_RESULT: f64 = 0.5;
+/// Time after reading a location during which the participant relies on the content that was read, in seconds.
+const SEEN_JUST_NOW_S: f64 = 5.0;
+/// Probability that the participant gives to a right guess about what the robot's press did.
+const GUESSED_CERTAINTY: f64 = 0.85;
+/// Probability with which the participant expects a served order to have disappeared after the usual time.
+const EXPECTED: f64 = 0.8;
+
+impl SimulatedParticipant {
+    /// Reacts to a robot press: beliefs about unseen locations become uncertain.
+    pub(super) fn wonder(&mut self) {
+        let kitchen = self.kitchen.clone();
+        let hand = kitchen.hands[Agent::Robot.index()];
+        let own = kitchen.hands[Agent::Human.index()];
+        let World { state, .. } = self.beliefs.point(&kitchen);
+        let held = state.content(hand);
+        for (index, location) in kitchen.locations.iter().enumerate() {
+            let id = LocationId(index as u8);
+            if location.kind == LocationKind::Order || id == own || self.attention.looking_at == Some(id) {
+                continue;
+            }
+            let aspect = AspectId::of_location(id);
+            let values = &kitchen.aspects[aspect.index()].values;
+            let mut towards = vec![0.0; values.len()];
+            let mut think_of = |content: ContentId, weight: f64| {
+                if let Some(value) = values.iter().position(|&code| code == content.0) {
+                    towards[value] += weight;
+                }
+            };
+            think_of(ContentId::EMPTY, 1.0);
+            if id == hand {
+                for storage in kitchen.storages.iter().filter(|storage| storage.agent == Agent::Robot) {
+                    think_of(storage.item, 0.5);
+                }
+            } else if !held.is_empty() {
+                think_of(held, 1.0);
+            }
+            let weight = if id == hand { self.person.doubts_robot_hand } else { self.person.doubts_places };
+            self.beliefs.mix(aspect, &towards, weight);
+        }
+    }
+
+    /// Reacts to a robot press whose effect the participant guesses rightly: the participant believes the present
+    /// content of the places that the press changed.
+    pub(super) fn guess(&mut self, before: State, after: State) {
+        let kitchen = self.kitchen.clone();
+        for index in 0..kitchen.locations.len() {
+            let location = LocationId(index as u8);
+            let aspect = AspectId::of_location(location);
+            if before.code(location) != after.code(location)
+                && let Some(value) = kitchen.aspects[aspect.index()].index_of(after.code(location))
+            {
+                self.beliefs.settle(aspect, value, GUESSED_CERTAINTY);
+            }
+        }
+        self.rethink = true;
+    }
+
+    /// Reacts to the participant's own press, effective or not.
+    pub(super) fn take_in(&mut self, now: SessionTime, button: ButtonId, effective: bool) {
+        let kitchen = self.kitchen.clone();
+        let action = kitchen.button(Agent::Human, button).action;
+        let World { state, recipes } = self.beliefs.point(&kitchen);
+        self.intent.lapses = Lapses::draw(&self.person, &mut self.mind);
+        let has_failed = !effective && kitchen.press(state, &recipes, Agent::Human, button).is_some();
+        if has_failed && self.population.insists > 0.0 && chance(&mut self.mind, self.population.insists) {
+            self.intent.lapses.insists_on = Some(button);
+            self.rethink = true;
+            return;
+        }
+        let is_surprised = learning::learn(&kitchen, &mut self.beliefs, button, effective);
+        for place in kitchen.involved(Agent::Human, button) {
+            if is_surprised {
+                self.attention.first(place);
+            } else if chance(&mut self.mind, LOOKS_AT_RESULT) {
+                self.attention.later(place);
+            }
+        }
+        if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) = (action, serve_of(action, state)) {
+            match effective {
+                true => {
+                    let variant = kitchen.dish(dish).variants.iter().position(|&v| v == recipes.get(dish));
+                    self.memory.confirm(&kitchen, &mut self.beliefs, dish, variant.unwrap_or(0));
+                    self.intent.last_dish = Some(recipes.get(dish));
+                    let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
+                    self.clearing.push((gone, order));
+                }
+                // The participant first doubts the belief about the plate's content; the recipe is doubted only if the
+                // plate was just seen.
+                false if now.secs_since(self.attention.read_at[kitchen.plate.index()]) < SEEN_JUST_NOW_S => {
+                    self.memory.fail(&kitchen, &mut self.beliefs, dish);
+                }
+                false => {}
+            }
+        }
+        let is_stuck = rare_chance(&mut self.mind, self.person.gets_stuck);
+        self.stuck_in = is_stuck.then(|| self.beliefs.point(&kitchen));
+        self.rethink = true;
+    }
+
+    /// Decides on the participant's next presses and queues looks at their locations. A proposal that the participant
+    /// follows replaces the decision. A participant who does not know how to go on decides on nothing.
+    pub(super) fn think(&mut self, now: SessionTime) {
+        self.rethink = false;
+        if !self.population.all_knowing {
+            self.pass_time(now);
+        }
+        let world = self.beliefs.point(&self.kitchen);
+        self.stuck_in = self.stuck_in.filter(|stuck| *stuck == world);
+        if self.stuck_in.is_some() {
+            return self.intent.plan.clear();
+        }
+        self.intent.order = self.intent.order.filter(|&(_, until)| now < until);
+        let before = self.intent.plan.front().copied();
+        let resolution = self.decision(Impatience::Calm).resolve(&world);
+        let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
+        let kept = self.intent.order.filter(|&(order, _)| Some(order) == resolution.order);
+        self.intent.order = kept.or(resolution.order.map(|order| (order, now + commitment)));
+        let follows = &self.signals.follows;
+        self.intent.plan = if follows.is_empty() { resolution.plan } else { follows.clone() };
+        let next = self.intent.plan.front().copied();
+        if next != before {
+            for place in self.needed() {
+                if chance(&mut self.mind, self.person.checks) {
+                    self.attention.later(place);
+                }
+            }
+        }
+    }
+
+    /// The data of the participant's decision that is due, without the world that the participant believes.
+    pub(super) fn decision(&self, urgency: Impatience) -> DecisionContext<'_> {
+        DecisionContext {
+            kitchen: &self.kitchen,
+            knowledge: &self.knowledge,
+            habits: &self.habits,
+            depth: self.person.depth,
+            in_progress: self.intent.order.map(|(order, _)| order),
+            last_dish: self.intent.last_dish,
+            lapses: self.intent.lapses,
+            urgency,
+        }
+    }
+
+    /// Accounts for passing time: memories fade, recipes in use are forgotten, served orders are expected to disappear.
+    fn pass_time(&mut self, now: SessionTime) {
+        let kitchen = self.kitchen.clone();
+        let orders = kitchen.orders.iter();
+        let in_use: Vec<DishId> = orders.filter_map(|&order| wanted_dish(&kitchen, &self.beliefs, order)).collect();
+        let passed_s = self.memory.since_s(now);
+        self.memory.fade(&kitchen, &mut self.beliefs, now, &in_use);
+        for &dish in &in_use {
+            if chance(&mut self.mind, 1.0 - (-self.person.loses_thread_per_s * passed_s).exp()) {
+                self.memory.lose_thread(&kitchen, &mut self.beliefs, dish);
+            }
+        }
+        let (beliefs, served) = (&mut self.beliefs, OrderContent::Served.code());
+        self.clearing.retain(|&(gone, order)| {
+            let aspect = AspectId::of_location(order);
+            let values = &kitchen.aspects[aspect.index()];
+            let is_due = now >= gone;
+            if is_due
+                && values.values[beliefs.most_likely(aspect)] == served
+                && let Some(none) = values.index_of(OrderContent::None.code())
+            {
+                beliefs.settle(aspect, none, EXPECTED);
+            }
+            !is_due
+        });
+    }
+}
+
+/// What the order shows that a serve button serves; `OrderContent::None` for other buttons.
+fn serve_of(action: ButtonAction, state: State) -> OrderContent {
+    match action {
+        ButtonAction::Serve(order) => state.order(order),
+        _ => OrderContent::None,
+    }
+}

@@ -1,0 +1,260 @@
+//! The scripted wizard in one trial: its memory, and the times of its signals.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::offer_reader::OfferReader;
+use super::seen::{ObservedPress, ParticipantSeenKitchen, explain, misleads};
+use super::settings::WizardSpec;
+use super::thought::SuspectedFalseBelief;
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::{self, HighlightSet, Signal};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
+
+/// Number of the participant's last presses that the wizard remembers.
+const REMEMBERED_PRESSES: usize = 6;
+
+/// An action of the scripted wizard: a signal, or taking an offer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WizardAction {
+    /// The wizard sends a signal by its own judgement.
+    Send(Signal),
+    /// The wizard takes the offer with this sequence number.
+    TakeOffer(u64),
+}
+
+/// State of the scripted wizard in one trial.
+#[derive(Clone, Debug)]
+pub struct ScriptedWizard {
+    kitchen: Arc<Kitchen>,
+    spec: WizardSpec,
+    highlights: HighlightSet,
+    random: Stream,
+    seen: ParticipantSeenKitchen,
+    /// The participant's last presses, newest last.
+    presses: VecDeque<ObservedPress>,
+    /// The planned signal: the time to send it, and the suspected false belief that the signal is about.
+    about_to: Option<(SessionTime, SuspectedFalseBelief)>,
+    /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the
+    /// change.
+    watched: Vec<(SessionTime, LocationId)>,
+    signalled_at: Option<SessionTime>,
+    /// The part that reads the assistant's offers; `None` if the wizard ignores offers.
+    reader: Option<OfferReader>,
+}
+
+impl ScriptedWizard {
+    /// Creates the scripted wizard of a trial, who reads no offers; its random stream is seeded by (seed, trial).
+    pub fn new(
+        kitchen: Arc<Kitchen>,
+        spec: WizardSpec,
+        highlights: HighlightSet,
+        seed: u64,
+        trial: u64,
+    ) -> ScriptedWizard {
+        let seen = ParticipantSeenKitchen::new(kitchen.empty_state());
+        let random = stream(seed, "wizard", trial);
+        let (about_to, watched, signalled_at) = (None, Vec::new(), None);
+        let presses = VecDeque::with_capacity(REMEMBERED_PRESSES);
+        let reader = None;
+        ScriptedWizard { kitchen, spec, highlights, random, seen, presses, about_to, watched, signalled_at, reader }
+    }
+
+    /// Lets the wizard read offers as the settings say, with a random stream of its own for that.
+    pub fn reading_offers(self, seed: u64, trial: u64) -> ScriptedWizard {
+        let spread = self.spec.reaction_spread;
+        let reader = self.spec.offers.map(|offers| OfferReader::new(offers, spread, seed, trial));
+        ScriptedWizard { reader, ..self }
+    }
+
+    /// Time of the wizard's next signal or check; `None` if nothing is planned.
+    pub fn next_due(&self) -> Option<SessionTime> {
+        let watched = self.watched.iter().map(|(time, _)| *time);
+        let offer = self.reader.as_ref().and_then(OfferReader::due);
+        watched.chain(self.about_to.map(|(time, _)| time)).chain(offer).min()
+    }
+
+    /// Starts the trial; the participant and the wizard see the empty kitchen.
+    pub fn on_trial_start(&mut self, state: State) {
+        self.seen = ParticipantSeenKitchen::new(state);
+        (self.about_to, self.signalled_at) = (None, None);
+        self.watched.clear();
+        self.presses.clear();
+    }
+
+    /// Reacts to the participant's gaze on a location, or on none, at the time `taken`. `state` is the state of the kitchen,
+    /// if the location has not changed since.
+    pub fn on_gaze(&mut self, taken: SessionTime, location: Option<LocationId>, state: Option<State>) {
+        self.seen.gaze(taken, location, state, self.spec.look_s);
+    }
+
+    /// Reacts to a press of the participant; `is_error` says whether the press had more regret than the best press.
+    pub fn on_human_press(&mut self, now: SessionTime, press: &Press, is_error: bool, cost: &mut CostToGo) {
+        let &Press { button, before, after, .. } = press;
+        if self.presses.len() == REMEMBERED_PRESSES {
+            self.presses.pop_front();
+        }
+        self.presses.push_back(ObservedPress { truth: before, seen: self.seen.state, button });
+        if is_error && self.about_to.is_none() && self.chance(self.spec.sees_errors) {
+            let causes = explain(&self.kitchen, cost, self.presses.make_contiguous());
+            if !causes.is_empty() {
+                let cause = causes[self.random.random_range(0..causes.len())];
+                self.think_of(now, cause, after);
+            }
+        }
+        // The participant knows the effects of their own press.
+        for location in self.kitchen.changed(before, after) {
+            self.seen.told(location, after);
+        }
+    }
+
+    /// Reacts to a change of the state that was not caused by the participant.
+    pub fn on_change(&mut self, now: SessionTime, before: State, after: State) {
+        let due = now + SessionTime::from_secs_f64(self.spec.overlooked_after_s);
+        for location in self.kitchen.changed(before, after) {
+            self.watched.retain(|(_, other)| *other != location);
+            self.watched.push((due, location));
+        }
+    }
+
+    /// Reacts to a signal about a location that appears on the participant's display.
+    pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
+        self.seen.told(location, state);
+        self.signalled_at = Some(now);
+        // A planned signal is dropped if an offer has already led to the same signal.
+        self.about_to.take_if(|(_, thought)| thought.location() == location);
+    }
+
+    /// Reacts to an offer that opens on the wizard's screen.
+    pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
+        if let Some(reader) = &mut self.reader {
+            reader.on_offer(now, offer);
+        }
+    }
+
+    /// Postpones planned signals and checks by the duration `by` of a pause.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.seen.postpone(by);
+        self.about_to = self.about_to.map(|(time, thought)| (time + by, thought));
+        self.watched.iter_mut().for_each(|(time, _)| *time = *time + by);
+        self.signalled_at = self.signalled_at.map(|time| time + by);
+        if let Some(reader) = &mut self.reader {
+            reader.postpone(by);
+        }
+    }
+
+    /// Performs the wizard's action that is due: sends a signal, takes an offer, or checks whether the participant saw
+    /// a change.
+    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<WizardAction> {
+        if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
+            return self.say(now, thought, state, cost).map(WizardAction::Send);
+        }
+        if self.reader.as_ref().and_then(OfferReader::due).is_some_and(|due| due <= now) {
+            return self.take_offer(now).map(WizardAction::TakeOffer);
+        }
+        let index = self.watched.iter().position(|(time, _)| *time <= now)?;
+        let (_, location) = self.watched.swap_remove(index);
+        let is_overlooked = !self.seen.knows(location, state);
+        if is_overlooked
+            && self.about_to.is_none()
+            && misleads(&self.kitchen, cost, &self.seen, state, SuspectedFalseBelief::Place(location))
+            && self.chance(self.spec.sees_overlooked)
+        {
+            self.think_of(now, SuspectedFalseBelief::Place(location), state);
+        }
+        None
+    }
+
+    /// The offer that the wizard takes now; the wizard waits with an offer until some time has passed since the last
+    /// signal.
+    fn take_offer(&mut self, now: SessionTime) -> Option<u64> {
+        let rested = self.rested().filter(|&rested| rested > now);
+        let reader = self.reader.as_mut()?;
+        match rested {
+            Some(rested) => {
+                reader.wait_until(rested);
+                None
+            }
+            None => reader.take(now),
+        }
+    }
+
+    /// The earliest time of the wizard's next signal after the last one; `None` before the first signal.
+    fn rested(&self) -> Option<SessionTime> {
+        self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s))
+    }
+
+    /// Plans a signal about a suspected false belief, or, with a set probability, about another aspect.
+    fn think_of(&mut self, now: SessionTime, cause: SuspectedFalseBelief, state: State) {
+        let thought = match self.chance(self.spec.guesses_wrong) {
+            true => self.another(cause, state).unwrap_or(cause),
+            false => cause,
+        };
+        let normal: f64 = StandardNormal.sample(&mut self.random);
+        let reaction_s = self.spec.reaction_s * (self.spec.reaction_spread * normal).exp();
+        self.about_to = Some((now + SessionTime::from_secs_f64(reaction_s), thought));
+    }
+
+    /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that the
+    /// participant has not seen since its last change.
+    fn another(&mut self, cause: SuspectedFalseBelief, state: State) -> Option<SuspectedFalseBelief> {
+        let suspected = cause.location();
+        let could_be = |at: LocationId| match state.order(at) {
+            OrderContent::Dish(_) if self.kitchen.orders.contains(&at) => true,
+            _ => !self.seen.knows(at, state),
+        };
+        let others: Vec<LocationId> = communication::signals(&self.kitchen, self.highlights)
+            .into_iter()
+            .filter(|(at, signal)| {
+                *at != suspected && communication::unavailable(&self.kitchen, state, signal).is_none()
+            })
+            .map(|(location, _)| location)
+            .filter(|&location| could_be(location))
+            .collect();
+        match others.is_empty() {
+            true => None,
+            false => Some(SuspectedFalseBelief::Guess(others[self.random.random_range(0..others.len())])),
+        }
+    }
+
+    /// Sends the planned signal, unless the false belief has ended, its order is gone, or the false belief would no
+    /// longer mislead anybody.
+    fn say(
+        &mut self,
+        now: SessionTime,
+        thought: SuspectedFalseBelief,
+        state: State,
+        cost: &mut CostToGo,
+    ) -> Option<Signal> {
+        let holds = match thought {
+            SuspectedFalseBelief::Place(location) => !self.seen.knows(location, state),
+            SuspectedFalseBelief::Recipe(order, dish, _) => state.order(order) == OrderContent::Dish(dish),
+            SuspectedFalseBelief::Guess(_) => true,
+        };
+        let matters = |cost: &mut CostToGo| match thought {
+            SuspectedFalseBelief::Place(_) | SuspectedFalseBelief::Recipe(..) => {
+                misleads(&self.kitchen, cost, &self.seen, state, thought)
+            }
+            SuspectedFalseBelief::Guess(_) => true,
+        };
+        if !holds || !matters(cost) {
+            return None;
+        }
+        if let Some(rested) = self.rested().filter(|&rested| rested > now) {
+            self.about_to = Some((rested, thought));
+            return None;
+        }
+        let mut signals = communication::signals(&self.kitchen, self.highlights).into_iter();
+        let (_, signal) = signals.find(|(location, _)| *location == thought.location())?;
+        communication::unavailable(&self.kitchen, state, &signal).is_none().then_some(signal)
+    }
+
+    fn chance(&mut self, p: f64) -> bool {
+        self.random.random::<f64>() < p
+    }
+}

@@ -86,8 +86,7 @@ impl TrialTotals {
         let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
         let interval = share_interval(related, errors, LEVEL);
         TrialTotals {
-            // If trials have different sources of beliefs, the summary names the least reliable source.
-            beliefs_from: beliefs.iter().map(|one| one.basis).max(),
+            beliefs_from: source(trials),
             belief_related_errors: Some(related),
             belief_related_by_kind: Some(
                 beliefs.iter().fold(BeliefErrorCounts::default(), |sum, one| sum.plus(one.causes)),
@@ -105,4 +104,12 @@ impl TrialTotals {
             ..totals
         }
     }
+}
+
+/// The source of beliefs of these trials; the least reliable source if they differ. Trials without errors count only
+/// if all are: there was nothing to find out.
+fn source(trials: &[&TrialStatistics]) -> Option<BeliefSource> {
+    let of = |trial: &&&TrialStatistics| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
+    let with_errors = trials.iter().filter(|trial| trial.errors > 0).filter_map(|trial| of(&trial)).max();
+    with_errors.or_else(|| trials.iter().filter_map(|trial| of(&trial)).max())
 }

@@ -34,7 +34,7 @@ def read(recording):
 
 def check_header(header, session):
     """A recording explains itself: format, settings, and the whole text of layout and recipes."""
-    assert header["format"] == "tomcom-session" and header["version"] == 2, header
+    assert header["format"] == "tomcom-session" and header["version"] == 3, header["version"]
     assert "started" not in header, "a simulated recording knows no wall clock"
     asked_for = tomllib.loads(session.read_text())
     layout = session.parent / asked_for["layout"]

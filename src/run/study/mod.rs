@@ -78,7 +78,7 @@ pub struct AnalysisRequest {
     pub out: PathBuf,
     /// Which optional parts of the analysis are computed.
     pub extent: AnalysisScope,
-    /// The two raters whose codes are used; `None`: for each recording the two with the most complete codes.
+    /// The two raters whose codes are used; `None`: the only two, or for each recording the two with the most complete codes.
     pub raters: Option<[String; 2]>,
     /// File of the frozen (preregistered) plan with which the recordings are compared.
     pub frozen: Option<PathBuf>,
@@ -111,14 +111,21 @@ impl NamedRecordings {
         Ok(NamedRecordings { found, copies })
     }
 
-    /// Checks that the raters whom an analysis names have coded errors of these recordings.
-    fn check_raters(&self, analysis: &AnalysisRequest) -> Result<(), FileError> {
-        let Some(named) = &analysis.raters else { return Ok(()) };
+    /// The two raters whose codes an analysis of these recordings uses: those whom the user names, or the only two who
+    /// have coded errors. `None`: each recording's most complete codes. A trial without errors has no codes by which its
+    /// raters could be told.
+    ///
+    /// # Errors
+    /// A rater whom the user names has no codes; or codes cannot be read.
+    fn raters(&self, analysis: &AnalysisRequest) -> Result<Option<[String; 2]>, FileError> {
         let mut raters = BTreeSet::new();
         for (path, _) in &self.found {
             raters.extend(rater_codes::raters(LogReader::open(path)?.folder())?);
         }
-        rater_codes::check_named(Path::new("--raters"), named, &raters)
+        match &analysis.raters {
+            Some(named) => rater_codes::check_named(Path::new("--raters"), named, &raters).map(|()| Some(named.clone())),
+            None => Ok(raters.into_iter().collect::<Vec<_>>().try_into().ok()),
+        }
     }
 
     /// Number of recordings that were found.
@@ -143,14 +150,14 @@ pub fn study(
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    recordings.check_raters(analysis)?;
+    let raters = recordings.raters(analysis)?;
     let frozen = frozen(analysis)?;
     let export = AnalysisFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
-        let (analysed, rows) = analyse(recording, analysis, (first, &kitchen), kept)?;
+        let (analysed, rows) = analyse(recording, (analysis.extent, raters.as_ref()), (first, &kitchen), kept)?;
         Ok(keep(&export, analysis.extent, index, &analysed, &rows)?)
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
@@ -166,7 +173,7 @@ fn frozen(analysis: &AnalysisRequest) -> Result<Option<(String, FrozenPlan)>, Fi
 /// the tables of events.
 fn analyse(
     (path, name): &(PathBuf, String),
-    analysis: &AnalysisRequest,
+    (extent, raters): (AnalysisScope, Option<&[String; 2]>),
     first: (&Path, &Arc<Kitchen>),
     kept: &mut KeptCost,
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
@@ -175,7 +182,7 @@ fn analyse(
     let digest = header_digest(log.path_of_last_part())?;
     let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
     let (mut trial, mut rows) = (None, Default::default());
-    if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref(), kept)? {
+    if let Some((own, read)) = reading::read(path, name, extent, raters, kept)? {
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }

@@ -58,6 +58,11 @@ pub fn analyse_shard(
     done: impl Fn() + Sync,
 ) -> Result<u64, StudyError> {
     let places = parallel::each(&recordings.found, |(path, _)| RecordingPlace::read(path, shard), || ());
+    // Named raters are checked when the parts are joined: a part alone may be without codes of one.
+    let raters = match &analysis.raters {
+        Some(named) => Some(named.clone()),
+        None => recordings.raters(analysis)?,
+    };
     let (mut own, mut plans, mut left_out) = (Vec::new(), BTreeSet::new(), BTreeSet::new());
     for (recording, place) in recordings.found.into_iter().zip(places) {
         let place = place?;
@@ -90,7 +95,7 @@ pub fn analyse_shard(
     let mut part = PartWriter::create(&analysis.out, &header, &texts)?;
     let workers = WorkerPool::new(KeptCost::default);
     let work =
-        |kept: &mut KeptCost, recording: &(PathBuf, String)| analyse(recording, analysis, (first, &log.kitchen), kept);
+        |kept: &mut KeptCost, recording: &(PathBuf, String)| analyse(recording, (analysis.extent, raters.as_ref()), (first, &log.kitchen), kept);
     for block in own.chunks(BLOCK) {
         for analysed in workers.each(block, work, &done) {
             let (recording, rows) = analysed?;

@@ -21,7 +21,7 @@ pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> Sce
         ButtonAction::Take(item) => {
             let is_it =
                 |storage: &tomcom_core::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
-            // Every button that takes an item belongs to a storage (`src/kitchen/compile/buttons.rs`).
+            // Every button that takes an item belongs to a storage (`src/core/kitchen/compile/buttons.rs`).
             match kitchen.storages.iter().position(is_it) {
                 Some(storage) => return SceneElement::Storage(storage),
                 None => hand,

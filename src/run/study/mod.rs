@@ -123,7 +123,9 @@ impl NamedRecordings {
             raters.extend(rater_codes::raters(LogReader::open(path)?.folder())?);
         }
         match &analysis.raters {
-            Some(named) => rater_codes::check_named(Path::new("--raters"), named, &raters).map(|()| Some(named.clone())),
+            Some(named) => {
+                rater_codes::check_named(Path::new("--raters"), named, &raters).map(|()| Some(named.clone()))
+            }
             None => Ok(raters.into_iter().collect::<Vec<_>>().try_into().ok()),
         }
     }

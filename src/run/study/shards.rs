@@ -94,8 +94,9 @@ pub fn analyse_shard(
     let texts = Some([log.header.layout.clone(), log.header.recipes.clone()]);
     let mut part = PartWriter::create(&analysis.out, &header, &texts)?;
     let workers = WorkerPool::new(KeptCost::default);
-    let work =
-        |kept: &mut KeptCost, recording: &(PathBuf, String)| analyse(recording, (analysis.extent, raters.as_ref()), (first, &log.kitchen), kept);
+    let work = |kept: &mut KeptCost, recording: &(PathBuf, String)| {
+        analyse(recording, (analysis.extent, raters.as_ref()), (first, &log.kitchen), kept)
+    };
     for block in own.chunks(BLOCK) {
         for analysed in workers.each(block, work, &done) {
             let (recording, rows) = analysed?;

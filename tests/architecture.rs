@@ -1,0 +1,95 @@
+//! What Cargo cannot say about the sources: which rooms of one crate may import which, and what is not named below the
+//! edge.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The rooms of the program's crate from the ground up; a room imports only from rooms before it.
+const ROOMS: [&str; 9] = ["session", "history", "analysis", "display", "console", "study", "scene", "edge", "run"];
+/// What decides nothing by the outside, by time or by chance: the crates below the program, and its rooms below the edge.
+const PURE: [&str; 10] =
+    ["core", "people", "arm", "session", "history", "analysis", "display", "console", "study", "scene"];
+/// Names of the outside, of time and chance that no seed decides, and of orders that are not fixed.
+const BANNED: [&str; 20] = [
+    "std::fs",
+    "std::net",
+    "std::env",
+    "std::thread",
+    "std::process",
+    "std::io",
+    "SystemTime",
+    "Instant::",
+    "async ",
+    ".await",
+    "println!",
+    "eprintln!",
+    "dbg!",
+    "HashMap<",
+    "HashMap::",
+    "HashSet<",
+    "HashSet::",
+    "rand::rng",
+    "rand::random",
+    "rand::seq",
+];
+
+/// The source files below a folder, each with its lines of code (without comments).
+fn sources(folder: &Path) -> Vec<(PathBuf, Vec<String>)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
+        let path = entry.expect("an entry of the folder").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let text = fs::read_to_string(&path).expect("a source file");
+            let code = text.lines().map(|line| line.split("//").next().unwrap_or_default().replace("FxHash", "Fx"));
+            found.push((path, code.collect()));
+        }
+    }
+    found
+}
+
+#[test]
+fn nothing_below_the_edge_touches_the_outside() {
+    let mut files = 0;
+    for (path, lines) in PURE.iter().flat_map(|room| sources(&Path::new("src").join(room))) {
+        files += 1;
+        for (number, line) in lines.iter().enumerate() {
+            let found = BANNED.iter().find(|name| line.contains(**name));
+            assert!(found.is_none(), "{}:{}: {found:?}", path.display(), number + 1);
+        }
+    }
+    assert!(files > 100, "only {files} files were read");
+}
+
+#[test]
+fn rooms_import_one_way() {
+    for (floor, room) in ROOMS.iter().enumerate() {
+        for (path, lines) in sources(&Path::new("src").join(room)) {
+            for (number, line) in lines.iter().enumerate() {
+                let above = ROOMS[floor + 1..].iter().find(|other| line.contains(&format!("crate::{other}::")));
+                assert!(above.is_none(), "{}:{}: {room} imports {above:?}", path.display(), number + 1);
+            }
+        }
+    }
+}
+
+/// Simulated participants plan by themselves: the cost to go defines their errors and drives the assistant.
+#[test]
+fn simulated_participants_know_neither_cost_to_go_nor_human_model() {
+    for (path, lines) in sources(Path::new("src/people/participant")) {
+        let found =
+            lines.iter().find(|line| ["cost_to_go", "CostToGo", "HumanModel"].iter().any(|name| line.contains(name)));
+        assert_eq!(found, None, "{}", path.display());
+    }
+}
+
+#[test]
+fn what_the_architecture_names_exists() {
+    let text = fs::read_to_string("ARCHITECTURE.md").expect("ARCHITECTURE.md");
+    let paths: Vec<&str> = text.split('`').skip(1).step_by(2).filter(|word| word.starts_with("src/")).collect();
+    assert!(paths.len() > 5, "ARCHITECTURE.md names {paths:?}");
+    for path in paths.iter().filter(|path| !path.contains(['{', '*', ' '])) {
+        assert!(Path::new(path).exists(), "ARCHITECTURE.md names {path}");
+    }
+}

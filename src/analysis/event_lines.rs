@@ -59,7 +59,9 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::HumanWaits { silent_ns } => {
             format!("participant has not pressed for {:.1} s, unusually long", silent_ns.as_secs_f64())
         }
-        Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
+        Event::RobotIntends { button, initiative, .. } => {
+            format!("robot sets out for {}{}", said(button), if *initiative { ", by its own initiative" } else { "" })
+        }
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
         Event::RobotIdles { reason, waits_for } => format!("robot {}", wording::idle(*reason, waits_for)),
         // Changes between normal and reduced speed get no line: the arm slows near the hand and speeds up again too

@@ -191,7 +191,7 @@ impl RobotTaskExecutor {
         let until = now + SessionTime::from_secs_f64(takes_s);
         self.busy = Some(OngoingPress { button, until, driven });
         self.idle = None;
-        RobotEvent::Intend { button, until }
+        RobotEvent::Intend { button, until, initiative: !driven && self.is_passive(now) }
     }
 
     /// Carries out the robot's action that is due: a touch of the timed arm, or a cycle of the simulated arm.

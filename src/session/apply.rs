@@ -85,9 +85,9 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             let order = named.order(order)?;
             change = set_order(session, now, order, OrderContent::None);
         }
-        Event::RobotIntends { button, until_ns } => {
+        Event::RobotIntends { button, until_ns, initiative } => {
             let button = named.button(Agent::Robot, button)?;
-            session.robot.sets_out(button, now, *until_ns);
+            session.robot.sets_out(button, now, *until_ns, *initiative);
         }
         Event::RobotAborts { button, reason } => {
             named.button(Agent::Robot, button)?;
@@ -345,6 +345,7 @@ fn press(
     if agent == Agent::Robot {
         session.robot.intention = None;
         session.robot.driven_to = None;
+        session.robot.initiative_presses += u32::from(session.robot.initiative && session.is_running());
     }
     if !session.is_running() || (agent == Agent::Human && is_too_early(session, now)) {
         return KitchenChange::UncountedPress { agent, button };

@@ -113,6 +113,9 @@ pub enum Event {
         button: String,
         /// Session time at which the robot will touch the button if it is not interrupted.
         until_ns: SessionTime,
+        /// Whether the press is part of the robot's initiative, since the participant does not press; absent if not.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        initiative: bool,
     },
     /// The robot aborts the press that it has begun.
     RobotAborts {

@@ -59,8 +59,7 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
 /// Says which human model the session has, and what differs from the named model, unless it is the default.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
     let human = &session.spec.human;
-    let told = [vec![human.model.name().to_string()], human.differences()].concat().join("; ");
-    (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", told))
+    (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", human.named()))
 }
 
 /// A sender of gaze that was rejected.

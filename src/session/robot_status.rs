@@ -11,6 +11,10 @@ use tomcom_core::robot::{AbortReason, IdleReason};
 pub struct RobotStatus {
     /// The robot's ongoing press: button, start, and expected time of contact.
     pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
+    /// Whether the ongoing or last press is part of the robot's initiative.
+    pub initiative: bool,
+    /// Number of presses that the robot made by its initiative while the trial ran.
+    pub initiative_presses: u32,
     /// Whether the robot is stopped, by the wizard or by itself, until the wizard resumes it.
     pub stopped: bool,
     /// Whether the wizard holds the robot before its next press.
@@ -47,8 +51,9 @@ impl RobotStatus {
     }
 
     /// Records that the robot starts a press and will touch the button at `until`.
-    pub(super) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime) {
+    pub(super) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime, initiative: bool) {
         self.intention = Some((button, now, until));
+        self.initiative = initiative;
         self.idle = None;
     }
 

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
 use crate::session::{LogHeader, Session};
+use tomcom_core::kitchen::{LocationId, LocationKind};
 use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
 
 /// Settings and circumstances by name (key), from one or several recordings; every value that occurred is kept.
@@ -32,8 +33,11 @@ impl RecordingFacts {
         is("robot", presses_of(&spec.robot));
         is("shown", format!("{} s", spec.signals.shown_s));
         is("cost", spec.assistant.cost_of_communication.to_string());
-        is("tau", spec.human.decision.tau.to_string());
-        is("human model", parameters(&spec.human));
+        is("initiative", format!("{} s", spec.robot.initiative_s));
+        let places = session.kitchen.locations.iter().enumerate().filter(|(index, location)| {
+            location.kind != LocationKind::Order && session.highlights().holds(LocationId(*index as u8))
+        });
+        is("highlights", places.map(|(_, location)| location.name.replace('_', " ")).collect::<Vec<_>>().join(", "));
         if spec.participant.kind == ParticipantKind::Simulated {
             is("traits", parameters(&spec.participant.population.clone().unwrap_or_default()));
         }

@@ -51,6 +51,8 @@ pub struct StudySummary {
     /// Sums and means over all trials in the analysis.
     #[serde(flatten)]
     pub totals: TrialTotals,
+    /// Number of trials by the assistant's model of the human: its name, and what differs from the named model.
+    pub human_models: BTreeMap<String, u64>,
     /// Number of trials by the reason why they ended.
     pub ended: BTreeMap<TrialEndReason, u64>,
     /// Counts of robot events, by kind of robot arm.
@@ -237,6 +239,7 @@ impl StudySummary {
             trials: counting.len() as u64,
             participants: participants.len() as u64,
             totals: TrialTotals::from_trials(&counting),
+            human_models: human_models(&counting),
             ended: ended(&counting),
             robot: by_arm(&counting),
             preregistration: None,
@@ -306,6 +309,12 @@ impl StudySummary {
     pub fn with_tutorials(self, answers: &[TutorialQuestionRow]) -> StudySummary {
         StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
     }
+}
+
+fn human_models(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
+    let mut models = BTreeMap::new();
+    trials.iter().for_each(|trial| *models.entry(trial.human_model.clone()).or_default() += 1);
+    models
 }
 
 /// Number of trials by the reason why they ended.

@@ -62,6 +62,10 @@ pub struct TrialStatistics {
     pub human_presses: u64,
     /// Number of the robot's presses.
     pub robot_presses: u64,
+    /// Number of the robot's presses that it set out for by its own initiative.
+    pub initiative_presses: u64,
+    /// The assistant's model of the human: its name, and what differs from the named model.
+    pub human_model: String,
     /// Number of the human's errors; races with the robot do not count as errors.
     pub errors: u64,
     /// Number of human presses that the robot may have overtaken (races).

@@ -149,7 +149,7 @@ impl EventCells {
     fn take_robot(&mut self, event: &Event) {
         self.agent = "robot".to_string();
         match event {
-            Event::RobotIntends { button, until_ns } => (self.button, self.at) = (button.clone(), Some(*until_ns)),
+            Event::RobotIntends { button, until_ns, .. } => (self.button, self.at) = (button.clone(), Some(*until_ns)),
             Event::RobotAborts { button, reason } => (self.button, self.reason) = (button.clone(), name(reason)),
             Event::RobotIdles { reason, waits_for } => {
                 (self.reason, self.button) = (name(reason), waits_for.join(", "))

@@ -150,7 +150,11 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let whole_s = until.secs_since(since).max(1e-3);
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
-    let by = if session.robot.driven_to.is_some() { " by wizard" } else { "" };
+    let by = match () {
+        () if session.robot.driven_to.is_some() => " by wizard",
+        () if session.robot.initiative => " alone: nobody presses",
+        () => "",
+    };
     if session.robot.arm.mode == SafetyMode::Safeguard {
         // The time that is left is unknown until the hand is gone.
         let parts = [(label.as_str(), TextRole::Robot), (by, TextRole::Signal), (": hand in the way", TextRole::Text)];

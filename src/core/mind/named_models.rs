@@ -88,6 +88,11 @@ impl From<GivenHumanModel> for HumanModel {
 }
 
 impl HumanModel {
+    /// The model's name, with what differs from the named model: `paper-2021; decision.tau = 3.0, not 4.0`.
+    pub fn named(&self) -> String {
+        [vec![self.model.name().to_string()], self.differences()].concat().join("; ")
+    }
+
     /// What differs from the named model: for each such parameter a text like `decision.tau = 8.0, not 4.0`.
     pub fn differences(&self) -> Vec<String> {
         let mut found = Vec::new();

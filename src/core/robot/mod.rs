@@ -102,6 +102,8 @@ pub enum RobotEvent {
         button: ButtonId,
         /// The session time at which the arm will touch the button.
         until: SessionTime,
+        /// Whether the press is part of the robot's initiative, since the human is passive.
+        initiative: bool,
     },
     /// The robot presses the button to which it was moving.
     Press(ButtonId),

@@ -26,7 +26,9 @@ impl SessionEngine {
         let kitchen = self.session().kitchen.clone();
         let name = |button: ButtonId| kitchen.button(Agent::Robot, button).name.clone();
         let event = match event {
-            RobotEvent::Intend { button, until } => Event::RobotIntends { button: name(button), until_ns: until },
+            RobotEvent::Intend { button, until, initiative } => {
+                Event::RobotIntends { button: name(button), until_ns: until, initiative }
+            }
             RobotEvent::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
             RobotEvent::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
             RobotEvent::Idle { reason, waits_for } => {

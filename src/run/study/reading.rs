@@ -336,6 +336,8 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: O
         robot: RobotEventSummary::default(),
         human_presses: u64::from(session.presses[Agent::Human.index()]),
         robot_presses: u64::from(session.presses[Agent::Robot.index()]),
+        initiative_presses: u64::from(session.robot.initiative_presses),
+        human_model: spec.human.named(),
         errors: follower.errors() as u64,
         races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
         unproven: follower.unproven() as u64,

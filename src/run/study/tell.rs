@@ -42,6 +42,14 @@ pub fn describe(figures: &StudySummary) -> String {
     for one in &figures.corrections {
         text += &format!("{}\n", one.in_words());
     }
+    if figures.human_models.len() > 1 {
+        let models = figures
+            .human_models
+            .iter()
+            .map(|(model, &trials)| format!("{} with {model}", count(trials, "trial", "trials")));
+        let models: Vec<String> = models.collect();
+        text += &format!("the assistant had different models of the human: {}\n", models.join(", "));
+    }
     text += &copies_in_words(&figures.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(

@@ -13,11 +13,8 @@ use tomcom_core::measures::belief_basis::BeliefSource;
 /// Section of the report on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup {
     let content = html! {
-        p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
+        p { (conduct(figures, facts)) (wizard(facts)) (versions(figures, facts)) } "\n"
         p { (analysis(figures)) } "\n"
-        @if let Some(parameters) = facts.all("human model") {
-            p class="note" { b { "Parameters of the human model" } " (names as in session files): " (parameters) "." } "\n"
-        }
         @if let Some(traits) = facts.all("traits") {
             p class="note" {
                 b { "Traits of simulated participants" } " (medians; spread: standard deviation of the logarithm, of the logit for a \
@@ -44,7 +41,7 @@ fn conduct(figures: &StudySummary, facts: &RecordingFacts) -> String {
     format!(
         "{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
          \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whichever came first.{}{} A press \
-         of the robot took {}. Gaze came from {}{accuracy}. A signal was shown for {}.",
+         of the robot took {}; it took the initiative when the participant had not pressed for {}. Gaze came from {}{accuracy}. A signal was shown for {}. Signals could show recipes, and highlight {}.",
         words::count(figures.participants, "participant", "participants"),
         words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
         figures.left_out.len(),
@@ -55,8 +52,10 @@ fn conduct(figures: &StudySummary, facts: &RecordingFacts) -> String {
         endings(figures),
         arms(figures),
         all("robot"),
+        all("initiative"),
         all("gaze"),
         all("shown"),
+        all("highlights"),
     )
 }
 
@@ -74,12 +73,17 @@ fn wizard(facts: &RecordingFacts) -> Markup {
     }
 }
 
-fn versions(facts: &RecordingFacts) -> String {
+fn versions(figures: &StudySummary, facts: &RecordingFacts) -> String {
     let all = |key| all(facts, key);
+    let models = figures.human_models.iter().map(|(model, trials)| match figures.human_models.len() {
+        1 => model.clone(),
+        _ => format!("{model} (in {})", words::count(*trials, "trial", "trials")),
+    });
+    let models: Vec<String> = models.collect();
     format!(
-        " The human model's temperature was \u{3c4} = {}, the cost of a signal {} presses. Recorded with tomcom {} (log format {}), \
+        " The assistant's model of the human was {}, the cost of a signal {} presses. Recorded with tomcom {} (log format {}), \
          seed {}; analysed with tomcom {}.",
-        all("tau"),
+        models.join(" and "),
         all("cost"),
         all("program"),
         all("format"),

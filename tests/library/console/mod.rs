@@ -161,7 +161,7 @@ impl Stage {
             false,
         );
         let until_ns = SessionTime::from_secs_f64(24.0);
-        stage.at(21.2, Event::RobotIntends { button: "counter".to_string(), until_ns });
+        stage.at(21.2, Event::RobotIntends { button: "counter".to_string(), until_ns, initiative: false });
         for step in 0..12 {
             stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
         }

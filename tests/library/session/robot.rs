@@ -207,6 +207,7 @@ fn a_robot_whose_human_is_passive_serves_alone_within_40_s() {
             "serve 1",
         ];
         assert_eq!(done[1..9], rest, "{done:?}");
+        assert_eq!(engine.session().robot.initiative_presses as usize, done.len(), "each by its own initiative");
     }
 }
 

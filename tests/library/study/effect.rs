@@ -159,3 +159,16 @@ fn large_groups_have_nearly_the_interval_of_the_exact_distribution() {
     assert!((exact.high - approximate.high).abs() < 0.005, "{} and {}", exact.high, approximate.high);
     assert!(exact.high > 0.04 && exact.high < 0.06, "1.96 standard errors are 0.0507, found {}", exact.high);
 }
+
+#[test]
+fn trials_with_different_human_models_are_told() {
+    let told = |trials: &[TrialStatistics]| {
+        let figures = StudySummary::from_trials(trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+        describe(&figures)
+    };
+    let mut trials = trials(&[[8, 4]], &[[3, 9]]);
+    assert!(!told(&trials).contains("models of the human"), "{}", told(&trials));
+    trials[0].human_model = "paper-2021".to_string();
+    let wanted = "the assistant had different models of the human: 1 trial with paper-2021, 3 trials with plain\n";
+    assert!(told(&trials).contains(wanted), "{}", told(&trials));
+}

@@ -57,6 +57,8 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
             1.5,
         ),
         left_out: None,
+        human_model: "plain".to_string(),
+        initiative_presses: 0,
         ended: Some(TrialEndReason::Presses),
         arm: ArmKind::Timed,
         robot: RobotEventSummary::default(),

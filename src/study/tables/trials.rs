@@ -89,6 +89,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(probed())
         .chain(arm_columns::arms())
         .chain(coded())
+        .chain(model_and_initiative())
 }
 
 fn kind_of_trial() -> Vec<TrialColumn> {
@@ -111,12 +112,6 @@ fn kind_of_trial() -> Vec<TrialColumn> {
             "reason of the trial's end: set number of presses, time or orders; early: wizard or aborted; empty: incomplete recording",
             |t| t.ended.map(TrialEndReason::name).into(),
         ),
-        plain(
-            "human_model",
-            "",
-            "the assistant's model of the human: its name, and parameters that differ from the named model",
-            |t| t.human_model.as_str().into(),
-        ),
         plain("arm", "", "robot arm: timed (random press durations) or physics (simulated with contact forces)", |t| {
             t.arm.name().into()
         }),
@@ -130,12 +125,6 @@ fn errors() -> Vec<TrialColumn> {
     vec![
         plain("human_presses", "presses", "human presses while the trial ran", |t| t.human_presses.into()),
         plain("robot_presses", "presses", "robot presses while the trial ran", |t| t.robot_presses.into()),
-        plain(
-            "initiative_presses",
-            "presses",
-            "of robot_presses: those that the robot set out for by its own initiative, since the participant did not press",
-            |t| t.initiative_presses.into(),
-        ),
         Compared(NUMBER_OF_ERRORS),
         plain("races", "presses", "human presses within 300 ms of a robot change at the same place", |t| {
             t.races.into()
@@ -429,5 +418,22 @@ fn probed() -> Vec<TrialColumn> {
             |t| t.probes.map(|probes| probes.counted).into(),
         ),
         Compared(PROBES_WRONG),
+    ]
+}
+
+fn model_and_initiative() -> Vec<TrialColumn> {
+    vec![
+        plain(
+            "human_model",
+            "",
+            "the assistant's model of the human: its name, and parameters that differ from the named model",
+            |t| t.human_model.as_str().into(),
+        ),
+        plain(
+            "initiative_presses",
+            "presses",
+            "of robot_presses: those that the robot set out for by its own initiative, since the participant did not press",
+            |t| t.initiative_presses.into(),
+        ),
     ]
 }

@@ -270,7 +270,7 @@ model_table! {
 
 impl HumanModel {
     /// The first parameters that contradict each other: the path of one of these parameters in a session file, what was
-    /// found, and what would be right. The ranges of single parameters are in [`crate::session::ranges`].
+    /// found, and what would be right. The program checks the ranges of single parameters.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let PerceptionModel { look_alike, anything, .. } = self.perception;
         let found = || format!("anything = {anything}, look_alike = {look_alike}");

@@ -1,14 +1,12 @@
-//! Gaze: the tags on the wall display, the mapping from a tracker's surface, and what comes of samples.
+//! Gaze: the mapping from a tracker's surface, and what comes of samples.
 
 mod calibration;
 mod capture;
-mod clocks;
 mod formats;
 mod last_seen;
 mod quality;
 mod rate;
 mod tables;
-mod tags;
 
 use std::path::Path;
 use std::sync::Arc;

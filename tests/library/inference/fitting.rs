@@ -10,7 +10,8 @@ use tomcom_core::mind::fitting::{FitObservations, HumanModelParameter};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::Observation;
 
-use super::world::{Human, World, kitchen, live};
+use super::kitchen;
+use super::world::{Human, World, live};
 
 /// How an experiment is done.
 struct Experiment {
@@ -29,11 +30,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
     let mut observations = Vec::new();
     let mut cost = CostToGo::new(kitchen.clone());
     for index in 0..humans {
-        let world = World::new(kitchen.clone(), cost, gaze_hz, seed, index);
-        let mut world = match signal_s {
-            Some(every_s) => world.with_signals(every_s),
-            None => world,
-        };
+        let mut world = World::new(kitchen.clone(), cost, gaze_hz, signal_s, seed, index);
         let mut human = Human::new(kitchen, model, seed, index);
         let mut of_trial: Vec<Observation> = Vec::new();
         live(&mut world, &mut human, presses, |observation, _, _| of_trial.push(*observation));

@@ -15,7 +15,8 @@ use tomcom_core::mind::fitting::{
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 
-use super::world::{Human, World, kitchen, live};
+use super::kitchen;
+use super::world::{Human, World, live};
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
@@ -64,7 +65,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
     let places = kitchen.locations.len();
     let (mut cost, mut observations) = (CostToGo::new(kitchen.clone()), Vec::new());
     for index in 0..people {
-        let mut world = World::new(kitchen.clone(), cost, 15.0, 31, index).with_signals(10.0);
+        let mut world = World::new(kitchen.clone(), cost, 15.0, Some(10.0), 31, index);
         let mut human = Human::new(&kitchen, &truth, 31, index);
         let mut random = stream(31, "questions", index);
         let mut trial = FitObservations { seed: index, ..FitObservations::default() };

@@ -10,8 +10,9 @@ use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_core::mind::reference::ReferenceFilter;
 use tomcom_core::mind::signal_model::SignalModel;
 
+use super::kitchen;
 use super::observed::recorded;
-use super::world::{distance, kitchen};
+use super::world::distance;
 
 fn means(belief: &DirichletBelief) -> Vec<Vec<f64>> {
     belief.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect()

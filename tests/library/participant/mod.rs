@@ -1,10 +1,7 @@
 //! Simulated participants: they err at the rates of people, for reasons that can be named.
 
 mod accepted;
-mod behaviour;
 mod population;
-mod slips;
-mod traits;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,9 +1,5 @@
 //! Freeze probes: filter and plain reference let all of their times stand still while the task does.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -15,6 +11,8 @@ use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_core::mind::reference::ReferenceFilter;
 use tomcom_core::mind::signal_model::SignalModel;
 
+use crate::files::kitchen;
+
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
 }
@@ -22,7 +20,7 @@ fn at(seconds: f64) -> SessionTime {
 /// The estimates of filter and reference, by aspect and value, after a trial in which a signal stands on the display,
 /// the gaze is lost, and the robot takes rice; with a freeze of this duration 0.2 s after the gaze was lost.
 fn estimates(freeze_s: f64) -> [Vec<Vec<f64>>; 2] {
-    let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
+    let kitchen = kitchen("sushi");
     let mut cost = CostToGo::new(kitchen.clone());
     let signal = SignalModel { noticed: 0.8, delay_s: 1.0, ..SignalModel::default() };
     let mut model = HumanModel { signal, ..HumanModel::default() };

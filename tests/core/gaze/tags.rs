@@ -4,7 +4,7 @@ use tomcom_core::gaze::surface::SurfaceHomography;
 use tomcom_core::gaze::tags::{CELLS, DisplayTags};
 use tomcom_core::kitchen::DisplayArea;
 
-use super::load;
+use crate::files::load;
 
 fn overlap(a: DisplayArea, b: DisplayArea) -> bool {
     a.x < b.x + b.w && b.x < a.x + a.w && a.y < b.y + b.h && b.y < a.y + a.h

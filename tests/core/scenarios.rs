@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Deserialize;
-use tomcom::edge::files;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
 use tomcom_core::communication::concepts::{SilentConcept, concept};
@@ -22,6 +21,8 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::HumanModel;
+
+use crate::files::{kitchen, place};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -77,8 +78,7 @@ impl Scenario {
     }
 
     fn kitchen(&self) -> Arc<Kitchen> {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts").join(format!("{}.toml", self.layout));
-        Arc::new(files::read_kitchen(&path).expect("a layout").kitchen)
+        kitchen(&self.layout)
     }
 
     fn state(&self, kitchen: &Kitchen) -> State {
@@ -208,8 +208,7 @@ fn describe(name: &str, scenario: &Scenario, answer: &Recommendation) -> String 
 }
 
 fn scenarios() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenarios");
-    let entries = std::fs::read_dir(folder).expect("the scenarios");
+    let entries = std::fs::read_dir(place("tests/scenarios")).expect("the scenarios");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("a file").path()).collect();
     paths.sort();
     paths
@@ -345,7 +344,7 @@ fn planning_is_the_same_on_one_thread_and_on_two() {
 }
 
 fn named(name: &str) -> Scenario {
-    Scenario::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/scenarios/{name}.toml")))
+    Scenario::read(&place(format!("tests/scenarios/{name}.toml")))
 }
 
 /// What ToM says at a threshold, in words.

@@ -1,18 +1,15 @@
 //! Kitchens in which humans live who are simulated from the human model itself: what they believe is one draw of the prior,
 //! moved on by the model's own equations; what they press is drawn from p(a | b).
 
-use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::named_models::PAPER_2021;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_core::mind::reference::belief_set::ParticleSet;
 use tomcom_core::mind::reference::person::pick;
@@ -24,25 +21,6 @@ const FIXATION_S: [f64; 2] = [0.2, 0.6];
 /// The share of signals that show a recipe if there is an order.
 const RECIPES: f64 = 0.6;
 
-pub fn kitchen(path: &str) -> Arc<Kitchen> {
-    match read_kitchen(Path::new(path)) {
-        Ok(files) => Arc::new(files.kitchen),
-        Err(error) => panic!("{error}"),
-    }
-}
-
-/// The model for the tiny kitchen: places are all but certain at first, so that little has to be gone through, and whatever
-/// is possible is gone through instead of drawn.
-pub fn tiny_model() -> HumanModel {
-    let mut model = HumanModel::default();
-    model.prior.location_truth = 0.99999;
-    model.prior.location_precision = 100.0;
-    model.inference.states = 4096;
-    // The grid of exact beliefs has no signals that wait to be read.
-    model.signal = PAPER_2021.signal;
-    model
-}
-
 /// A kitchen at work.
 pub struct World {
     pub kitchen: Arc<Kitchen>,
@@ -50,7 +28,8 @@ pub struct World {
     chance: Stream,
     /// Gaze samples a second.
     gaze_hz: f64,
-    state: State,
+    /// The truth.
+    pub state: State,
     gaze_at: f64,
     fixation: (f64, [f64; 2]),
     /// When human and robot press next.
@@ -63,7 +42,14 @@ pub struct World {
 }
 
 impl World {
-    pub fn new(kitchen: Arc<Kitchen>, cost: CostToGo, gaze_hz: f64, seed: u64, index: u64) -> World {
+    pub fn new(
+        kitchen: Arc<Kitchen>,
+        cost: CostToGo,
+        gaze_hz: f64,
+        signal_s: Option<f64>,
+        seed: u64,
+        index: u64,
+    ) -> World {
         let mut chance = stream(seed, "world", index);
         let shows = kitchen.orders.iter().enumerate().map(|(at, &order)| {
             let dish = DishId(chance.random_range(0..kitchen.dishes.len()) as u8);
@@ -72,13 +58,8 @@ impl World {
         let changes = shows.collect();
         let state = kitchen.empty_state();
         let (fixation, press_at) = ((0.0, [0.5, 0.5]), [2.0, 3.0]);
-        let (gaze_at, signal_s, signal_at) = (0.05, None, f64::INFINITY);
+        let (gaze_at, signal_at) = (0.05, signal_s.map_or(f64::INFINITY, |_| 1.0));
         World { kitchen, cost, chance, gaze_hz, state, gaze_at, fixation, press_at, signal_s, signal_at, changes }
-    }
-
-    /// With somebody who sends a signal every so many seconds.
-    pub fn with_signals(self, every_s: f64) -> World {
-        World { signal_s: Some(every_s), signal_at: 1.0, ..self }
     }
 
     /// The beginning of a trial.
@@ -113,11 +94,6 @@ impl World {
                 }
             }
         }
-    }
-
-    /// The truth.
-    pub fn state(&self) -> State {
-        self.state
     }
 
     fn between(&mut self, [least, most]: [f64; 2]) -> f64 {

@@ -1,9 +1,7 @@
 //! Signals that can be missed: what the planner makes of the chance, against its plain reference, and when a signal is repeated.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::{Concept, DecisionPoint};
 use tomcom_core::communication::planner::Planner;
@@ -18,6 +16,8 @@ use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::signal_model::SignalReadingForecast;
 
+use crate::files::kitchen;
+
 /// Salmon nigiri is wanted and the base is ready; its recipe is taken for another one.
 pub struct WrongRecipe {
     pub kitchen: Arc<Kitchen>,
@@ -29,7 +29,7 @@ pub struct WrongRecipe {
 
 impl WrongRecipe {
     pub fn new() -> WrongRecipe {
-        let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
+        let kitchen = kitchen("sushi");
         let dish = kitchen.dishes.iter().position(|dish| dish.name == "salmon nigiri").expect("a dish");
         let dish = DishId(dish as u8);
         let mut state = kitchen.empty_state();

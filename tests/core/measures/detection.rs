@@ -9,7 +9,8 @@ use tomcom_core::measures::detection::{Calibration, auc};
 use tomcom_core::measures::flags::{FlagThresholds, ThresholdChoice, ThresholdSource, chosen_thresholds};
 use tomcom_core::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
 
-use super::{aspect, kitchen};
+use super::aspect;
+use crate::files::kitchen;
 
 #[test]
 fn the_area_under_the_roc_counts_pairs_in_order_and_ties_as_half() {

@@ -2,31 +2,23 @@
 //!
 //! Exact search takes up to seconds a state, so its results are kept in `tests/oracle/`: a line a state, with the least
 //! presses for the first order and for all orders. Some of them are searched again in every run; all of them by
-//! `cargo test --release --test library cost_to_go -- --ignored`.
+//! `cargo test --release -p tomcom-core --test core cost_to_go -- --ignored`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::edge::files::read_kitchen;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, TrialPhase};
 use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity, ProofBudget, ProvenCost};
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
+use crate::files::{self, kitchen};
 use crate::oracle::Oracle;
 
 /// States a sample.
 const STATES: usize = 1000;
 /// How many of them are searched again in every run.
 const SEARCHED_AGAIN: usize = 4;
-
-fn kitchen(name: &str) -> Arc<Kitchen> {
-    Arc::new(read_kitchen(Path::new(&format!("layouts/{name}.toml"))).expect("the kitchen loads").kitchen)
-}
 
 /// States after 60 random presses of both agents, with random orders: full of obstacles.
 fn scrambled(kitchen: &Arc<Kitchen>) -> Vec<State> {
@@ -46,41 +38,13 @@ fn scrambled(kitchen: &Arc<Kitchen>) -> Vec<State> {
     (0..STATES).map(one).collect()
 }
 
-/// Different states that simulated sessions went through, a few from every trial.
-fn met(kitchen: &Arc<Kitchen>) -> Vec<State> {
-    let mut spec = session_or_default(None).expect("the default session").spec;
-    spec.seed = 3;
-    let mut states: Vec<State> = Vec::new();
-    for trial in 0.. {
-        let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
-        let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
-        let mut of_trial = Vec::new();
-        while engine.session().phase == TrialPhase::Running {
-            engine.fire();
-            let state = engine.session().state;
-            if of_trial.last() != Some(&state) && kitchen.wanted(state).next().is_some() {
-                of_trial.push(state);
-            }
-        }
-        for state in of_trial.into_iter().step_by(4) {
-            if !states.contains(&state) {
-                states.push(state);
-            }
-            if states.len() == STATES {
-                return states;
-            }
-        }
-    }
-    states
-}
-
-fn file(kitchen: &str, sample: &str) -> PathBuf {
-    PathBuf::from(format!("tests/oracle/{kitchen}_{sample}.txt"))
+fn file(kitchen: &str, sample: &str) -> String {
+    format!("tests/oracle/{kitchen}_{sample}.txt")
 }
 
 /// States with their exact costs: of the first order, and of all.
-fn read(path: &Path) -> Vec<(State, u32, u32)> {
-    let text = std::fs::read_to_string(path).expect("the exact costs are there");
+fn read(path: &str) -> Vec<(State, u32, u32)> {
+    let text = files::read(path);
     let line = |line: &str| {
         let words: Vec<&str> = line.split_whitespace().collect();
         let bits = u128::from_str_radix(words[0], 16).expect("a state").to_le_bytes();
@@ -215,7 +179,8 @@ fn the_exact_costs_in_the_files_are_those_of_the_oracle() {
     for (name, sample) in [("burger", "met"), ("burger", "scrambled"), ("sushi", "met"), ("sushi", "scrambled")] {
         let kitchen = kitchen(name);
         let recipes = kitchen.true_recipes();
-        let states = if sample == "met" { met(&kitchen) } else { scrambled(&kitchen) };
+        let listed: Vec<State> = read(&file(name, sample)).into_iter().map(|(state, ..)| state).collect();
+        let states = if sample == "met" { listed } else { scrambled(&kitchen) };
         let search = |states: &[State]| -> String {
             let mut oracle = Oracle::new(&kitchen);
             let line = |state: &State| {
@@ -232,11 +197,11 @@ fn the_exact_costs_in_the_files_are_those_of_the_oracle() {
         });
         let text = format!("# state, least presses for the first order, for all orders\n{lines}");
         let path = file(name, sample);
-        if std::fs::read_to_string(&path).is_ok_and(|known| known == text) {
+        if files::read(&path) == text {
             continue;
         }
         let found = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{sample}.txt"));
         std::fs::write(&found, text).expect("the file can be written");
-        panic!("{}: the oracle finds other costs: {}", path.display(), found.display());
+        panic!("{path}: the oracle finds other costs: {}", found.display());
     }
 }

@@ -1,5 +1,7 @@
 //! Humans who are simulated from the model itself: what is inferred of them must be what they hold, as often as it says.
 
+use std::sync::Arc;
+
 use rand::RngExt;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -10,7 +12,9 @@ use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::reference::person::{draw, pick};
 
 use super::particles::ParticleFilter;
-use super::world::{Human, World, kitchen, live, tiny_model};
+use super::tiny_model;
+use super::world::{Human, World, live};
+use crate::files::load;
 
 const HUMANS: u64 = 160;
 const PRESSES: usize = 8;
@@ -42,7 +46,7 @@ fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> usize {
 /// uniform.
 #[test]
 fn the_unprojected_posterior_is_calibrated_and_what_the_projection_adds_is_told() {
-    let kitchen = kitchen("tests/kitchens/tiny.toml");
+    let kitchen = Arc::new(load("tests/kitchens/tiny.toml"));
     let model = tiny_model();
     let mut fast_model = model.clone();
     fast_model.inference = HumanModel::default().inference;
@@ -50,7 +54,7 @@ fn the_unprojected_posterior_is_calibrated_and_what_the_projection_adds_is_told(
     let aspects = kitchen.aspects.len();
     let (mut kept, mut projected) = (vec![Vec::new(); aspects], vec![Vec::new(); aspects]);
     for index in 0..HUMANS {
-        let mut world = World::new(kitchen.clone(), cost.clone(), 15.0, 11, index);
+        let mut world = World::new(kitchen.clone(), cost.clone(), 15.0, None, 11, index);
         let mut human = Human::new(&kitchen, &model, 11, index);
         let mut particles = ParticleFilter::new(&kitchen, &model, PARTICLES, 11, index);
         let mut fast = BeliefFilter::new(kitchen.clone(), fast_model.clone(), index);
@@ -61,7 +65,7 @@ fn the_unprojected_posterior_is_calibrated_and_what_the_projection_adds_is_told(
         let mut random = stream(11, "ranks", index);
         let drawn: Vec<usize> = (0..PARTICLES).map(|_| pick(&particles.weights, &mut random)).collect();
         for aspect in 0..aspects {
-            let value = truth(&kitchen, world.state(), aspect);
+            let value = truth(&kitchen, world.state, aspect);
             let held = human.people.of[0].of[aspect][value];
             let others: Vec<f64> = drawn.iter().map(|&one| particles.people.of[one].of[aspect][value]).collect();
             kept[aspect].push(rank(held, &others, &mut random));
@@ -83,12 +87,12 @@ fn the_unprojected_posterior_is_calibrated_and_what_the_projection_adds_is_told(
 #[test]
 fn what_is_called_likely_is_held_as_often() {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
-        let kitchen = kitchen(layout);
+        let kitchen = Arc::new(load(layout));
         let model = HumanModel::default();
         let mut cost = CostToGo::new(kitchen.clone());
         let (mut named, mut held_most) = (Vec::new(), Vec::new());
         for index in 0..LOOKED_AT {
-            let mut world = World::new(kitchen.clone(), cost, 15.0, 5, index);
+            let mut world = World::new(kitchen.clone(), cost, 15.0, None, 5, index);
             let mut human = Human::new(&kitchen, &model, 5, index);
             let mut fast = BeliefFilter::new(kitchen.clone(), model.clone(), index);
             live(&mut world, &mut human, PRESSES, |observation, _, cost| fast.observe(observation, cost));

@@ -1,10 +1,8 @@
 //! The inference of the human's belief: what it must hold whatever comes, and what its closed forms say.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
@@ -18,12 +16,9 @@ use tomcom_core::mind::named_models::PAPER_2021;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 use super::{any_number, any_state, check_proper, looks_at_nothing};
+use crate::files::kitchen;
 
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
-
-fn kitchen(name: &str) -> Arc<Kitchen> {
-    Arc::new(read_kitchen(Path::new(&format!("layouts/{name}.toml"))).expect("the kitchen loads").kitchen)
-}
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)

@@ -20,7 +20,7 @@ use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_core::robot::policy;
 
 use super::grid::quadrature;
-use super::world::kitchen;
+use crate::files::load;
 
 /// Points along each share of a belief.
 const POINTS: usize = 160;
@@ -37,7 +37,7 @@ struct PaperBench {
 
 impl PaperBench {
     fn new(model: HumanModel) -> PaperBench {
-        let kitchen = kitchen("tests/kitchens/tiny.toml");
+        let kitchen = Arc::new(load("tests/kitchens/tiny.toml"));
         let mut state = kitchen.empty_state();
         state.set_order(kitchen.orders[0], OrderContent::Dish(DishId(0)));
         let filter = BeliefFilter::new(kitchen.clone(), model, 1);

@@ -6,13 +6,13 @@ use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_people::participant::slips::slipped_button;
 
 use super::behaviour::{Bench, unmoved};
-use super::kitchen;
+use crate::files::{self, kitchen};
 
 const DRAWS: u32 = 40_000;
 
 /// The smallest kitchen, with caps of these colours by the name of the button; the others have none.
 fn tiny(colours: &[(&str, &str)]) -> Kitchen {
-    let read = |name: &str| std::fs::read_to_string(format!("tests/kitchens/{name}.toml")).expect("a kitchen file");
+    let read = |name: &str| files::read(format!("tests/kitchens/{name}.toml"));
     let mut layout = read("tiny");
     for (key, colour) in colours {
         let key = format!("key = \"{key}\"");

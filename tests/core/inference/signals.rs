@@ -1,9 +1,7 @@
 //! Signals that take time to be read: what gaze, unknown gaze and presses say about whether one was read.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
@@ -18,6 +16,7 @@ use tomcom_core::mind::reference::person::Particle;
 use tomcom_core::mind::signal_model::SignalModel;
 
 use super::looks_at_nothing;
+use crate::files::kitchen;
 
 /// A human who reads signals in time, and looks at nothing else while the gaze is unknown.
 fn reads_in_time() -> HumanModel {
@@ -36,7 +35,7 @@ struct SignalBench {
 
 impl SignalBench {
     fn new(model: HumanModel) -> SignalBench {
-        let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
+        let kitchen = kitchen("sushi");
         let dish = kitchen.dishes.iter().position(|dish| dish.name == "shrimp nigiri").expect("a dish");
         let dish = DishId(dish as u8);
         let mut state = kitchen.empty_state();

@@ -1,5 +1,7 @@
 //! On a kitchen small enough to go through all beliefs on a grid.
 
+use std::sync::Arc;
+
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Kitchen, Press};
 use tomcom_core::mind::dirichlet::DirichletBelief;
@@ -10,7 +12,9 @@ use tomcom_core::mind::reference::ReferenceFilter;
 
 use super::grid::{GridFilter, quadrature};
 use super::particles::ParticleFilter;
-use super::world::{Human, World, distance, kitchen, live, tiny_model};
+use super::tiny_model;
+use super::world::{Human, World, distance, live};
+use crate::files::load;
 
 /// Events that are not gaze samples.
 const EVENTS: usize = 20;
@@ -34,7 +38,7 @@ fn the_grid_holds_the_moments_of_a_beta() {
 /// many samples, so that it is the algorithm that is tested. What chance adds at the default number of samples is told.
 #[test]
 fn the_estimate_is_close_to_exact_assumed_density_filtering() {
-    let kitchen = kitchen("tests/kitchens/tiny.toml");
+    let kitchen = Arc::new(load("tests/kitchens/tiny.toml"));
     let mut model = tiny_model();
     // Forgetting has a closed form of its own; the grid leaves it out.
     model.transition.recipe_half_life_s = 1e12;
@@ -51,7 +55,7 @@ fn the_estimate_is_close_to_exact_assumed_density_filtering() {
         let mut filters = [usual.clone(), fine.clone()].map(|model| BeliefFilter::new(kitchen.clone(), model, seed));
         let mut reference = ReferenceFilter::new(kitchen.clone(), plain.clone(), seed);
         let mut particles = ParticleFilter::new(&kitchen, &model, 8192, seed, 0);
-        let mut world = World::new(kitchen.clone(), CostToGo::new(kitchen.clone()), 15.0, seed, 0);
+        let mut world = World::new(kitchen.clone(), CostToGo::new(kitchen.clone()), 15.0, None, seed, 0);
         let mut human = Human::new(&kitchen, &model, seed, 0);
         let mut apart = [0.0; 4];
         let mut events = 0;

@@ -7,7 +7,8 @@ use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::errors::PressVerdict;
 use tomcom_core::measures::sequences::{ErrorSequence, FalseBeliefTracker, sequences, sequences_any_aspect};
 
-use super::{at, belief, kitchen, state};
+use super::{at, belief, state};
+use crate::files::kitchen;
 
 /// Presses by letters, one a second: `.` correct, `s` slip, `r` race, other letters belief related errors about that
 /// location.

@@ -1,31 +1,23 @@
 //! The kitchen: what is computed from the files, the rules of the task, and the files that cannot be.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use miette::Diagnostic;
 use rand::RngExt;
-use tomcom::edge::file_error::FileError;
-use tomcom::edge::files::{compile_kitchen, read_kitchen};
 use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{
     Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State,
 };
 
-fn load(layout: &str) -> Kitchen {
-    match read_kitchen(Path::new(layout)) {
-        Ok(files) => files.kitchen,
-        Err(error) => panic!("{error}"),
-    }
-}
+use crate::files::{load, place, read};
 
 fn layouts() -> Vec<Kitchen> {
-    let entries = std::fs::read_dir("layouts").expect("the folder layouts");
+    let entries = std::fs::read_dir(place("layouts")).expect("the folder layouts");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
     paths.sort();
     assert!(paths.len() > 1, "a second kitchen of another dish");
-    paths.iter().map(|path| load(&path.display().to_string())).collect()
+    paths.iter().map(load).collect()
 }
 
 /// Plays presses given as "human: take rice" from an empty kitchen with these orders; `!` marks an ineffective press.
@@ -269,13 +261,11 @@ fn every_layout_has_what_a_kitchen_needs() {
 
 #[test]
 fn a_kitchen_that_is_too_large_is_refused() {
-    let path = Path::new("layouts/sushi.toml");
-    let mut layout = std::fs::read_to_string(path).expect("the layout is there");
+    let mut layout = read("layouts/sushi.toml");
     for accepts in ["[\"bases\"]", "[\"ingredients\"]", "[\"ingredients\", \"dishes\"]"] {
         layout = layout.replace(&format!("accepts = {accepts}"), "accepts = [\"anything\"]");
     }
-    let recipes = std::fs::read_to_string("recipes/sushi.toml").expect("the recipes are there");
-    let refused = compile_kitchen((path, layout), (Path::new("recipes/sushi.toml"), recipes));
+    let refused = Kitchen::from_toml(&layout, &read("recipes/sushi.toml"));
     let message = refused.expect_err("37^8 is too many").to_string();
     assert!(message.contains("3512479453921 ways to fill the locations"), "{message}");
 }
@@ -283,7 +273,6 @@ fn a_kitchen_that_is_too_large_is_refused() {
 /// The tiny kitchen with a third topping, so that a place that accepts everything has 8 contents, and with so many places
 /// like that beside the hands and the board.
 fn of_eight_contents(places: usize, plate: &str) -> Result<Kitchen, String> {
-    let read = |path: &str| std::fs::read_to_string(path).expect("a file of the project");
     let third = "looks_like = [\"ham\"]\n\n[[ingredient]]\nname = \"cheese\"\nlooks_like = [\"ham\"]";
     let recipes = read("tests/kitchens/tiny-recipes.toml")
         .replace("looks_like = [\"salami\"]", "looks_like = [\"salami\", \"cheese\"]")
@@ -305,10 +294,7 @@ fn of_eight_contents(places: usize, plate: &str) -> Result<Kitchen, String> {
             0.3 + 0.05 * column,
         );
     }
-    let path = Path::new("tests/kitchens/tiny.toml");
-    let recipes = (Path::new("tests/kitchens/tiny-recipes.toml"), recipes);
-    let told = |error: FileError| format!("{error}: {}", error.help().map(|help| help.to_string()).unwrap_or_default());
-    compile_kitchen((path, layout), recipes).map(|files| files.kitchen).map_err(told)
+    Kitchen::from_toml(&layout, &recipes).map_err(|error| format!("{error}: {}", error.remedy))
 }
 
 /// Keys of the cost to go have 38 bits for the state: 13 places of 8 contents have 2^39 states. With a plate of 4 contents
@@ -344,7 +330,6 @@ fn the_largest_kitchen_has_a_key_for_every_state() {
 
 /// The sushi kitchen with other words.
 fn reworded(words: &str) -> Kitchen {
-    let read = |path: &str| std::fs::read_to_string(path).expect("a file of the project");
     let recipes = read("recipes/sushi.toml").split("\n[words.de]").next().expect("the first part").to_string();
     Kitchen::from_toml(&read("layouts/sushi.toml"), &format!("{recipes}\n{words}")).expect("a kitchen")
 }
@@ -383,7 +368,6 @@ fn contents_are_worded_by_default_and_as_the_recipe_file_says_while_names_stay()
 
 #[test]
 fn a_dish_is_called_by_its_name_also_where_that_looks_like_a_stack() {
-    let read = |path: &str| std::fs::read_to_string(path).expect("a file of the project");
     let recipes = read("recipes/sushi.toml").replace("crab maki", "crab + maki");
     let kitchen = Kitchen::from_toml(&read("layouts/sushi.toml"), &recipes).expect("a kitchen");
     assert_eq!(kitchen.worded("crab + maki"), "crab + maki");

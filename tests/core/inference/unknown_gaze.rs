@@ -1,10 +1,7 @@
 //! Unknown gaze: nothing is concluded from a look that nobody could have seen.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::read_kitchen;
-use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -14,7 +11,8 @@ use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
 use tomcom_core::mind::model::{HumanModel, LookingModel};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+
+use crate::files::kitchen;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
@@ -49,7 +47,7 @@ struct Trial {
 
 impl Trial {
     fn with(model: &HumanModel, before: impl FnOnce(&mut Trial)) -> Trial {
-        let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);
+        let kitchen = kitchen("sushi");
         let (cost, state) = (CostToGo::new(kitchen.clone()), kitchen.empty_state());
         let filter = BeliefFilter::new(kitchen.clone(), model.clone(), 3);
         let mut trial = Trial { kitchen, filter, cost, state };
@@ -183,19 +181,4 @@ fn without_a_source_all_time_is_unknown() {
     assert_eq!(presence.pass(at(7.0)), 0.0, "time counts once");
     presence.rest(at(20.0));
     assert!((presence.pass(at(21.0)) - 1.0).abs() < 1e-9, "a pause does not count");
-}
-
-#[test]
-fn drop_outs_follow_their_seed() {
-    let schedule = |seed| {
-        let mut gaps = GazeDropoutSchedule::new(10.0, [1.0, 8.0], stream(seed, "drop-outs", 0));
-        (0..60_000).map(|step| gaps.swallows(at(f64::from(step) / 100.0))).collect::<Vec<bool>>()
-    };
-    let lost = schedule(4);
-    assert_eq!(lost, schedule(4));
-    assert_ne!(lost, schedule(5));
-    let runs: Vec<usize> = lost.chunk_by(|a, b| a == b).filter(|run| run[0]).map(<[bool]>::len).collect();
-    assert!(runs.len() > 20, "{}", runs.len());
-    // The last one may be cut by the end.
-    assert!(runs[..runs.len() - 1].iter().all(|run| (99..=801).contains(run)), "{runs:?}");
 }

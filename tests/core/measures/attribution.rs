@@ -6,7 +6,8 @@ use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_core::mind::choice_parameters::ChoiceParameters;
 
-use super::{at, belief, kitchen, state};
+use super::{at, belief, state};
+use crate::files::kitchen;
 
 /// A press in a kitchen under a belief is an error, and for this reason: "slip", or the labels of its targets.
 fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&str]) {

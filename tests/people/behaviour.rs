@@ -10,7 +10,7 @@ use tomcom_core::mind::{PressOrigin, RecordedBelief};
 use tomcom_people::participant::population::{Experience, Population, TraitSpread};
 use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
 
-use super::kitchen;
+use crate::files::kitchen;
 
 /// A participant before a kitchen that nobody else changes.
 pub struct Bench {

@@ -1,9 +1,5 @@
 //! What proposed presses on the display do to the estimate: nothing by themselves, and less evidence from the press that follows.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, OrderContent};
@@ -11,6 +7,8 @@ use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::{HumanModel, LookingModel};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 use tomcom_core::mind::reference::ReferenceFilter;
+
+use crate::files::kitchen;
 
 /// Fall of P(truth) about the recipe of an order by a press of its look-alike's ingredient, and ln p of that press.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +19,7 @@ struct Lesson {
 
 /// The lesson of the filter and of the reference, with these presses proposed before the press.
 fn lessons(proposed: &[&str], follows: f64) -> [Lesson; 2] {
-    let kitchen = Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
+    let kitchen = kitchen("sushi");
     let mut cost = CostToGo::new(kitchen.clone());
     let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
     let mut model = HumanModel { looking, ..HumanModel::default() };

@@ -181,6 +181,15 @@ impl Stage {
         terminal.backend().to_string()
     }
 
+    /// The screen, which has to say all of this.
+    fn shows(&self, size: (u16, u16), words: &[&str]) -> String {
+        let screen = self.screen(size);
+        for words in words {
+            assert!(screen.contains(words), "{words:?} at {size:?} in\n{screen}");
+        }
+        screen
+    }
+
     fn key(&mut self, code: KeyCode) -> Option<ConsoleCommand> {
         self.key_event(KeyEvent::new(code, KeyModifiers::NONE))
     }

@@ -2,7 +2,6 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -15,7 +14,7 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::preflight::checks;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
-use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
 use tomcom::run::engine::SessionEngine;
@@ -25,6 +24,8 @@ use tomcom::session::{Event, SessionSpec};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+
+use crate::kitchen;
 
 const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 /// Nothing that is waited for takes longer; that it does not come is the failure.
@@ -364,7 +365,7 @@ fn the_setting_is_read_and_kept() {
 #[test]
 fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-    let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).unwrap_or_else(|error| panic!("{error}")).kitchen;
+    let kitchen = kitchen("sushi");
     let keys =
         KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the layout's keys are free");
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
@@ -396,8 +397,7 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
 #[test]
 fn the_checks_say_what_was_found_in_rejected_gaze() {
     let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-    let kitchen =
-        Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).unwrap_or_else(|error| panic!("{error}")).kitchen);
+    let kitchen = kitchen("sushi");
     let mut spec = files.spec;
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
     let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");

@@ -36,6 +36,20 @@ mod study;
 mod terminal_input;
 mod viewers;
 
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::edge::files::read_kitchen;
+use tomcom_core::kitchen::Kitchen;
+
+/// The kitchen of one of the layouts in `layouts`.
+fn kitchen(name: &str) -> Arc<Kitchen> {
+    match read_kitchen(Path::new(&format!("layouts/{name}.toml"))) {
+        Ok(files) => Arc::new(files.kitchen),
+        Err(error) => panic!("{error}"),
+    }
+}
+
 /// Holds a text against `tests/snapshots/THEME__NAME.snap`.
 fn check_snapshot(theme: &str, name: impl std::fmt::Display, text: impl std::fmt::Display) {
     let mut settings = insta::Settings::clone_current();

@@ -4,13 +4,14 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::read_kitchen;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
 use tomcom::session::{Event, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Kitchen, State};
+
+use crate::kitchen;
 
 /// States a kitchen.
 const STATES: usize = 1000;
@@ -47,7 +48,7 @@ fn met(kitchen: &Arc<Kitchen>) -> Vec<State> {
 #[ignore = "takes minutes"]
 fn the_states_in_the_files_are_those_that_sessions_meet() {
     for name in ["burger", "sushi"] {
-        let kitchen = Arc::new(read_kitchen(Path::new(&format!("layouts/{name}.toml"))).expect("the kitchen").kitchen);
+        let kitchen = kitchen(name);
         let states: Vec<String> = met(&kitchen).iter().map(|state| format!("{:x}", state.bits())).collect();
         let path = format!("tests/oracle/{name}_met.txt");
         let text = fs::read_to_string(&path).expect("the exact costs are there");

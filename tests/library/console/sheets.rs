@@ -15,8 +15,8 @@ use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_core::base::time::SessionTime;
 
-use super::{SIZES, Stage, kitchen};
-use crate::check_snapshot;
+use super::{SIZES, Stage};
+use crate::{check_snapshot, kitchen};
 
 /// The console of a recording of the study's first participant.
 fn planned(slot: usize, instructed: bool) -> Stage {

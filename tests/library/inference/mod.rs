@@ -9,16 +9,3 @@ mod observed;
 mod recorded;
 #[path = "../../core/inference/world.rs"]
 mod world;
-
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::read_kitchen;
-use tomcom_core::kitchen::Kitchen;
-
-fn kitchen(path: &str) -> Arc<Kitchen> {
-    match read_kitchen(Path::new(path)) {
-        Ok(files) => Arc::new(files.kitchen),
-        Err(error) => panic!("{error}"),
-    }
-}

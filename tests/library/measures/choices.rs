@@ -15,7 +15,7 @@ use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::choice_parameters::ChoiceParameters;
 use tomcom_core::mind::{ChoiceModel, RecordedBelief};
 
-use super::kitchen;
+use crate::kitchen;
 
 fn settings(participant: &str) -> SessionSpec {
     let text = format!(

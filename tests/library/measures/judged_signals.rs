@@ -7,7 +7,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::Agent;
 
-use super::kitchen;
+use crate::kitchen;
 
 /// A trial whose signals are judged.
 struct Trial {

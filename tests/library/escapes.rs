@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::path::Path;
-use std::sync::Arc;
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
@@ -13,15 +12,15 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::edge::file_error::FileError;
-use tomcom::edge::files::read_kitchen;
 use tomcom::edge::parse::parse;
 use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply};
 use tomcom_core::base::printable::{printable, printable_lines};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::layout::LayoutSpec;
+
+use crate::kitchen;
 
 /// Clears the screen, sets the title of the window, reverses the direction of writing, and begins a sequence in one byte.
 const HOSTILE: &str = "a\x1b[2J\x1b]0;title\x07b\u{202e}c\u{9b}31md\r\ne";
@@ -32,13 +31,9 @@ fn is_harmless(text: &str) -> bool {
     !text.chars().any(|letter| letter.is_control() && letter != '\n') && !text.contains('\u{202e}')
 }
 
-fn kitchen() -> Arc<Kitchen> {
-    Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen)
-}
-
 fn session() -> Session {
     let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
-    Session::new(kitchen(), spec, 0)
+    Session::new(kitchen("sushi"), spec, 0)
 }
 
 #[test]

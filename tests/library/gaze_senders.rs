@@ -2,7 +2,6 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -15,7 +14,7 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::preflight::checks;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
-use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
 use tomcom::run::engine::SessionEngine;
@@ -25,6 +24,8 @@ use tomcom::session::{Event, SessionSpec};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+
+use crate::kitchen;
 
 const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 /// Nothing that is waited for takes longer; that it does not come is the failure.
@@ -225,17 +226,19 @@ async fn datagrams_of_all_addresses_are_taken_where_the_session_says_so() {
     }
 }
 
-/// An address of this machine by which other computers reach it, if it has one.
-fn outer_address() -> Option<IpAddr> {
-    let socket = std::net::UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+/// An address of this machine by which other computers reach it.
+fn outer_address() -> IpAddr {
+    let socket = std::net::UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a socket");
     // Nothing is sent: the system only chooses the address from which it would be.
-    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
-    socket.local_addr().ok().map(|address| address.ip()).filter(|address| !address.is_loopback())
+    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).expect("a machine with a network");
+    let outer = socket.local_addr().expect("an address").ip();
+    assert!(!outer.is_loopback(), "this test needs a network beside the loopback");
+    outer
 }
 
 #[tokio::test]
 async fn from_other_addresses_only_listed_ones_are_read_and_the_others_are_told() {
-    let Some(outer) = outer_address() else { return };
+    let outer = outer_address();
     let anywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
     let elsewhere = IpAddr::V4(Ipv4Addr::new(192, 0, 2, 7));
     let mut listener = listen(anywhere, GazeSenders::Any, &[elsewhere]).await.expect("a free port");
@@ -278,7 +281,7 @@ async fn answers(to: SocketAddr, lines: &[&[u8]]) -> String {
 #[tokio::test]
 async fn another_computer_pairs_with_the_code_and_sends_then() {
     assert_eq!(open(GazeSenders::Any).await.code, None, "this computer needs none");
-    let Some(outer) = outer_address() else { return };
+    let outer = outer_address();
     let anywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
     let mut listener = listen(anywhere, GazeSenders::Any, &[]).await.expect("a free port");
     let code = listener.code.clone().expect("a code, since no address is listed");
@@ -362,7 +365,7 @@ fn the_setting_is_read_and_kept() {
 #[test]
 fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-    let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).unwrap_or_else(|error| panic!("{error}")).kitchen;
+    let kitchen = kitchen("sushi");
     let keys =
         KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the layout's keys are free");
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
@@ -394,8 +397,7 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
 #[test]
 fn the_checks_say_what_was_found_in_rejected_gaze() {
     let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-    let kitchen =
-        Arc::new(read_kitchen(Path::new("layouts/sushi.toml")).unwrap_or_else(|error| panic!("{error}")).kitchen);
+    let kitchen = kitchen("sushi");
     let mut spec = files.spec;
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
     let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");

@@ -6,7 +6,6 @@ mod cohort;
 mod connection_table;
 mod console;
 mod corrections;
-mod cost_to_go;
 mod display;
 mod display_clock;
 mod display_palette;
@@ -19,27 +18,37 @@ mod gathering;
 mod gaze;
 mod gaze_senders;
 mod inference;
-mod kitchen;
 mod lsl_streams;
 mod malformed_requests;
 mod mcap_export;
 mod measures;
-mod missed_signals;
-mod oracle;
 mod participant;
 mod participant_codes;
 mod plan;
 mod ranges;
 mod readers;
 mod replay;
-mod robot;
 mod robot_on_display;
-mod scenarios;
 mod session;
+mod states_met;
 mod study;
 #[cfg(unix)]
 mod terminal_input;
 mod viewers;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::edge::files::read_kitchen;
+use tomcom_core::kitchen::Kitchen;
+
+/// The kitchen of one of the layouts in `layouts`.
+fn kitchen(name: &str) -> Arc<Kitchen> {
+    match read_kitchen(Path::new(&format!("layouts/{name}.toml"))) {
+        Ok(files) => Arc::new(files.kitchen),
+        Err(error) => panic!("{error}"),
+    }
+}
 
 /// Holds a text against `tests/snapshots/THEME__NAME.snap`.
 fn check_snapshot(theme: &str, name: impl std::fmt::Display, text: impl std::fmt::Display) {

@@ -5,6 +5,7 @@
 mod contacts;
 mod hand;
 mod presses;
+mod reach;
 mod sessions;
 mod stops;
 

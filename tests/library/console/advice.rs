@@ -57,10 +57,8 @@ fn advised(best: bool) -> Stage {
 
 #[test]
 fn advice_is_ranked_with_its_errors_against_the_cost_of_a_signal() {
-    check_snapshot("console", "advised_80x24", advised(true).screen((80, 24)));
     check_snapshot("console", "advised_120x40", advised(true).screen((120, 40)));
     check_snapshot("console", "advised_200x60", advised(true).screen((200, 60)));
-    check_snapshot("console", "advised_silence_120x40", advised(false).screen((120, 40)));
 }
 
 /// The texts that are inverse in the colour of signals.

@@ -30,8 +30,9 @@ fn one_belief_is_looked_at_over_time_and_then_the_next() {
         stage.control('b');
     }
     for size in SIZES {
-        check_snapshot("console", format!("belief_over_time_{}x{}", size.0, size.1), stage.screen(size));
+        stage.shows(size, &["robot hand: thinks raw tuna 52 %, is cut tuna", "probability of the truth"]);
     }
+    check_snapshot("console", "belief_over_time_120x40", stage.screen((120, 40)));
     for _ in 0..aspects - 2 {
         stage.wait(1.0);
         stage.control('b');
@@ -43,7 +44,8 @@ fn one_belief_is_looked_at_over_time_and_then_the_next() {
 fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = WizardVisibility::Belief;
-    check_snapshot("console", "belief_120x40", stage.screen((120, 40)));
+    let screen = stage.shows((120, 40), &["13 other beliefs are right", "order 2: probability of crab maki"]);
+    assert!(!screen.contains("Signals by benefit"), "{screen}");
 }
 
 /// The chart is on the trial's clock: in a pause and after the trial nothing moves, and a long pause removes nothing.

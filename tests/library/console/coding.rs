@@ -66,8 +66,8 @@ fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
         for telling in ["unassisted", "assistant", "wizard", "P01 ", "Beliefs", "recipe of order", "thinks", "signal"] {
             assert!(!screen.contains(telling), "{telling} at {size:?}\n{screen}");
         }
-        check_snapshot("console", format!("rater_{}x{}", size.0, size.1), screen);
     }
+    check_snapshot("console", "rater_120x40", stage.screen((120, 40)));
 }
 
 #[test]
@@ -172,9 +172,7 @@ fn two_raters_settle_with_both_codes_in_view() {
     stage.key(KeyCode::Char('4'));
     assert_eq!(coding(&stage).progress(), "2/12 errors settled, 1 since opening");
     for size in SIZES {
-        let screen = stage.screen(size);
-        assert!(screen.contains("R1: slip") && screen.contains("R2: wrong about cutting board"), "{screen}");
-        check_snapshot("console", format!("settling_{}x{}", size.0, size.1), screen);
+        stage.shows(size, &["R1: slip", "R2: wrong about cutting board", "2/12 errors settled, 1 since opening"]);
     }
 }
 

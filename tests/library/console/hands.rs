@@ -15,12 +15,15 @@ fn the_kitchen_is_corrected_from_two_lists() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.control('u');
     for size in SIZES {
-        check_snapshot("console", format!("correct_{}x{}", size.0, size.1), stage.screen(size));
+        let places = ["Correct the kitchen: which place?", "8 of 8", "» human hand", "robot hand", "raw salmon"];
+        stage.shows(size, &places);
     }
+    check_snapshot("console", "correct_80x24", stage.screen((80, 24)));
     type_in(&mut stage, "pot");
     stage.wait(0.05);
     assert_eq!(stage.key(KeyCode::Enter), None);
-    check_snapshot("console", "correct_content_80x24", stage.screen((80, 24)));
+    let contents = ["What is really at cooking pot?", "14 of 14", "» raw rice", "cut crab", "enter choose"];
+    stage.shows((80, 24), &contents);
     for _ in 0..20 {
         stage.wait(0.03);
         assert_eq!(stage.key(KeyCode::Enter), None, "a held enter answers one question");
@@ -56,13 +59,17 @@ fn the_robot_is_held_skipped_and_driven_by_keys() {
     let by = Sender::Wizard;
     assert_eq!(input(stage.control('p')), Some(Event::RobotHeld { by }));
     stage.at(22.7, Event::RobotHeld { by });
-    check_snapshot("console", "held_80x24", stage.screen((80, 24)));
+    stage.shows((80, 24), &["ROBOT HELD", "‖"]);
     let screen = stage.screen((120, 40));
     assert!(screen.contains("HELD") && screen.contains("^p releases the robot"), "{screen}");
     stage.wait(1.0);
     assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));
     assert_eq!(stage.control('d'), None);
-    check_snapshot("console", "drive_120x40", stage.screen((120, 40)));
+    let list = stage.shows((120, 40), &["The robot's next press", "15 of 15", "» assembly board"]);
+    for (button, is_idle) in [("take tuna", true), ("plate  ", false), ("serve 2", true)] {
+        let row = list.lines().find(|line| line.contains(&format!("│   {button}"))).expect(button);
+        assert_eq!(row.contains("press has no effect now"), is_idle, "{row}");
+    }
     type_in(&mut stage, "counter");
     let driven = Event::RobotDriven { by, button: "counter".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(driven));

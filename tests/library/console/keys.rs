@@ -11,7 +11,8 @@ use tomcom::session::settings::ParticipantKind;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, Kitchen, LocationKind};
 
-use super::{SIZES, Stage, input, kitchen};
+use super::{SIZES, Stage, input};
+use crate::kitchen;
 
 #[test]
 fn each_signal_has_a_key_that_sends_it_once() {

@@ -53,8 +53,8 @@ fn a_pause_shows_the_recipes_to_who_plays_the_participant() {
             assert!(screen.contains(&dish.name), "{}:\n{screen}", dish.name);
         }
         assert!(screen.contains("shaped rice + nori + cut tuna") && screen.contains(". resume"), "{screen}");
-        check_snapshot("console", format!("recipes_{}x{}", size.0, size.1), screen);
     }
+    check_snapshot("console", "recipes_120x40", stage.screen((120, 40)));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('.')), Some(ConsoleCommand::Input(Event::TrialResumed)));
     assert_eq!(stage.key(KeyCode::Tab), None);

@@ -22,9 +22,6 @@ mod sheets;
 mod training;
 mod trial;
 
-use std::path::Path;
-use std::sync::Arc;
-
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -32,7 +29,6 @@ use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
-use tomcom::edge::files::read_kitchen;
 use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom::session::settings::{GazeSource, ParticipantKind};
@@ -40,16 +36,14 @@ use tomcom::session::{Session, SessionSpec, apply, offers};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::PriorModel;
 
-const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
+use crate::kitchen;
 
-fn kitchen(name: &str) -> Arc<Kitchen> {
-    Arc::new(read_kitchen(Path::new(&format!("layouts/{name}.toml"))).expect("the kitchen loads").kitchen)
-}
+const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
 /// A session with its console, fed with events.
 struct Stage {
@@ -179,6 +173,15 @@ impl Stage {
         let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
         terminal.draw(|frame| view(&self.session, &self.model, frame)).expect("drawn");
         terminal.backend().to_string()
+    }
+
+    /// The screen, which has to say all of this.
+    fn shows(&self, size: (u16, u16), words: &[&str]) -> String {
+        let screen = self.screen(size);
+        for words in words {
+            assert!(screen.contains(words), "{words:?} at {size:?} in\n{screen}");
+        }
+        screen
     }
 
     fn key(&mut self, code: KeyCode) -> Option<ConsoleCommand> {

@@ -15,7 +15,6 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::safety::SafetyMode;
 
 use super::{SIZES, Stage, input, type_in};
-use crate::check_snapshot;
 
 #[test]
 fn ages_stand_still_in_a_pause_and_after_the_end() {
@@ -116,7 +115,7 @@ fn notes_in_words_are_written_while_no_trial_runs_and_only_there_the_space_bar_t
     stage.key(KeyCode::Char('o'));
     stage.key(KeyCode::End);
     for size in [(80, 24), (200, 60)] {
-        check_snapshot("console", format!("note_{}x{}", size.0, size.1), stage.screen(size));
+        stage.shows(size, &["no trial is running: space types a space", " Asks for  help ", "enter save the text"]);
     }
     let note = Event::Marker { note: "Asks for  help".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(note));

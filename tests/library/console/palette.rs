@@ -23,8 +23,9 @@ fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
         for text in ["RUNNING", "STOP ROBOT", "type to filter (no spaces)", "space stops the robot"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
-        check_snapshot("console", format!("palette_{}x{}", size.0, size.1), screen);
     }
+    stage.model.size = (80, 24);
+    check_snapshot("console", "palette_80x24", stage.screen((80, 24)));
     let layer = KeyLayer::Wizard;
     let listed = actions(&stage.model, &ListCursor::default()).len();
     let active = stage.model.keys.bindings.iter().filter(|line| line.layer.is_none_or(|only| only == layer));

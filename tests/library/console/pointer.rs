@@ -6,7 +6,8 @@ use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleMessage, update};
 use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
-use super::{SIZES, Stage, kitchen, panels};
+use super::{SIZES, Stage, panels};
+use crate::kitchen;
 
 #[test]
 fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {

@@ -83,13 +83,16 @@ const ASPECTS: [&str; 3] = ["cooking_pot", "recipe of tuna maki", "robot_hand"];
 
 #[test]
 fn the_sheet_of_a_probe_fits_every_size() {
-    for (columns, rows) in SIZES {
-        let size = (columns, rows);
+    for size in SIZES {
         let mut stage = probed("sushi", false, false);
         stage.model.size = size;
         stage.begin(&ASPECTS);
         assert_eq!(stage.type_keys(&digits("12")), None);
-        check_snapshot("console", format!("probe_{columns}x{rows}"), stage.screen(size));
+        let asked = ["question 1 of 3", "http://127.0.0.1:50022", "What is in the cooking pot?", "[12] shaped rice"];
+        stage.shows(size, &asked);
+        if size == SIZES[0] {
+            check_snapshot("console", "probe_80x24", stage.screen(size));
+        }
 
         let mut stage = probed("sushi", true, true);
         stage.model.size = size;
@@ -97,7 +100,9 @@ fn the_sheet_of_a_probe_fits_every_size() {
         let (answer, confidence, on) = (Some("rice cooked".to_string()), Some(2), AnswerDevice::Display);
         stage.probe(66.0, ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on });
         stage.probe(66.0, ProbeEvent::Asked { probe: 1, question: 2 });
-        check_snapshot("console", format!("probe_on_display_{columns}x{rows}"), stage.screen(size));
+        let answered = ["1 What is in the cooking pot? cooked rice (fairly sure)", "question 2 of 3"];
+        stage.shows(size, &answered);
+        stage.shows(size, &["What goes into tuna maki?", "The participant answers on the display."]);
 
         // The longest list of both kitchens: the chosen line is in sight.
         let mut stage = probed("burger", false, false);

@@ -15,8 +15,8 @@ use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_core::base::time::SessionTime;
 
-use super::{SIZES, Stage, kitchen};
-use crate::check_snapshot;
+use super::{SIZES, Stage};
+use crate::{check_snapshot, kitchen};
 
 /// The console of a recording of the study's first participant.
 fn planned(slot: usize, instructed: bool) -> Stage {
@@ -150,7 +150,7 @@ fn numbers_and_words_are_typed() {
     assert_eq!(answered(&mut stage, KeyCode::Enter), "age 31");
     // Words may have spaces and full stops, which are keys of the console elsewhere.
     write(&mut stage, "q. x y");
-    look_at(&mut stage, "item_answer");
+    look_at(&mut stage, &["What is your gender?", " q. x y ", "enter save the text", "letters type answer"]);
     assert_eq!(answered(&mut stage, KeyCode::Enter), r#"gender "q. x y""#);
 }
 
@@ -184,7 +184,12 @@ fn options_are_chosen_with_digits() {
     assert_eq!(answered(&mut stage, KeyCode::Char('3')), r#"vision_aids ["lenses"]"#);
     assert_eq!(answered(&mut stage, KeyCode::Char('2')), r#"vision_aids ["glasses","lenses"]"#);
     assert_eq!(answered(&mut stage, KeyCode::Char('3')), r#"vision_aids ["glasses"]"#);
-    look_at(&mut stage, "item_choice");
+    look_at(
+        &mut stage,
+        &["What do you wear today to see well?", "[2] glasses", " 3  contact lenses", "1-4 choose several"],
+    );
+    stage.model.size = (80, 24);
+    check_snapshot("console", "item_choice_80x24", stage.screen((80, 24)));
     assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::ItemShown { item: "colour_vision".to_string() });
     assert_eq!(give(&mut stage, KeyCode::Delete), ProtocolEvent::ItemSkipped { item: "colour_vision".to_string() });
     for _ in 0..3 {
@@ -204,7 +209,8 @@ fn the_position_of_a_slider_is_typed_in_its_steps() {
     stage.key(KeyCode::Backspace);
     write(&mut stage, "5");
     assert_eq!(answered(&mut stage, KeyCode::Enter), "mental 45");
-    look_at(&mut stage, "item_slider");
+    let steps = "from 0 (very low) to 100 (very high), in steps of 5";
+    look_at(&mut stage, &["Mental demand: How mentally demanding was the task?", steps, " 45 ", "0-9 type position"]);
 }
 
 /// The event that a key sends, which then happens.
@@ -232,10 +238,11 @@ fn write(stage: &mut Stage, words: &str) {
     }
 }
 
-fn look_at(stage: &mut Stage, name: &str) {
+/// The sheet at every size has to say all of this.
+fn look_at(stage: &mut Stage, words: &[&str]) {
     for size in SIZES {
         stage.model.size = size;
-        check_snapshot("console", format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
+        stage.shows(size, words);
     }
 }
 
@@ -275,7 +282,9 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
         for text in ["Tutorial of the participant", "wrong answers: 1", "0 ends the tutorial"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
-        check_snapshot("console", format!("tutorial_{}x{}", size.0, size.1), screen);
+        if size == SIZES[0] {
+            check_snapshot("console", "tutorial_80x24", screen);
+        }
     }
 }
 

@@ -36,12 +36,14 @@ fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     ];
     stage.model.lesson = Some(TrainingPanel { feedback, begun: true, ..lesson });
     for size in SIZES {
-        check_snapshot("console", format!("training_{}x{}", size.0, size.1), stage.screen(size));
+        stage.shows(size, &["0:12 recipe of order 1: hit:", "0:09 missed, with 2 errors"]);
     }
+    check_snapshot("console", "training_120x40", stage.screen((120, 40)));
     stage.control('b');
     assert!(stage.notice().contains("not shown in this session"), "{}", stage.notice());
     stage.model.dialog = Some(Dialog::Report(vec!["1 of 2 hit".to_string(), "    missed; ".to_string() + long]));
-    check_snapshot("console", "training_over_120x40", stage.screen((120, 40)));
+    let report = ["The training is over", "1 of 2 hit", "would have been: recipe of order 1", "this report is saved"];
+    stage.shows((120, 40), &report);
     stage.wait(1.0);
     stage.key(KeyCode::Char('q'));
     assert!(stage.model.dialog.is_some(), "a signal that came too late closes nothing");

@@ -77,7 +77,8 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     assert_eq!(stage.control('n'), None);
     assert!(stage.notice().contains("abort the trial before you repeat it"), "{}", stage.notice());
     assert_eq!(stage.control('x'), None);
-    check_snapshot("console", "abort_80x24", stage.screen((80, 24)));
+    let reasons = ["Abort the trial: why?", "5 of 5", "» participant stopped", "technical failure", "interrupted"];
+    stage.shows((80, 24), &reasons);
     stage.key(KeyCode::Down);
     let aborted = Event::TrialAborted { reason: "technical failure".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(aborted.clone()));
@@ -128,8 +129,11 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     assert_eq!(stage.key(KeyCode::Char('.')), None);
     assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
     for size in SIZES {
-        check_snapshot("console", format!("preflight_{}x{}", size.0, size.1), stage.screen(size));
+        let found = ["FAILED   gaze ", "start the program that sends gaze to port 50021", "FAILED   robot "];
+        stage.shows(size, &found);
+        stage.shows(size, &["warning  free space   104 MB free on the disk", "o start the trial anyway"]);
     }
+    check_snapshot("console", "preflight_80x24", stage.screen((80, 24)));
     // The key that opened the list does not start the trial, held or pressed again.
     for gap_s in [0.5, 0.03, 1.0] {
         stage.wait(gap_s);

@@ -1,30 +1,20 @@
-//! Gaze: the tags on the wall display, the mapping from a tracker's surface, and what comes of samples.
+//! Gaze: the mapping from a tracker's surface, and what comes of samples.
 
 mod calibration;
 mod capture;
-mod clocks;
 mod formats;
 mod last_seen;
 mod quality;
 mod rate;
 mod tables;
-mod tags;
 
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::edge::files::read_session;
 use tomcom::run::engine::SessionEngine;
 use tomcom::session::SessionSpec;
-use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-
-fn load(layout: &str) -> Kitchen {
-    match read_kitchen(Path::new(layout)) {
-        Ok(files) => files.kitchen,
-        Err(error) => panic!("{error}"),
-    }
-}
 
 /// A session of the sushi kitchen with these settings.
 fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {

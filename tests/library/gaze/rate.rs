@@ -7,7 +7,8 @@ use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 
-use super::{engine, load};
+use super::engine;
+use crate::kitchen;
 
 /// The estimate after a path of fixations, told at this rate; each a point and its length in seconds.
 fn after_path(path: &[([f64; 2], f64)], hz: f64) -> Vec<Vec<f64>> {
@@ -46,7 +47,7 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 /// How far the estimates after random paths of so many fixations are apart between rates, at most: 120 and 200 Hz, and 30 Hz
 /// from these. `length_s` makes the length of a fixation of a random number from 0 to 1.
 fn apart_by_rate(name: &str, fixations: usize, length_s: fn(f64) -> f64) -> [f64; 2] {
-    let kitchen = load("layouts/sushi.toml");
+    let kitchen = kitchen("sushi");
     let (mut fast, mut slow) = (Vec::new(), Vec::new());
     for number in 0..12 {
         let mut random = stream(3, "paths", number);

@@ -282,9 +282,9 @@ fn times_in_other_units_are_recognised_or_refused() {
 fn a_pipe_and_a_device_are_no_gaze_files() {
     let pipe = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("gaze-pipe.csv");
     let _ = std::fs::remove_file(&pipe);
-    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
-    let pipes = made.is_ok_and(|made| made.success()).then_some(pipe);
-    for path in pipes.into_iter().chain([PathBuf::from("/dev/zero")]) {
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs");
+    assert!(made.success(), "no pipe is made at {}", pipe.display());
+    for path in [pipe, PathBuf::from("/dev/zero")] {
         let error = read_path(&path, MissingConfidence::Bad).expect_err("no regular file");
         assert!(error.contains("it is no regular file"), "{error}");
     }

@@ -10,7 +10,8 @@ use tomcom_core::mind::fitting::{FitObservations, HumanModelParameter};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::Observation;
 
-use super::world::{Human, World, kitchen, live};
+use super::world::{Human, World, live};
+use crate::kitchen;
 
 /// How an experiment is done.
 struct Experiment {
@@ -29,11 +30,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
     let mut observations = Vec::new();
     let mut cost = CostToGo::new(kitchen.clone());
     for index in 0..humans {
-        let world = World::new(kitchen.clone(), cost, gaze_hz, seed, index);
-        let mut world = match signal_s {
-            Some(every_s) => world.with_signals(every_s),
-            None => world,
-        };
+        let mut world = World::new(kitchen.clone(), cost, gaze_hz, signal_s, seed, index);
         let mut human = Human::new(kitchen, model, seed, index);
         let mut of_trial: Vec<Observation> = Vec::new();
         live(&mut world, &mut human, presses, |observation, _, _| of_trial.push(*observation));
@@ -67,7 +64,7 @@ fn coarse() -> HumanModel {
 
 #[test]
 fn fitting_recovers_how_a_human_decides() {
-    let kitchen = kitchen("layouts/burger.toml");
+    let kitchen = kitchen("burger");
     let mut truth = HumanModel::default();
     (truth.decision.tau, truth.decision.lapse) = (2.0, 0.15);
     let experiment = Experiment { humans: 12, presses: 60, gaze_hz: 15.0, signal_s: None, seed: 17 };
@@ -82,7 +79,7 @@ fn fitting_recovers_how_a_human_decides() {
 
 #[test]
 fn a_tau_that_no_press_tells_is_bounded_from_below() {
-    let kitchen = kitchen("layouts/burger.toml");
+    let kitchen = kitchen("burger");
     let mut truth = HumanModel::default();
     (truth.decision.tau, truth.decision.lapse) = (1000.0, 0.05);
     let experiment = Experiment { humans: 8, presses: 60, gaze_hz: 15.0, signal_s: None, seed: 23 };
@@ -104,7 +101,7 @@ fn a_tau_that_no_press_tells_is_bounded_from_below() {
 
 #[test]
 fn a_search_that_did_not_end_gives_nothing_worse_than_it_began_with() {
-    let kitchen = kitchen("layouts/sushi.toml");
+    let kitchen = kitchen("sushi");
     let mut truth = coarse();
     // So strict that the first surface leads away from where the likelihood is flat.
     (truth.decision.tau, truth.decision.lapse) = (20.0, 0.03);
@@ -139,7 +136,7 @@ fn people() -> (HumanModel, HumanModel) {
 fn fitting_recovers_how_a_human_decides_and_looks() {
     let (truth, mut start) = people();
     start.transition = truth.transition.clone();
-    let kitchen = kitchen("layouts/sushi.toml");
+    let kitchen = kitchen("sushi");
     let experiment = Experiment { humans: 32, presses: 100, gaze_hz: 30.0, signal_s: Some(15.0), seed: 19 };
     let parameters = vec![
         HumanModelParameter::Tau,
@@ -157,7 +154,7 @@ fn fitting_recovers_how_a_human_decides_and_looks() {
 fn fitting_recovers_how_a_human_forgets() {
     let (truth, mut start) = people();
     (start.decision, start.perception) = (truth.decision.clone(), truth.perception.clone());
-    let kitchen = kitchen("layouts/sushi.toml");
+    let kitchen = kitchen("sushi");
     let experiment = Experiment { humans: 48, presses: 200, gaze_hz: 30.0, signal_s: Some(15.0), seed: 29 };
     let plan =
         FitSettings { parameters: vec![HumanModelParameter::RecipeHalfLifeS], start: Some(start), most_tries: 200 };

@@ -15,7 +15,8 @@ use tomcom_core::mind::fitting::{
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 
-use super::world::{Human, World, kitchen, live};
+use super::world::{Human, World, live};
+use crate::kitchen;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
@@ -23,7 +24,7 @@ fn at(seconds: f64) -> SessionTime {
 
 #[test]
 fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
-    let (kitchen, model) = (kitchen("layouts/sushi.toml"), HumanModel::default());
+    let (kitchen, model) = (kitchen("sushi"), HumanModel::default());
     let mut cost = CostToGo::new(kitchen.clone());
     let state = kitchen.empty_state();
     let observations: Vec<Observation> = [
@@ -53,7 +54,7 @@ fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
 
 /// People who know half of the recipes at first, forget within a minute, and are asked about four recipes every ten presses.
 fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
-    let kitchen = kitchen("layouts/sushi.toml");
+    let kitchen = kitchen("sushi");
     let mut start = HumanModel::default();
     (start.inference.beliefs, start.inference.states, start.inference.max_beliefs) = (512, 32, 512);
     start.prior.recipe_truth = 0.5;
@@ -64,7 +65,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
     let places = kitchen.locations.len();
     let (mut cost, mut observations) = (CostToGo::new(kitchen.clone()), Vec::new());
     for index in 0..people {
-        let mut world = World::new(kitchen.clone(), cost, 15.0, 31, index).with_signals(10.0);
+        let mut world = World::new(kitchen.clone(), cost, 15.0, Some(10.0), 31, index);
         let mut human = Human::new(&kitchen, &truth, 31, index);
         let mut random = stream(31, "questions", index);
         let mut trial = FitObservations { seed: index, ..FitObservations::default() };

@@ -11,7 +11,8 @@ use tomcom_core::mind::reference::ReferenceFilter;
 use tomcom_core::mind::signal_model::SignalModel;
 
 use super::observed::recorded;
-use super::world::{distance, kitchen};
+use super::world::distance;
+use crate::kitchen;
 
 fn means(belief: &DirichletBelief) -> Vec<Vec<f64>> {
     belief.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect()
@@ -115,7 +116,7 @@ fn agree(
 ) {
     // Many samples, so that the two are compared and not their chances.
     (model.inference.beliefs, model.inference.predictions) = (1024, 256);
-    for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
+    for layout in ["sushi", "burger"] {
         let kitchen = kitchen(layout);
         let mut observations = recorded(&kitchen, 21, 45);
         observations.retain(|observation| kept(&observation.what));

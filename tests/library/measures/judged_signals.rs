@@ -3,10 +3,11 @@
 use tomcom::history::signal_judge::{SignalJudge, SignalJudgementCounts};
 use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom::session::{Session, SessionSpec, apply};
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::Agent;
 
-use super::{aspect, at, kitchen};
+use crate::kitchen;
 
 /// A trial whose signals are judged.
 struct Trial {
@@ -26,7 +27,8 @@ impl Trial {
 
     fn event(&mut self, event: Event) {
         self.seq += 1;
-        let stamped = TimestampedEvent { seq: self.seq, time: at(10.0 * self.seq as f64), event };
+        let stamped =
+            TimestampedEvent { seq: self.seq, time: SessionTime::from_secs_f64(10.0 * self.seq as f64), event };
         apply(&mut self.session, &stamped).expect("the event fits");
         self.judge.judge(&stamped, &self.session);
     }
@@ -38,7 +40,8 @@ impl Trial {
 
     /// From now on only these places are believed wrong.
     fn believes_wrong(&mut self, places: &[&str]) {
-        let wrong: Vec<_> = places.iter().map(|place| aspect(&self.session.kitchen, place)).collect();
+        let named = |place: &&str| self.session.kitchen.aspect_named(place).expect("an aspect");
+        let wrong: Vec<_> = places.iter().map(named).collect();
         self.judge.note(&self.session, |aspect| wrong.contains(&aspect));
     }
 

@@ -12,7 +12,7 @@ use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::sequences;
 
-use super::kitchen;
+use crate::kitchen;
 
 fn settings(seed: u64) -> SessionSpec {
     let text = format!("layout = \"\"\nseed = {seed}\n[trial]\ncondition = \"none\"\n[assistant]\nshadow = \"off\"\n");

@@ -1,30 +1,21 @@
 //! Probes as they are read from sessions of simulated participants.
 
 use std::convert::Infallible;
-use std::path::Path;
-use std::sync::Arc;
 
 use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::probe_collector::ProbeCollector;
 use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
-use tomcom::edge::files::read_kitchen;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectKind, Kitchen, LocationId};
+use tomcom_core::kitchen::{Agent, AspectKind, LocationId};
 use tomcom_core::mind::RecordedBelief;
 
 use super::near;
-
-fn kitchen() -> Arc<Kitchen> {
-    match read_kitchen(Path::new("layouts/sushi.toml")) {
-        Ok(files) => Arc::new(files.kitchen),
-        Err(error) => panic!("{error}"),
-    }
-}
+use crate::kitchen;
 
 /// A trial with probes, of a participant with this share of wrong answers.
 fn settings(answers_wrong: f64) -> SessionSpec {
@@ -46,7 +37,7 @@ struct Expected {
 
 /// Runs a trial and reads its probes, beside what is expected of each drawn question.
 fn probed(spec: &SessionSpec, trial: u64) -> (ProbedTrial, Vec<(u32, Vec<Expected>)>) {
-    let kitchen = kitchen();
+    let kitchen = kitchen("sushi");
     let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
     let session = Session::new(kitchen.clone(), spec.clone(), trial);
     let mut follower = SessionFollower::new(session, CostToGo::new(kitchen.clone()));

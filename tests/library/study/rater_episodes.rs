@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use tomcom::edge::files::read_kitchen;
 use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 use tomcom::study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use tomcom::study::prevention::TrialGroundTruth;
@@ -17,6 +16,7 @@ use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::errors::PressJudge;
 
 use super::at;
+use crate::kitchen;
 
 /// A log that is written by hand, a second from line to line.
 struct Log {
@@ -99,7 +99,7 @@ impl Log {
 
 /// The log of these lines in the sushi kitchen, which begins empty at 0 s; the first line is at 1 s.
 fn log(lines: &[&str]) -> Log {
-    let kitchen = Arc::new(read_kitchen(std::path::Path::new("layouts/sushi.toml")).expect("a kitchen").kitchen);
+    let kitchen = kitchen("sushi");
     let state = kitchen.empty_state();
     let mut log = Log {
         cost: CostToGo::new(kitchen.clone()),

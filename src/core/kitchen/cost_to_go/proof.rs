@@ -3,7 +3,7 @@
 //!
 //! The search takes the presses that can help, as `successors` has them: what no target dish can use is thrown away once
 //! it is in a hand, and nothing useless is taken or made. No shorter way is lost: every hand has a trash button, and an
-//! emptier kitchen is never worse. `tests/library/cost_to_go.rs` holds proven values against an exact search.
+//! emptier kitchen is never worse. `tests/core/cost_to_go.rs` holds proven values against an exact search.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;

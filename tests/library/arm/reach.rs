@@ -1,0 +1,132 @@
+//! The motion of the arm to its buttons, and its inverse kinematics.
+
+use std::path::Path;
+
+use rand::RngExt;
+use tomcom::edge::files::read_kitchen;
+use tomcom_arm::clearance::{ArmSurroundings, Obstruction};
+use tomcom_arm::inverse::{twist, wrapped};
+use tomcom_arm::kinematics::SerialArm;
+use tomcom_arm::motion::JointMotion;
+use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, ButtonId};
+use tomcom_core::robot::moment::JointAngles;
+
+use super::SUSHI;
+
+/// Where the tip of the arm is at this time, in metres.
+fn tip_m(arm: &SerialArm, motion: &JointMotion, now_s: f64) -> [f64; 3] {
+    let places = arm.forward(&motion.at(SessionTime::from_secs_f64(now_s)));
+    places.last().expect("links").translation.vector.into()
+}
+
+#[test]
+fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
+    let arm = SerialArm::ur5();
+    for layout in ["sushi", "burger"] {
+        let path = Path::new("layouts").join(layout).with_extension("toml");
+        let kitchen = read_kitchen(&path).expect("a layout of the project").kitchen;
+        let mut motion = JointMotion::new(&kitchen, &arm);
+        let top_m = kitchen.table_height_m + BUTTON_M;
+        let mut now_s = 1.0;
+        for (index, button) in kitchen.buttons[Agent::Robot.index()].iter().enumerate() {
+            let (from, until_s) = (tip_m(&arm, &motion, now_s), now_s + 2.4);
+            let at = SessionTime::from_secs_f64;
+            motion.set_out(at(now_s), ButtonId(index as u8), at(until_s));
+            let [x, y, z] = tip_m(&arm, &motion, until_s);
+            let away_m = (x - button.at_m[0]).hypot(y - button.at_m[1]).hypot(z - top_m);
+            assert!(away_m < 1e-3, "{layout}, {}: {away_m} m away", button.name);
+            let start = tip_m(&arm, &motion, now_s);
+            assert!((0..3).all(|axis| (start[axis] - from[axis]).abs() < 1e-9), "it sets out from where it is");
+            for share in 0..=100 {
+                let [_, _, z] = tip_m(&arm, &motion, now_s + 2.4 * f64::from(share) / 100.0);
+                let is_moving_along = (15..=80).contains(&share);
+                assert!(z > top_m - 1e-3 && (!is_moving_along || z > top_m + 0.04), "{layout}, {}: {z}", button.name);
+            }
+            motion.go_up(at(until_s));
+            now_s = until_s;
+        }
+        motion.go_up(SessionTime::from_secs_f64(now_s));
+        let [.., z] = tip_m(&arm, &motion, now_s + 1.0);
+        assert!(z > top_m + 0.07, "it goes up after the last press");
+    }
+}
+
+#[test]
+fn an_arm_that_stands_stays_where_it_is() {
+    let arm = SerialArm::ur5();
+    let mut motion = JointMotion::new(&SUSHI, &arm);
+    let at = SessionTime::from_secs_f64;
+    motion.set_out(at(1.0), ButtonId(3), at(3.0));
+    let there = motion.at(at(1.7));
+    assert_ne!(there, motion.at(at(1.0)));
+    motion.stand(at(1.7));
+    assert_eq!(motion.at(at(60.0)), there);
+}
+
+#[test]
+fn every_inverse_solution_reproduces_the_pose_and_the_joints_it_came_from_are_among_them() {
+    let arm = SerialArm::ur5();
+    let (mut worst, mut solutions, mut missing) = (0.0_f64, 0, 0);
+    let mut random = stream(9, "poses", 0);
+    for _ in 0..10_000 {
+        let joints: JointAngles = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::PI);
+        let target = arm.tip(&joints);
+        let found = arm.inverse(&target);
+        solutions += found.len();
+        worst = found.iter().map(|solution| twist(&arm.tip(solution), &target).amax()).fold(worst, f64::max);
+        let is_it = |solution: &JointAngles| solution.iter().zip(joints).all(|(a, b)| wrapped(a - b).abs() < 1e-4);
+        missing += usize::from(!found.iter().any(is_it));
+    }
+    println!("10000 poses: {solutions} solutions, at most {worst:.1e} away (m, rad); {missing} not found again");
+    assert!(worst < 1e-6, "{worst}");
+    assert_eq!(missing, 0);
+}
+
+#[test]
+fn every_button_of_every_layout_is_within_reach_with_clearance() {
+    let arm = SerialArm::ur5();
+    for layout in ["layouts/sushi.toml", "layouts/burger.toml", "tests/kitchens/tiny.toml"] {
+        let kitchen = read_kitchen(Path::new(layout)).expect("a layout of the project").kitchen;
+        assert_eq!(out_of_reach(&kitchen), None, "{layout}");
+        let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+        for button in &kitchen.buttons[Agent::Robot.index()] {
+            let ButtonPoses { above, touching } = arm.at_button(button.at_m, &around).expect("within reach");
+            let tip = arm.tip(&touching);
+            let away_m = (tip.translation.vector.xy() - nalgebra::Vector2::from(button.at_m)).norm();
+            assert!(away_m < 1e-6 && (tip * nalgebra::Vector3::z()).z < -1.0 + 1e-9, "{}", button.name);
+            let turns = above.iter().zip(touching).map(|(above, touching)| (above - touching).abs());
+            assert!(turns.fold(0.0, f64::max) < 0.6, "{layout}, {}: one way to stand above it and on it", button.name);
+        }
+    }
+}
+
+#[test]
+fn a_place_that_the_arm_cannot_press_at_is_told_with_the_reason() {
+    let arm = SerialArm::ur5();
+    let check = |at_m: [f64; 2], table_m: f64, expected: UnreachableReason| {
+        let around = ArmSurroundings { table_m, obstacles: Vec::new() };
+        assert_eq!(arm.at_button(at_m, &around), Err(expected), "{at_m:?}");
+    };
+    check([1.1, 0.2], 0.0, UnreachableReason::TooFar);
+    check([0.05, 0.05], 0.0, UnreachableReason::TooFar);
+    check([0.89, 0.0], 0.0, UnreachableReason::Singular);
+    check([0.4, 0.0], 0.3, UnreachableReason::Blocked(Obstruction::Table));
+}
+
+/// Random joint angles and where the tip is then: x, y, z and the rotation's columns, in the frame of the base. For
+/// comparison with other programs.
+#[test]
+#[ignore = "prints, and checks nothing"]
+fn print_poses() {
+    let arm = SerialArm::ur5();
+    let mut random = stream(3, "poses", 0);
+    for _ in 0..2000 {
+        let joints: JointAngles = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::TAU);
+        let tip = arm.tip(&joints);
+        let turn = tip.rotation.to_rotation_matrix();
+        println!("pose {joints:?} {:?} {:?}", tip.translation.vector.as_slice(), turn.matrix().as_slice());
+    }
+}

@@ -279,8 +279,7 @@ fn untold(fit: &FitSummary) -> String {
         false => ("not known, since the search did not come to its end", "A larger --tries may tell them"),
     };
     format!(
-        "\n{why}: {}. Their values are the best that the search knew, and no findings; a file (--out) has them all the same. \
-         {remedy}, or keep them as they are: leave them out of --parameters.\n",
+        "\n{why}: {}. These values are not findings, but the file (--out) contains them. {remedy}, or keep them as they are: leave them out of --parameters.\n",
         untold.join(", ")
     )
 }

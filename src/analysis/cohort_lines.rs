@@ -2,7 +2,7 @@
 //! -100 %.
 
 use super::cohort_table::{CohortRow, RobustnessTable};
-use tomcom_core::base::words::decimal;
+use tomcom_core::base::words::{count, decimal};
 use tomcom_core::measures::flags::MOST_FALSE_FLAGS;
 
 /// Heading of the robustness table as text; the column of cohort names is `width` characters wide.
@@ -59,7 +59,7 @@ pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
 /// An explanation of the robustness table's columns, as text.
 pub fn describe_end(table: &RobustnessTable) -> String {
     format!(
-        "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
+        "\n{} of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
          flags from as many trials of seed {}.\n\
          ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs.\n\
          ECE: expected calibration error, how far its predicted probabilities of a false belief are off.\n\
@@ -69,7 +69,7 @@ pub fn describe_end(table: &RobustnessTable) -> String {
          errors, signals: belief related errors without and with the assistant, and signals, per 100 presses of the human.\n\
          saved: by how much fewer errors there are with the assistant (95 % interval by drawing trials, as all intervals).\n\
          orders/min: orders served a minute, without and with the assistant.\n",
-        table.cohorts.first().map_or(0, |row| row.trials),
+        count(table.cohorts.first().map_or(0, |row| row.trials), "trial", "trials"),
         table.seed,
         table.choose_seed,
     )

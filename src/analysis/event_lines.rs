@@ -57,13 +57,16 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::OrderShown { order, dish } => format!("{} wants {}", said(order), kitchen.worded(dish)),
         Event::OrderCleared { order } => format!("{} is cleared", said(order)),
         Event::HumanWaits { silent_ns } => {
-            format!("participant has not pressed for {:.1} s, unusually long", silent_ns.as_secs_f64())
+            format!(
+                "participant has pressed nothing for {:.0} s: the assistant is asked again",
+                silent_ns.as_secs_f64()
+            )
         }
         Event::RobotIntends { button, initiative, .. } => {
             format!("robot sets out for {}{}", said(button), if *initiative { ", by its own initiative" } else { "" })
         }
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
-        Event::RobotIdles { reason, waits_for } => format!("robot {}", wording::idle(*reason, waits_for)),
+        Event::RobotIdles { reason, waits_for } => format!("robot {}", wording::idle(*reason, waits_for, usize::MAX)),
         // Changes between normal and reduced speed get no line: the arm slows near the hand and speeds up again too
         // often.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,

@@ -104,7 +104,7 @@ pub struct RecordedBeliefAtFreeze {
 }
 
 impl RecordedBeliefAtFreeze {
-    /// Whether the participant's belief is false: the most probable value is not the true one.
+    /// Whether the participant's belief is false: P(truth) is below [`FALSE_BELOW`].
     pub fn is_wrong(&self) -> bool {
         self.p_truth < FALSE_BELOW
     }

@@ -199,8 +199,9 @@ pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Parameters to fit, separated by commas.
-    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL)]
+    /// Parameters to fit, separated by commas. By default tau, lapse, radius, reading and half-life, without those that
+    /// the model of the recordings does not use or that it sets outside of what is searched.
+    #[arg(long, value_enum, value_delimiter = ',')]
     pub(super) parameters: Vec<FitParameter>,
     /// Parameter file to start from; parameters that are not fitted keep its values. By default the parameters in the
     /// recordings.
@@ -247,8 +248,6 @@ pub(super) enum FitParameter {
 }
 
 impl FitParameter {
-    const USUAL: &str = "tau,lapse,radius,reading,half-life";
-
     pub(super) fn parameter(self) -> HumanModelParameter {
         match self {
             FitParameter::Tau => HumanModelParameter::Tau,

@@ -89,10 +89,10 @@ fn are_meant(codes: &ImportableCodes, is_agreed: bool) -> Result<bool, Failure> 
         return Ok(true);
     }
     if !input.is_terminal() {
-        let help = "--yes if that is meant, or the table put right";
+        let help = "use --yes if that is meant; otherwise correct the table";
         return Err(Failure::Wrong(miette::miette!(
             help = help,
-            "found no terminal to ask in whether the table is to be imported: {}",
+            "nothing was imported: there is no terminal to confirm in: {}",
             told.join("; ")
         )));
     }
@@ -247,10 +247,10 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
         if args.format == OutputFormat::Json {
             print(args.format, &ForgetSummary::new(found, false), String::new)?;
         }
-        let help = "--yes, or a terminal in which the question is answered";
+        let help = "use --yes";
         return Err(Failure::Wrong(miette::miette!(
             help = help,
-            "found no terminal to ask in whether these files are to be deleted"
+            "nothing was deleted: there is no terminal to confirm in"
         )));
     }
     put_aside(&format!(

@@ -45,9 +45,6 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let start = args.start.as_deref().map(files::read_human_model).transpose()?;
-    let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
-    parameters.sort_unstable();
-    parameters.dedup();
     let unwritable = |path: &Path, error: std::io::Error| {
         let help = "a place where a file can be written";
         Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
@@ -58,6 +55,11 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     }
     let recordings = gathered(&args.recordings)?;
     let trials = fit::FitTrials::read(&recordings, args.probes)?;
+    let named: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
+    let parameters = fitting::choose(&named, start.as_ref().unwrap_or(&trials.model)).map_err(|(found, instead)| {
+        let help = format!("--parameters without it; or --start FILE, {instead}");
+        Failure::Wrong(miette::miette!(help = help, "found a parameter that cannot be fitted: {found}"))
+    })?;
     let plan = fitting::FitSettings { parameters, start, most_tries: args.tries as usize };
     let searches = if args.probes { 2 } else { 1 };
     let bar = progress(searches * plan.most_tries as u64, "tries of parameters at most");

@@ -37,7 +37,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         (trials, Some(study)) => {
             let most = study.plan.codes().len() as u64 * study.plan.conditions.len() as u64;
             if let Some(trials) = trials.filter(|&trials| trials > most) {
-                let found = format!("--trials {trials}, with a plan of {most} trials");
+                let found = format!("--trials {trials}, with a plan of {}", count(most, "trial", "trials"));
                 return Err(wrong_argument(&args.session, found, "no more trials than the plan has"));
             }
             trials.unwrap_or(most)
@@ -91,14 +91,11 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     let is_asked = args.shadow || args.condition.map(Condition::from) == Some(Condition::Assistant);
     let advises = !is_asked && spec.assistant.shadow == ShadowMode::On;
     let unused = [
-        (acts, "condition = \"assistant\"", "--condition assistant"),
-        (advises, "shadow = \"on\" (the default)", "--shadow"),
+        (acts, "the assistant does not act", "--condition assistant"),
+        (advises, "the assistant's advice is not computed", "--shadow"),
     ];
     for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {
-        let session = args.session.display();
-        put_aside(&format!(
-            "{session}: {found} has an effect only at the console; trials are simulated with it if {option} is given\n"
-        ));
+        put_aside(&format!("{}: {found}; {option} does that\n", args.session.display()));
     }
 }
 

@@ -18,6 +18,7 @@ use crate::session::admit::admit;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
 use crate::session::probes::of_trial;
 use crate::session::{Event, Session};
+use tomcom_core::base::words::count;
 
 /// The key that overrides failed preflight checks and starts the trial.
 pub const OVERRIDE: char = 'o';
@@ -126,7 +127,7 @@ fn viewers(viewers: &RerunStreamStatus) -> PreflightCheck {
              this computer watch",
         ),
         (dropped, _) => warning(
-            format!("{found}; {dropped} rows dropped"),
+            format!("{found}; {} dropped", count(*dropped, "row", "rows")),
             "close other programs that use the processor; tomcom review makes the Rerun stream again from the log",
         ),
     }
@@ -138,7 +139,8 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
         0 => PreflightCheck::ok("lsl", found),
         lost => {
             let remedy = "close other programs that use the processor; the recording itself has every event";
-            PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{lost} samples lost; {found}"), remedy)
+            let lost = count(lost, "sample", "samples");
+            PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{lost} lost; {found}"), remedy)
         }
     }
 }

@@ -176,14 +176,14 @@ impl RaterSession {
             CodingRaters::Pair { .. } if number == 0 => {
                 "nothing to settle: both raters agree on every error".to_string()
             }
-            CodingRaters::Pair { .. } => format!("all {number} errors settled; next: tomcom study"),
+            CodingRaters::Pair { .. } => "every error is settled; next: tomcom study".to_string(),
             CodingRaters::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
             CodingRaters::Rater(rater) => {
                 let next = match self.finished.first() {
                     None => "a second rater codes independently, with --rater".to_string(),
                     Some(other) => format!("tomcom codes compares, --settle {other} {rater} settles"),
                 };
-                format!("all {number} errors coded; next: {next}")
+                format!("every error is coded; next: {next}")
             }
         })
     }

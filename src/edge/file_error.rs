@@ -87,6 +87,15 @@ impl FileError {
         FileError::Wrong { name, line, found: one_line(found), text: Arc::new(source), span, remedy }
     }
 
+    /// The error on one line with what would be right, for places that show no help below a message.
+    pub fn with_remedy(&self) -> String {
+        let (FileError::Unreadable { remedy, .. }
+        | FileError::Unwritable { remedy, .. }
+        | FileError::Unfit { remedy, .. }
+        | FileError::Wrong { remedy, .. }) = self;
+        format!("{self}; wanted: {remedy}")
+    }
+
     /// An error of a folder, an option, or a file as a whole, for which no line can be named.
     pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
         FileError::Unfit { name: name_of(what), found: one_line(found), remedy }

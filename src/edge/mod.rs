@@ -28,6 +28,7 @@ mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
 pub mod key_file;
+mod known_settings;
 pub mod language;
 pub mod list_cache;
 pub mod log;

@@ -1,10 +1,12 @@
 //! Parses files that people write (TOML). Every error names the file, the line, what was found and what would be valid.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
 use super::file_error::{FileError, FileResult};
+use super::known_settings::places_of;
 use crate::session::SessionSpec;
 use crate::session::battery::BatterySpec;
 use crate::session::plan::{Questionnaire, Tutorial};
@@ -134,7 +136,18 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
 fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Option<String>) {
     let message = error.message();
     if let Some((found, expected)) = message.split_once(", expected ") {
-        return (found.to_string(), Some(type_name(expected)));
+        let unknown = found.strip_prefix("unknown field `").and_then(|found| found.strip_suffix('`'));
+        if let Some(place) = unknown.and_then(|name| Some(format!("{name} {}", places_of::<T>(name)?))) {
+            return (found.to_string(), Some(place));
+        }
+        let found = error.span().filter(|_| unknown.is_none()).and_then(|span| Some((setting_at(text, span)?, found)));
+        return match found {
+            Some((setting, found)) if found.starts_with("unknown variant ") => {
+                (format!("{setting}, which is not known"), Some(type_name(expected)))
+            }
+            Some((setting, _)) => (setting, Some(type_name(expected))),
+            None => (message.split(", expected ").next().unwrap_or(message).to_string(), Some(type_name(expected))),
+        };
     }
     let (span, value) = match error.span().and_then(|span| Some((span.clone(), text.get(span)?))) {
         Some((span, value)) if !value.is_empty() && !value.contains('\n') => (span, value),
@@ -148,6 +161,19 @@ fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Op
         return (value.to_string(), Some(type_name(words)));
     }
     (format!("{value}: {message}"), None)
+}
+
+/// The setting whose value, or part of whose value, stands at this place of a text: `tau = "high"`, or `"both" in
+/// conditions`. `None` if that is not on one line.
+fn setting_at(text: &str, span: Range<usize>) -> Option<String> {
+    let (before, value) = (text.get(..span.start)?, text.get(span)?);
+    let line = before.rsplit('\n').next().unwrap_or(before);
+    let (key, between) = line.rsplit_once('=')?;
+    let key = key.rsplit(['{', ',', '\n']).next().unwrap_or(key).trim();
+    if key.is_empty() || value.is_empty() || value.contains('\n') {
+        return None;
+    }
+    Some(if between.trim().is_empty() { format!("{key} = {value}") } else { format!("{value} in {key}") })
 }
 
 /// What was expected, with types of Rust by names that people know who write settings, and words in quotes.

@@ -29,13 +29,18 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonI
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
-/// What the robot waits for while it is idle; `waits_for`: names of the human's buttons for which it waits.
-pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>]) -> String {
+/// What the robot waits for while it is idle; `waits_for`: names of the human's buttons for which it waits. In shorter
+/// words if the sentence has more signs than `most`, so that the buttons can be read.
+pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], most: usize) -> String {
     let buttons: Vec<String> = waits_for.iter().map(|name| name.as_ref().replace('_', " ")).collect();
     match reason {
         IdleReason::NoOrder => "waits for an order".to_string(),
-        IdleReason::HumanTurn if buttons.is_empty() => "waits for the human".to_string(),
-        IdleReason::HumanTurn => format!("waits for the human: {}", buttons.join(" or ")),
+        IdleReason::HumanTurn if buttons.is_empty() => "waits until the human presses".to_string(),
+        IdleReason::HumanTurn => {
+            let buttons = buttons.join(" or ");
+            let told = format!("waits until the human presses {buttons}");
+            if told.chars().count() <= most { told } else { format!("human's turn: {buttons}") }
+        }
         IdleReason::Skipped => "waits: its press was skipped".to_string(),
     }
 }

@@ -8,7 +8,7 @@ use super::gathered::GatheredRecordings;
 use super::parallel::WorkerPool;
 use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::fitting::fitted_answers::IntervalNarrowing;
-use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings};
+use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings, OtherModel, in_words};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::session::Event;
 use crate::session::probe_sampling;
@@ -26,8 +26,8 @@ pub struct FitTrials {
     pub kitchen: Arc<Kitchen>,
     /// Human model in the header of the first recording of the fit.
     pub model: HumanModel,
-    /// Whether another recording of the fit has a different human model.
-    pub differ: bool,
+    /// The recordings of the fit that were made with other human models than the first one.
+    pub others: Vec<OtherModel>,
     /// Observations of the belief filter in each trial, to which the human model is fitted.
     pub observations: Vec<FitObservations>,
 }
@@ -40,11 +40,16 @@ impl FitTrials {
     /// `probes` asks for them.
     pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
         let recordings = &recordings.paths;
-        let (mut one_kitchen, mut observations, mut models) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
+        let (mut one_kitchen, mut observations, mut models) =
+            (SameKitchenCheck::default(), Vec::new(), Vec::<(HumanModel, Vec<String>)>::new());
         for recording in recordings {
             let mut replay = RecordingReplay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
-            models.push(replay.session().spec.human.clone());
+            let (model, name) = (&replay.session().spec.human, recording.display().to_string());
+            match models.iter_mut().find(|(known, _)| known == model) {
+                Some((_, made)) => made.push(name),
+                None => models.push((model.clone(), vec![name])),
+            }
             let own = read_trial(&mut replay)?;
             observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
         }
@@ -58,8 +63,10 @@ impl FitTrials {
             ));
         }
         let kitchen = one_kitchen.kitchen()?;
-        let differ = models.windows(2).any(|pair| pair[0] != pair[1]);
-        Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
+        let mut models = models.into_iter();
+        let model = models.next().map(|(model, _)| model).unwrap_or_default();
+        let others = models.map(|(model, recordings)| OtherModel { model: in_words(&model), recordings }).collect();
+        Ok(FitTrials { kitchen, model, others, observations })
     }
 
     /// The trials of this fit without answers to freeze probes.
@@ -126,6 +133,6 @@ fn fit_once(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSumm
         found.into_iter().fold(TrialLikelihood::default(), TrialLikelihood::plus)
     };
     let number = trials.observations.len() as u64;
-    let recordings = FittedRecordings { number, model: &trials.model, differ: trials.differ };
+    let recordings = FittedRecordings { number, model: &trials.model, others: &trials.others };
     fitting::fit(recordings, plan, of_all, tried)
 }

@@ -3,6 +3,7 @@
 //! A folder of recordings can hold copies, such as those that a file manager or a sync program made, and two folders can
 //! hold the same trial. Counted twice, a trial would make every figure wrong without a word.
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -34,6 +35,8 @@ struct FoundRecording {
     logs: Vec<LogPlace>,
     /// The participant's code.
     code: String,
+    /// Whether the folder has the name that the program gave it, as far as that can be seen: it names the participant.
+    is_named: bool,
     trial: Option<PlannedTrialKey>,
 }
 
@@ -99,7 +102,9 @@ impl GatheredRecordings {
                     let mut ranks = BTreeMap::new();
                     for &index in recordings.iter().filter(|_| recordings.len() > 1) {
                         let codes = code_files(folder(opened[index].log()))?.len();
-                        ranks.insert(index, (excluded[&index].is_some(), !is_whole(index), Reverse(codes)));
+                        // Copies are named by whoever made them: "copy", "Copy of seed7-S001".
+                        let name = (!opened[index].is_named, folder_name(opened[index].log()).len());
+                        ranks.insert(index, (excluded[&index].is_some(), !is_whole(index), Reverse(codes), name));
                     }
                     // The sort is stable, so that the first by name counts among equal ones.
                     recordings.sort_by_key(|index| ranks.get(index).copied());
@@ -164,8 +169,10 @@ impl FoundRecording {
             Ok((log.canonicalize().map_err(unreadable)?, digest))
         };
         let logs = log.logs().into_iter().map(place).collect::<FileResult<Vec<LogPlace>>>()?;
-        let code = log.header.session.participant.code.clone();
-        Ok(FoundRecording { path: path.to_path_buf(), logs, code, trial: planned_trial(&log.header) })
+        let (code, recorded_code) = (log.header.session.participant.code.clone(), log.header.recorded_code());
+        let trial = planned_trial(&log.header);
+        let is_named = logs.last().is_some_and(|(log, _)| folder_name(log).contains(recorded_code));
+        Ok(FoundRecording { path: path.to_path_buf(), logs, code, is_named, trial })
     }
 
     /// The log of the recording's last part.
@@ -196,6 +203,11 @@ impl FoundRecording {
         }
         Ok(RecordingCopy { recording, copy_of, left_out })
     }
+}
+
+/// Name of the folder of the recording with this log.
+fn folder_name(log: &Path) -> Cow<'_, str> {
+    folder(log).file_name().unwrap_or_default().to_string_lossy()
 }
 
 fn folder(log: &Path) -> &Path {

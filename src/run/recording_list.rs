@@ -71,7 +71,7 @@ fn read_or_tell(
         trial_s: None,
         errors: None,
         state: RecordingState::Unreadable,
-        reason: Some(error.to_string()),
+        reason: Some(error.with_remedy()),
     };
     let glance = ClosedLogHeader::read(path);
     if let Some(glance) = &glance

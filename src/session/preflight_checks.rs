@@ -8,6 +8,7 @@ pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
 use super::session_state::Session;
 use super::tracker::TrackerConnection;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::mind::model::HumanModel;
@@ -146,7 +147,7 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
         let verdict = if is_mouse { PreflightVerdict::Warning } else { PreflightVerdict::Failed };
         let malformed = session.tracker.dropped.malformed;
         if malformed > 0 && session.spec.participant.gaze == GazeSource::Json {
-            let found = format!("{malformed} lines arrived, and the last of them were no gaze samples");
+            let found = format!("{} arrived, and the last were no gaze samples", count(malformed, "line", "lines"));
             let remedy = "send a line for each sample: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" \
                           in seconds if there is a clock";
             return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];

@@ -17,7 +17,7 @@ use super::tracker::TrackerSpec;
 use super::wall_display::DisplaySpec;
 use tomcom_core::communication::HighlightSet;
 use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
-use tomcom_core::kitchen::{Kitchen, LocationKind};
+use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
 use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
 use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
@@ -162,16 +162,19 @@ impl SessionSpec {
     /// # Errors
     /// The first setting that does not fit the kitchen.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
-        let is_place = |name: &String| {
-            let location = kitchen.location_named(name);
-            location.is_some_and(|location| kitchen.location(location).kind != LocationKind::Order)
+        let usual = HighlightSet::usual(kitchen);
+        let can_be = |id: LocationId| usual.holds(id) && kitchen.location(id).kind != LocationKind::Order;
+        let named = self.signals.highlights.as_deref().unwrap_or_default();
+        let wrong = |what: String, remedy: String| {
+            Err(SettingError::new("signals.highlights", format!("highlights = {named:?}, {what}"), remedy))
         };
-        let mut names = self.signals.highlights.iter().flatten();
-        if let Some(name) = names.find(|name| !is_place(name)) {
-            let found = format!("highlights = \"{name}\", which is no place and no hand of the kitchen");
-            let places = kitchen.locations.iter().filter(|location| location.kind != LocationKind::Order);
-            let places: Vec<&str> = places.map(|location| &*location.name).collect();
-            return Err(SettingError::new("signals.highlights", found, format!("some of: {}", places.join(", "))));
+        if let Some(name) = named.iter().find(|name| !kitchen.location_named(name).is_some_and(can_be)) {
+            let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|&id| can_be(id));
+            let places: Vec<&str> = places.map(|id| &*kitchen.location(id).name).collect();
+            return wrong(format!("and {name} cannot be highlighted"), format!("some of: {}", places.join(", ")));
+        }
+        if let Some(name) = named.iter().enumerate().find(|(index, name)| named[..*index].contains(name)) {
+            return wrong(format!("with {} twice", name.1), "each place once".to_string());
         }
         self.probes.as_ref().map_or(Ok(()), |probes| probes.check_kitchen(kitchen))
     }

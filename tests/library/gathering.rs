@@ -90,6 +90,21 @@ fn a_recording_that_several_paths_lead_to_counts_once() {
 }
 
 #[test]
+fn of_two_equal_recordings_the_one_in_its_own_folder_counts() {
+    let root = folder("copy-called");
+    let log = log(&root);
+    for copied in ["copy", "Copy of P01-1", "P01-1 (2)"] {
+        let all = root.join("recordings");
+        let own = record(&all.join("P01-1"), &log, |header| header["session"]["participant"]["code"] = json!("P01"));
+        let copy = copy(&own, &all.join(copied));
+        let found = GatheredRecordings::find(std::slice::from_ref(&all)).expect("recordings");
+        assert_eq!(found.paths, [own]);
+        assert_eq!(found.copies[0].recording, copy.display().to_string());
+        fs::remove_dir_all(all).expect("removed");
+    }
+}
+
+#[test]
 fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     let root = folder("twice");
     let log = log(&root);

@@ -14,6 +14,7 @@ mod display_server;
 mod display_words;
 mod escapes;
 mod examples;
+mod fit;
 mod gathering;
 mod gaze;
 mod gaze_senders;

@@ -21,22 +21,63 @@ use self::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
 pub use self::fitted_answers::ProbeAnswerFit;
 use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use self::surface_search::BoundReached;
-use tomcom_core::base::words::count;
+use tomcom_core::base::words::{count, short};
 use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use tomcom_core::mind::model::HumanModel;
 
 /// Half width of a 95 % interval, in standard errors or standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
-/// The recordings of a fit: their number, their human model, and whether all have the same model.
+/// Recordings of a fit that were made with one human model, which is not that of the first recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OtherModel {
+    /// The human model in words.
+    pub model: String,
+    /// The recordings that were made with it.
+    pub recordings: Vec<String>,
+}
+
+/// A human model in words: "plain", or "paper-2021 with decision.tau = 3.0, not 4.0".
+pub fn in_words(model: &HumanModel) -> String {
+    match &model.differences()[..] {
+        [] => model.model.name().to_string(),
+        differences => format!("{} with {}", model.model.name(), differences.join("; ")),
+    }
+}
+
+/// The parameters to fit: those that were named, or else the usual ones that a fit beginning with this model can have.
+///
+/// # Errors
+/// The first named parameter that the fit cannot have, why, and what would be right; or, where none was named, why it
+/// can have none of the usual ones.
+pub fn choose(named: &[HumanModelParameter], model: &HumanModel) -> Result<Vec<HumanModelParameter>, (String, String)> {
+    let wanted = if named.is_empty() { &HumanModelParameter::USUAL[..] } else { named };
+    let mut chosen = Vec::new();
+    let mut first = None;
+    for parameter in wanted {
+        match parameter.obstacle(model) {
+            None => chosen.push(*parameter),
+            Some(obstacle) if !named.is_empty() => return Err(obstacle),
+            Some(obstacle) => first = first.or(Some(obstacle)),
+        }
+    }
+    chosen.sort_unstable();
+    chosen.dedup();
+    match first.filter(|_| chosen.is_empty()) {
+        Some(obstacle) => Err(obstacle),
+        None => Ok(chosen),
+    }
+}
+
+/// The recordings of a fit: their number, their human model, and those that have another one.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
     /// Number of recordings in the fit.
     pub number: u64,
     /// Human model in the header of the first recording of the fit.
     pub model: &'a HumanModel,
-    /// Whether another recording of the fit has different parameters of the human model in its header.
-    pub differ: bool,
+    /// The recordings that have another human model in their headers.
+    pub others: &'a [OtherModel],
 }
 
 /// Which parameters of the human model to fit, from which start, and with how many evaluations.
@@ -68,9 +109,12 @@ pub struct FitSummary {
     pub most_tries: u64,
     /// Whether the search began with the parameters in the recordings rather than with those of a file.
     pub begins_with_recordings: bool,
-    /// Whether the recordings have different parameters, in which case the search began with those of the first
-    /// recording.
-    pub recordings_differ: bool,
+    /// Human model with which the search began, in words.
+    pub begins_with: String,
+    /// Recordings that were made with other human models than the first one.
+    pub others: Vec<OtherModel>,
+    /// Why usual parameters were not fitted: the model does not use them, or they begin outside of the search.
+    pub not_fitted: Vec<String>,
     /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
     /// Results for each parameter that was fitted.
@@ -142,9 +186,9 @@ impl FittedParameter {
     fn span(&self) -> String {
         match self.interval {
             None => "-".to_string(),
-            Some([Some(from), Some(to)]) => format!("{from:.4} to {to:.4}"),
-            Some([Some(from), None]) => format!("above {from:.4}"),
-            Some([None, Some(to)]) => format!("below {to:.4}"),
+            Some([Some(from), Some(to)]) => format!("{} to {}", short(from, 4), short(to, 4)),
+            Some([Some(from), None]) => format!("above {}", short(from, 4)),
+            Some([None, Some(to)]) => format!("below {}", short(to, 4)),
             Some([None, None]) => "not told".to_string(),
         }
     }
@@ -187,7 +231,9 @@ pub fn fit(
         tries: evaluations as u64,
         most_tries: plan.most_tries as u64,
         begins_with_recordings: plan.start.is_none(),
-        recordings_differ: trials.differ,
+        begins_with: in_words(begin),
+        others: trials.others.to_vec(),
+        not_fitted: left_out(&plan.parameters, begin),
         converged,
         parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
         model,
@@ -201,19 +247,19 @@ pub const FITTED: &str = "Parameters of the human model, fitted to";
 /// Comment at the top of a file with fitted parameters.
 pub fn comment(fit: &FitSummary) -> String {
     let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
-        (Some(error), _) => format!("{} = {:.4}, standard error {error:.4}", one.name, one.value),
+        (Some(error), _) => format!("{} = {}, standard error {}", one.name, short(one.value, 4), short(error, 4)),
         (None, Some(_)) => {
             format!(
-                "{}, {}: the recordings do not tell it; {:.4} is where the search ended",
+                "{}, {}: the recordings do not tell it; {} is where the search ended",
                 one.name,
                 one.span(),
-                one.value
+                short(one.value, 4)
             )
         }
         (None, None) if !fit.converged => {
-            format!("{} = {:.4}, from a search that did not come to its end", one.name, one.value)
+            format!("{} = {}, from a search that did not come to its end", one.name, short(one.value, 4))
         }
-        (None, None) => format!("{} = {:.4}, which the recordings do not tell surely", one.name, one.value),
+        (None, None) => format!("{} = {}, which the recordings do not tell surely", one.name, short(one.value, 4)),
     });
     let values: Vec<String> = values.collect();
     format!(
@@ -239,19 +285,21 @@ pub fn describe(fit: &FitSummary) -> String {
             count(fit.most_tries, "try", "tries")
         ),
     };
-    let begin = match (fit.begins_with_recordings, fit.recordings_differ) {
-        (false, _) => "the parameters of --start",
-        (true, false) => "the parameters that stand in the recordings",
-        (true, true) => "the parameters that stand in the first recording (others were made with others)",
+    let begin = match (fit.begins_with_recordings, fit.others.is_empty()) {
+        (false, _) => "--start",
+        (true, true) => "the recordings",
+        (true, false) => "the first recording",
     };
     let mut text = format!(
-        "{}, {} of the human: log likelihood per press {:.4}, before {:.4}, after {}{end}\nbefore: {begin}; what is not \
-         fitted stays as it is there\n\n{:<24}{:>10}{:>12}{:>10}{:>22}\n",
+        "{}, {} of the human: log likelihood per press {:.4}, before {:.4}, after {}{end}\nbefore: the parameters of {begin} \
+         ({}); what is not fitted stays as it is there\n{}\n{:<24}{:>10}{:>12}{:>10}{:>22}\n",
         count(fit.recordings, "recording", "recordings"),
         count(fit.human_actions, "press", "presses"),
         fit.log_likelihood,
         fit.log_likelihood_before,
         count(fit.tries, "try", "tries"),
+        fit.begins_with,
+        beside(fit),
         "parameter",
         "before",
         "fitted",
@@ -259,13 +307,27 @@ pub fn describe(fit: &FitSummary) -> String {
         "95 %",
     );
     for one in &fit.parameters {
-        let error = one.standard_error.map_or("-".to_string(), |error| format!("{error:.4}"));
+        let error = one.standard_error.map_or("-".to_string(), |error| short(error, 4));
         let interval = one.span();
         let name = format!("{} ({})", one.name, one.unit);
-        text.push_str(&format!("{name:<24}{:>10.4}{:>12.4}{error:>10}{interval:>22}\n", one.before, one.value));
+        let [before, value] = [one.before, one.value].map(|value| short(value, 4));
+        text.push_str(&format!("{name:<24}{before:>10}{value:>12}{error:>10}{interval:>22}\n"));
     }
     text += &fit.answers.as_ref().map_or(String::new(), fitted_answers::describe);
     text + &untold(fit)
+}
+
+/// Lines of text about parameters that are left out, and about recordings that were made with other models.
+fn beside(fit: &FitSummary) -> String {
+    let left_out = fit.not_fitted.iter().map(|why| format!("not fitted: {why}\n"));
+    let others = fit.others.iter().map(|one| format!("made with {}: {}\n", one.model, one.recordings.join(", ")));
+    left_out.chain(others).collect()
+}
+
+/// Why usual parameters are not among those that are fitted to this model, in words.
+fn left_out(fitted: &[HumanModelParameter], model: &HumanModel) -> Vec<String> {
+    let others = HumanModelParameter::USUAL.into_iter().filter(|usual| !fitted.contains(usual));
+    others.filter_map(|usual| Some(usual.obstacle(model)?.0)).collect()
 }
 
 /// Sentences of text about parameters that are not identified.
@@ -279,8 +341,7 @@ fn untold(fit: &FitSummary) -> String {
         false => ("not known, since the search did not come to its end", "A larger --tries may tell them"),
     };
     format!(
-        "\n{why}: {}. Their values are the best that the search knew, and no findings; a file (--out) has them all the same. \
-         {remedy}, or keep them as they are: leave them out of --parameters.\n",
+        "\n{why}: {}. These values are not findings, but the file (--out) contains them. {remedy}, or keep them as they are: leave them out of --parameters.\n",
         untold.join(", ")
     )
 }

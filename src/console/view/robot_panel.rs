@@ -139,7 +139,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
             Some((reason, waits_for)) => {
                 let human = &session.kitchen.buttons[Agent::Human.index()];
                 let names: Vec<&str> = waits_for.iter().map(|button| human[button.index()].name.as_str()).collect();
-                wording::idle(*reason, &names)
+                wording::idle(*reason, &names, usize::from(columns))
             }
             None => "no press planned".to_string(),
         };

@@ -19,6 +19,7 @@ use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
 use crate::session::protocol::{ItemAnswer, StudyProtocolState};
+use tomcom_core::base::words::count;
 
 /// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
@@ -250,15 +251,16 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     let Some((step, protocol)) = session.step() else { return };
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
-    let orders = criterion.orders;
+    let required = count(criterion.orders, "order", "orders");
     let required = match criterion.error_rate {
-        None => format!("Required: {orders} orders served."),
-        Some(rate) => format!("Required: {orders} orders served, errors in at most {:.0} % of presses.", 100.0 * rate),
+        None => format!("Required: {required} served."),
+        Some(rate) => format!("Required: {required} served, errors in at most {:.0} % of presses.", 100.0 * rate),
     };
     page.text(0, &required, TextRole::Text);
     let share = 100.0 * f64::from(practice.errors) / f64::from(practice.presses.max(1));
-    let (orders, presses, errors) = (practice.orders, practice.presses, practice.errors);
-    let found = format!("Reached: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
+    let errors = count(practice.errors, "error", "errors");
+    let (orders, presses) = (practice.orders, count(practice.presses, "press", "presses"));
+    let found = format!("Reached: {orders} served, {errors} in {presses} ({share:.0} %).");
     page.text(0, &found, TextRole::Strong);
     page.space();
     page.text(0, "To waive the criterion and start the first trial, choose a reason:", TextRole::Text);

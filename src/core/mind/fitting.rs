@@ -3,9 +3,10 @@
 
 use super::dirichlet::Dirichlet;
 use super::filter::BeliefFilter;
-use super::model::HumanModel;
+use super::model::{HumanModel, PerceptionUnit};
 use super::observation::{Observation, ObservedEvidence};
 use crate::base::incomplete_beta::regularized_incomplete_beta;
+use crate::base::words::short;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, Press};
 use std::sync::Arc;
@@ -39,7 +40,7 @@ pub enum HumanModelParameter {
 }
 
 impl HumanModelParameter {
-    /// The parameters of the human model that are fitted by default.
+    /// The parameters of the human model that are fitted by default, where the model uses them.
     pub const USUAL: [HumanModelParameter; 5] = [
         HumanModelParameter::Tau,
         HumanModelParameter::Lapse,
@@ -108,6 +109,32 @@ impl HumanModelParameter {
             HumanModelParameter::Capture => model.looking.capture = value,
             HumanModelParameter::RecipeTruth => model.prior.recipe_truth = value,
         }
+    }
+
+    /// Why a fit that begins with this model cannot have this parameter, and what would be right; `None` if it can. A
+    /// parameter that the model does not use changes no likelihood, and one that begins outside of the bounds would be
+    /// moved into them before the search, which would make another model of it.
+    pub fn obstacle(self, model: &HumanModel) -> Option<(String, String)> {
+        let (name, value) = (self.name(), self.get(model));
+        let off = match self {
+            HumanModelParameter::ReadingRateHz if model.perception.observation == PerceptionUnit::Sample => {
+                Some("observation = \"sample\"")
+            }
+            HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz | HumanModelParameter::Capture
+                if !model.looking.marginalised =>
+            {
+                Some("marginalised = false")
+            }
+            _ => None,
+        };
+        if let Some(off) = off {
+            return Some((format!("{name} is not used with {off}"), format!("a model without {off}")));
+        }
+        let [low, high] = self.bounds();
+        (!(low..=high).contains(&value)).then(|| {
+            let found = format!("{name} = {} is outside of {low} to {high}, in which it is searched", short(value, 4));
+            (found, format!("a model with {name} in there"))
+        })
     }
 
     /// Bounds of the parameter during the fit. Above tau = 20 per press the best button is chosen practically always,

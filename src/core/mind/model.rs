@@ -19,7 +19,7 @@ pub enum HumanModelName {
     #[default]
     #[serde(rename = "plain")]
     Plain,
-    /// The model of Buehler, Adamy and Weisswange (2021), and nothing else.
+    /// The equations of Buehler, Adamy and Weisswange (2021); values that the paper does not give are those of `plain`.
     #[serde(rename = "paper-2021")]
     Paper2021,
 }

@@ -1,8 +1,8 @@
 //! The human models that the program has by name, with all their values.
 //!
 //! `plain` is the default. It is not fitted to anybody; a laboratory fits it to people of its own (`tomcom fit`).
-//! `paper-2021` is the model of Buehler, Adamy and Weisswange (2021) and nothing else. Values that the paper does not
-//! give are those of `plain`. `docs/paper.md` lists what differs.
+//! `paper-2021` has the equations of Buehler, Adamy and Weisswange (2021); values that the paper does not give are those
+//! of `plain`. `docs/paper.md` lists what differs.
 
 use serde_json::Value;
 

@@ -125,7 +125,7 @@ pub enum RecordingWriteError {
         /// Folder in which the recording was to be made.
         folder: PathBuf,
         /// What the folder contains instead.
-        what: &'static str,
+        what: String,
     },
 }
 

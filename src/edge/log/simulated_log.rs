@@ -67,7 +67,7 @@ pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), Recordin
     if !path.exists() {
         // A program that was killed before it wrote the log leaves a settings file behind.
         let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
-        let what = "a session.toml that tomcom did not write";
+        let what = "a session.toml that tomcom did not write".to_string();
         return if is_foreign {
             Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
         } else {
@@ -79,9 +79,9 @@ pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), Recordin
     }
     let what = match LogReader::open(folder).map(|log| log.header) {
         Ok(there) if there == *header => return Ok(()),
-        Ok(there) if there.started.is_some() => "a live recording",
-        Ok(_) => "the recording of another session",
-        Err(_) => "a recording that cannot be read",
+        Ok(there) if there.started.is_some() => "a live recording".to_string(),
+        Ok(_) => "the recording of another session".to_string(),
+        Err(error) => format!("a recording that cannot be read ({})", error.with_remedy()),
     };
     Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
 }

@@ -7,7 +7,7 @@ use tomcom_core::base::rng::Stream;
 
 /// Distribution of one trait over the simulated population, given by median and relative spread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "{ median = 0.1, sigma = 0.4 }")]
 pub struct TraitSpread {
     /// Median of the trait, in the trait's unit.
     pub median: f64,

@@ -11,6 +11,7 @@ use crate::history::belief_track::BeliefSnapshot;
 use crate::run::desk::OperatorDesk;
 use crate::run::engine::SessionEngine;
 use crate::session::{Session, TimestampedEvent};
+use tomcom_core::base::words::count;
 
 /// Sends a session's samples to its LSL streams.
 pub(super) struct LslStreaming {
@@ -75,8 +76,8 @@ impl LslStreaming {
         let (dropped, refused) = (now.dropped - before.dropped, now.refused - before.refused);
         match (dropped, refused) {
             (0, 0) => None,
-            (_, 0) => Some(format!("LSL: {dropped} samples dropped, the session goes on")),
-            _ => Some(format!("LSL: {refused} samples refused by liblsl, the session goes on")),
+            (_, 0) => Some(format!("LSL: {} dropped, the session goes on", count(dropped, "sample", "samples"))),
+            _ => Some(format!("LSL: {} refused by liblsl, the session goes on", count(refused, "sample", "samples"))),
         }
     }
 }

@@ -19,12 +19,12 @@ pub fn describe(figures: &StudySummary) -> String {
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let mut text = format!(
-        "{}\n{} of {}, {} presses: {} of the human, {} of the robot\n\
+        "{}\n{} of {}, {}: {} of the human, {} of the robot\n\
          errors: {} ({} of the presses of both, {} of the human's)\n",
         figures.title,
         count(figures.trials, "trial", "trials"),
         count(figures.participants, "participant", "participants"),
-        totals.actions,
+        count(totals.actions, "press", "presses"),
         totals.human_actions,
         totals.robot_actions,
         totals.errors,
@@ -114,9 +114,9 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     for one in &figures.conditions {
         text += &format!(
-            "  {:<14}{:>4} trials, errors in {} of the human's presses, {} errors per sequence, {} s per order\n",
+            "  {:<14}{:>11}, errors in {} of the human's presses, {} errors per sequence, {} s per order\n",
             one.condition.name(),
-            one.trials,
+            count(one.trials, "trial", "trials"),
             percent(one.totals.error_rate_human),
             number(one.totals.mean_sequence_length),
             number(one.mean_order_s),
@@ -260,9 +260,9 @@ fn p_value(p: f64) -> String {
 /// Contrasts of the primary outcome between study arms, as text.
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
-        "{} per press of the human, by condition (linear mixed model of {} trials of {}{}):\n",
+        "{} per press of the human, by condition (linear mixed model of {} of {}{}):\n",
         found.outcome.title(),
-        found.trials,
+        count(found.trials as u64, "trial", "trials"),
         count(found.participants as u64, "participant", "participants"),
         left_out_of(&found.left_out),
     );

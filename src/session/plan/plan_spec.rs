@@ -9,6 +9,7 @@ use crate::session::person_code;
 use crate::session::setting_checks::{SettingError, is_code};
 use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::AnswerDevice;
+use tomcom_core::base::words::count;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -155,7 +156,8 @@ impl PlanSpec {
         }
         for asked in self.questionnaire.iter().flat_map(|questionnaire| questionnaire.after.iter().flatten()) {
             if *asked == 0 || *asked as usize > self.conditions.len() {
-                let found = format!("after = [{asked}], with {} trials", self.conditions.len());
+                let found =
+                    format!("after = [{asked}], with {}", count(self.conditions.len() as u64, "trial", "trials"));
                 return wrong("questionnaire.after", found, "the numbers of trials, 1 the first");
             }
         }

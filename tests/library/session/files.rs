@@ -65,11 +65,15 @@ fn signals_highlight_what_session_or_model_name() {
     assert!(usual.contains(&"counter".to_string()) && !usual.contains(&"human_hand".to_string()), "{usual:?}");
     spec.human = PAPER_2021;
     assert_eq!(highlighted(&spec), ["robot_hand", "assembly_board"]);
-    spec.signals.highlights = Some(vec!["human_hand".to_string()]);
-    assert_eq!(highlighted(&spec), ["human_hand"]);
+    spec.signals.highlights = Some(vec!["counter".to_string()]);
+    assert_eq!(highlighted(&spec), ["counter"]);
     assert!(spec.check_kitchen(&kitchen).is_ok());
-    spec.signals.highlights = Some(vec!["cellar".to_string()]);
-    assert_eq!(spec.check_kitchen(&kitchen).expect_err("no such place").path, "signals.highlights");
+    for refused in [&["cellar"][..], &["human_hand"], &["order_1"], &["counter", "counter"]] {
+        spec.signals.highlights = Some(refused.iter().map(|name| name.to_string()).collect());
+        let error = spec.check_kitchen(&kitchen).expect_err("nothing to highlight");
+        assert!(error.found.starts_with(&format!("highlights = {refused:?}, ")), "{error}");
+        assert!(!error.remedy.contains("human_hand") && !error.remedy.contains("order"), "{error}");
+    }
 }
 
 #[test]

@@ -85,6 +85,17 @@ fn a_simulation_replaces_itself_and_no_other_recording() {
     let told = String::from_utf8_lossy(&refused.stderr);
     assert!(told.contains("seed7-S001") && told.contains("the recording of another session"), "{told}");
     assert!(fs::read(&log).expect("a log") == before, "what was there is still there");
+    // A recording of another format: what other commands say about it, with the remedy.
+    let text = String::from_utf8(before).expect("UTF-8").replacen("\"version\":3", "\"version\":2", 1);
+    fs::write(&log, text).expect("written");
+    let remedy = "found format version 2; wanted: format version 3, or the tomcom that wrote the log";
+    for (command, code) in [(&simulate("sessions/default.toml")[..], 1), (&["list", out], 0)] {
+        let output = check(command, code);
+        let told =
+            [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).replace("\n", " ")).concat();
+        let told = told.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert!(told.contains(remedy), "{told}");
+    }
 }
 
 /// Few presses, thought about little: what the commands print is looked at here, not how good it is.
@@ -132,7 +143,8 @@ fn simulate_tells_what_holds_at_the_console_alone() {
     let told = |arguments: &[&str]| {
         let output = check(&[&["simulate", &session, "--out", &out], arguments].concat(), 0);
         let told = String::from_utf8_lossy(&output.stderr);
-        ["if --condition assistant is given", "if --shadow is given"].map(|option| told.contains(option))
+        ["the assistant does not act; --condition assistant does that", "advice is not computed; --shadow does that"]
+            .map(|option| told.contains(option))
     };
     assert_eq!(told(&[]), [true, true]);
     assert_eq!(told(&["--shadow", "--seed", "2"]), [true, false]);
@@ -175,5 +187,9 @@ fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
         assert!(found.get(key).is_some(), "{key} in {found}");
     }
     assert!(complaint(&["fit", &session]).contains("events.jsonl"));
+    let paper = path("paper.toml");
+    fs::write(&paper, "model = \"paper-2021\"\n").expect("the parameters can be written");
+    let told = complaint(&["fit", recording, "--start", &paper, "--parameters", "tau,reading"]);
+    assert!(told.contains("reading_rate_hz is not used with observation = \"sample\""), "{told}");
     assert!(complaint(&["fit", recording, "--probes"]).contains("no answer to a freeze probe"));
 }

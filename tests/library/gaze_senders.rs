@@ -237,6 +237,7 @@ fn outer_address() -> IpAddr {
 }
 
 #[tokio::test]
+#[ignore = "needs a network beside the loopback"]
 async fn from_other_addresses_only_listed_ones_are_read_and_the_others_are_told() {
     let outer = outer_address();
     let anywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
@@ -279,6 +280,7 @@ async fn answers(to: SocketAddr, lines: &[&[u8]]) -> String {
 }
 
 #[tokio::test]
+#[ignore = "needs a network beside the loopback"]
 async fn another_computer_pairs_with_the_code_and_sends_then() {
     assert_eq!(open(GazeSenders::Any).await.code, None, "this computer needs none");
     let outer = outer_address();

@@ -129,7 +129,13 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     let is_there = |path: &str| lab.at(path).exists();
     let before = lab.files();
     let (code, told) = lab.forget(&["P01"]);
-    assert!(code == Some(2) && told.contains("seed1-P01-1 (recording)") && told.contains("--yes"), "{told}");
+    assert!(
+        code == Some(2)
+            && told.contains("seed1-P01-1 (recording)")
+            && told.contains("nothing was deleted")
+            && told.contains("--yes"),
+        "{told}"
+    );
     assert!(told.contains("    events.jsonl, session.toml\n"), "every file is listed: {told}");
     assert_eq!(lab.files(), before);
     assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));

@@ -268,11 +268,11 @@ fn the_documentation_has_every_range() {
         ("Questionnaires", ranges::OF_QUESTIONNAIRES.to_vec()),
         ("Layouts", layout_ranges::RANGES.to_vec()),
     ] {
-        let mut table = "| setting | from | to | unit | why |\n|---|---|---|---|---|\n".to_string();
-        for NumberRange { path, least, most, is_whole, unit, reason, .. } in &ranges {
-            let whole = if *is_whole { "whole number" } else { "" };
-            let unit: Vec<&str> = [whole, *unit].into_iter().filter(|word| !word.is_empty()).collect();
-            table += &format!("| `{path}` | {least} | {most} | {} | {reason} |\n", unit.join(", "));
+        let mut table = "| setting | range |\n|---|---|\n".to_string();
+        for NumberRange { path, least, most, is_whole, unit, .. } in &ranges {
+            let whole = if *is_whole { ", whole" } else { "" };
+            table += format!("| `{path}` | {least} to {most} {unit}").trim_end();
+            table += &format!("{whole} |\n");
         }
         let section = page.split("\n## ").find(|section| section.starts_with(title)).unwrap_or_default();
         if !section.contains(&table) {

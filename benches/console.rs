@@ -13,12 +13,12 @@ use ratatui::{Terminal, TerminalOptions, Viewport};
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
-use tomcom::history::belief_track::BeliefSnapshot;
-use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::Event;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::history::belief_track::BeliefSnapshot;
 
 /// Every redraw is one step of the console's clock later: at most 30 a second.
 const STEP_S: f64 = 1.0 / 30.0;

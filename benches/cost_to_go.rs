@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 use tomcom::edge::files::read_kitchen;
-use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, TrialPhase};
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, DecisionCosts, MAX_BUTTONS};
 use tomcom_core::kitchen::{Agent, AspectKind, ButtonId, Kitchen, Recipes, State};
 use tomcom_core::mind::RecordedBelief;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::{Event, TrialPhase};
 
 /// Belief samples a press, and states a sample: the least that counts as the algorithm.
 const BELIEFS: usize = 256;

@@ -19,12 +19,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::parallel::WorkerPool;
-use tomcom::session::SessionSpec;
-use tomcom::session::plan::Study;
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::layout::LayoutSpec;
@@ -33,6 +29,10 @@ use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::{sequences, sequences_any_aspect};
 use tomcom_people::participant::population::Population;
+use tomcom_session::SessionSpec;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::headless;
+use tomcom_session::plan::Study;
 
 /// The belief parameters that a search varies, with the least and the largest value that it tries.
 const PARAMETERS: [(&str, f64, f64); 5] = [

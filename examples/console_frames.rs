@@ -19,15 +19,15 @@ use ratatui::style::{Color, Modifier};
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
-use tomcom::history::belief_track::BeliefSnapshot;
-use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::AspectId;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::RecordedBelief;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];

@@ -6,11 +6,11 @@ use std::convert::Infallible;
 use std::error::Error;
 use std::sync::Arc;
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::headless;
+use tomcom_session::{Event, SessionSpec, TimestampedEvent};
 
 const SETTINGS: &str = r#"
 layout = "sushi.toml"

@@ -46,12 +46,13 @@ use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
-use crate::edge::log::{self, LogEnding};
 use crate::run::plan::{self, StudyProgress};
-use crate::run::replay::RecordingReplay;
 use crate::run::review_console as console_over;
-use crate::run::{options, standing, timing, verify};
+use crate::run::{options, standing, timing};
 use tomcom_core::base::printable::printable;
+use tomcom_session::log::{self, LogEnding};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::verify;
 
 /// Exit code of a command that failed.
 const FAILED: u8 = 1;

@@ -41,10 +41,8 @@ pub mod console;
 pub mod display;
 #[cfg(feature = "cli")]
 pub mod edge;
-pub mod history;
 pub mod run;
 #[cfg(feature = "rerun")]
 pub mod scene;
-pub mod session;
 #[cfg(feature = "cli")]
 pub mod study;

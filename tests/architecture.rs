@@ -5,10 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of the program's crate from the ground up; a room imports only from rooms before it.
-const ROOMS: [&str; 9] = ["session", "history", "analysis", "display", "console", "study", "scene", "edge", "run"];
+const ROOMS: [&str; 7] = ["analysis", "display", "console", "study", "scene", "edge", "run"];
 /// What decides nothing by the outside, by time or by chance: the crates below the program, and its rooms below the edge.
-const PURE: [&str; 10] =
-    ["core", "people", "arm", "session", "history", "analysis", "display", "console", "study", "scene"];
+const PURE: [&str; 9] = ["core", "people", "arm", "session", "analysis", "display", "console", "study", "scene"];
+/// What reads and writes files among these.
+const OF_FILES: [&str; 2] = ["src/session/files", "src/session/log"];
 /// Names of the outside, of time and chance that no seed decides, and of orders that are not fixed.
 const BANNED: [&str; 20] = [
     "std::fs",
@@ -53,6 +54,9 @@ fn sources(folder: &Path) -> Vec<(PathBuf, Vec<String>)> {
 fn nothing_below_the_edge_touches_the_outside() {
     let mut files = 0;
     for (path, lines) in PURE.iter().flat_map(|room| sources(&Path::new("src").join(room))) {
+        if OF_FILES.iter().any(|folder| path.starts_with(folder)) {
+            continue;
+        }
         files += 1;
         for (number, line) in lines.iter().enumerate() {
             let found = BANNED.iter().find(|name| line.contains(**name));

@@ -10,7 +10,6 @@ use super::likelihood::PressLogLikelihood;
 use super::probe_figures::ProbeSummary;
 use super::probe_lines;
 use super::seen_contents::LastSeenContents;
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -25,6 +24,7 @@ use tomcom_core::measures::belief_detection::{
 use tomcom_core::measures::flags::{FlagThresholds, MOST_FALSE_FLAGS, ThresholdChoice, ThresholdSource};
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Seed of the bootstrap's random numbers: the same recordings give the same interval.
 const SEED: u64 = 1;

@@ -2,14 +2,14 @@
 
 use super::exclusion_status::ExclusionStatus;
 use super::offer_summary::{OfferSummary, TimedOffer};
-use super::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use super::wizard_log::{WizardLog, WizardSummary};
-use crate::history::comparison::SenderComparison;
-use crate::session::apply::ApplyError;
-use crate::session::settings::Condition;
-use crate::session::{Session, TimestampedEvent};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::apply::ApplyError;
+use tomcom_session::history::comparison::SenderComparison;
+use tomcom_session::settings::Condition;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
+use tomcom_session::wizard_log::{WizardLog, WizardSummary};
+use tomcom_session::{Session, TimestampedEvent};
 
 /// Compares wizard and assistants while a recording is read, event by event.
 pub struct SenderComparer {

@@ -6,17 +6,17 @@ use super::compared_recording::RecordingSenderComparison;
 use super::exclusion_status::ExclusionStatus;
 use super::lesson_report::WizardTrainingSummary;
 use super::offer_summary::OfferSummary;
-use super::watcher::SenderComparisonSettings;
-use super::wizard_log::{self, WizardSummary};
-use crate::history::belief_track::AspectBeliefSnapshot;
-use crate::history::comparison::{Communication, UnmatchedCommunication};
-use crate::session::wizard_screen::WizardScreenContent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
+use tomcom_session::history::belief_track::AspectBeliefSnapshot;
+use tomcom_session::history::comparison::{Communication, UnmatchedCommunication};
+use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_session::wizard_log::{self, WizardSummary};
+use tomcom_session::wizard_screen::WizardScreenContent;
 
 /// Largest number of unmatched communications of each kind that are listed as text.
 const LISTED: usize = 20;

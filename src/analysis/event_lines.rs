@@ -1,13 +1,5 @@
 //! A recording as text, with one line for each event, for pipes and plain terminals.
 
-use super::follower::SessionFollower;
-use crate::history::probe_wording;
-use crate::history::wording::{self, location as said};
-use crate::session::event::{SignalEndReason, TrialEndReason};
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::wall_display::DisplayEvent;
-use crate::session::wizard_screen::WizardScreenContent;
-use crate::session::{Event, TimestampedEvent, TrialPhase};
 use tomcom_core::base::printable::printable;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::concept::ConceptName;
@@ -18,6 +10,14 @@ use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
 use tomcom_core::mind::{AspectBelief, RecordedBelief};
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::event::{SignalEndReason, TrialEndReason};
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::probe_wording;
+use tomcom_session::history::wording::{self, location as said};
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use tomcom_session::wall_display::DisplayEvent;
+use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 /// Heading above the text lines of events.
 pub const HEADING: &str = " trial time  what happened";

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::session::{Session, TrialPhase};
+use tomcom_session::{Session, TrialPhase};
 
 /// Whether a trial was aborted or excluded; an analysis leaves out aborted and excluded trials.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]

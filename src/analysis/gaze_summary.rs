@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::session::Session;
-use crate::session::gaze_samples::faults;
 use tomcom_core::base::words::count;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeFaultCounts};
+use tomcom_session::Session;
+use tomcom_session::gaze_samples::faults;
 
 /// Gaze quality of a recording: numbers of samples, faults and losses, and measured accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -6,8 +6,6 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
-use crate::history::wording;
-use crate::session::Session;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::recommendation::{aspects_told, phrase};
 use tomcom_core::communication::{Signal, signals, unavailable};
@@ -15,6 +13,8 @@ use tomcom_core::kitchen::{AspectId, Kitchen};
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, WINDOW};
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use tomcom_core::mind::RecordedBelief;
+use tomcom_session::Session;
+use tomcom_session::history::wording;
 
 /// With fewer false beliefs that led to errors than this, a share of hits is too uncertain: at 10, a share of 60 % is
 /// known to within 30 %.

@@ -1,9 +1,9 @@
 //! Looks at locations: for how long the gaze has rested in a location's area since the content there last changed.
 
-use crate::session::Session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::LocationId;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
+use tomcom_session::Session;
 
 /// Least duration of a look after which a location counts as seen, in seconds.
 pub const LOOK_S: f64 = 0.1;

@@ -1,7 +1,6 @@
 //! Computation over sessions and recordings: judged presses and estimates, fits, comparisons and summaries. Everything
 //! in this module is a function of events that the caller passes in; files, threads and clocks belong to the caller.
 
-pub mod advisor;
 #[cfg(feature = "cli")]
 pub mod belief_check;
 #[cfg(feature = "cli")]
@@ -12,12 +11,10 @@ pub mod cohort_lines;
 pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;
-pub mod error_list;
 pub mod event_lines;
 pub mod exclusion_status;
 #[cfg(feature = "cli")]
 pub mod fitting;
-pub mod follower;
 #[cfg(feature = "mcap")]
 pub mod foxglove;
 pub mod gaze_summary;
@@ -59,5 +56,3 @@ pub mod training_record;
 #[cfg(feature = "cli")]
 pub mod trial_bootstrap;
 pub mod trial_summary;
-pub mod watcher;
-pub mod wizard_log;

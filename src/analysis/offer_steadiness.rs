@@ -9,7 +9,6 @@ use rand::RngExt;
 use serde::Serialize;
 
 use super::offer_summary::{OfferSummary, TimedOffer};
-use crate::session::{Session, offers};
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::{count, percent};
@@ -17,6 +16,7 @@ use tomcom_core::communication::offer::{Offer, OfferCloseReason};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::measures::median;
+use tomcom_session::{Session, offers};
 
 /// Mean time between two readings of the screen by the scripted hand, in seconds.
 const BETWEEN_READINGS_S: f64 = 0.5;

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::wizard_log::clock_at;
-use crate::session::Session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{Offer, OfferCloseReason, OfferKeyKind};
 use tomcom_core::measures::median;
+use tomcom_session::Session;
+use tomcom_session::wizard_log::clock_at;
 
 /// An offer to the wizard, with its times on the trial's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

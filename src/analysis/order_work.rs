@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use super::wizard_log::clock_at;
-use crate::session::{Session, TimelineEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, ProofBudget};
 use tomcom_core::kitchen::{Kitchen, KitchenChange, LocationId};
+use tomcom_session::wizard_log::clock_at;
+use tomcom_session::{Session, TimelineEvent};
 
 /// Seconds from the appearance of each served order to its serving, on the trial's clock.
 pub fn order_times(session: &Session) -> Vec<f64> {

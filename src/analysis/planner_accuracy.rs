@@ -9,14 +9,14 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::advisor::{AdviceRequest, Advisor};
-use crate::session::Session;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::reference::{ReferenceBenefit, ReferencePlanner};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::Session;
+use tomcom_session::advisor::{AdviceRequest, Advisor};
 
 /// Factor by which the converged answer uses more rollouts than the planner in a session.
 const CONVERGED: usize = 64;

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
 use super::trial_bootstrap::interval_where_known;
-use crate::session::study_arm::StudyArm;
+use tomcom_session::study_arm::StudyArm;
 
 /// The property of a question by which a table of accuracies is grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -2,13 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::follower::SessionFollower;
 use super::probe_record::{
     AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
 use super::seen_contents::LastSeenContents;
-use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::incomplete_beta::regularized_incomplete_beta;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{
@@ -16,6 +13,9 @@ use tomcom_core::kitchen::{
 };
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::RecordedBelief;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Collects the freeze probe questions of a recording, event by event.
 #[derive(Debug, Default)]

@@ -9,8 +9,8 @@ use super::probe_detection::{ProbeDetection, WeightedProbeBelief};
 use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial};
 use super::probe_scores::ProbeLogScores;
 use super::trial_bootstrap::interval_where_known;
-use crate::session::probes::ProbeOrigin;
 use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_session::probes::ProbeOrigin;
 
 /// Seed of the bootstrap's random numbers: the same answers give the same intervals.
 const SEED: u64 = 1;

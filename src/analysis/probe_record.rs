@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::probes::ProbeOrigin;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_session::probes::ProbeOrigin;
+use tomcom_session::study_arm::StudyArm;
 
 /// Kind of a probe question, by what the question asks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

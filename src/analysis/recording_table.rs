@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::session::settings::Condition;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::base::words::count;
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
 
 /// Whether a recording is complete, cut, excluded, running or unreadable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -2,12 +2,12 @@
 //! from gaze, changes and the participant's presses, without any belief estimate.
 
 use super::looks::LocationDwells;
-use crate::session::probes::ProbeEvent;
-use crate::session::{Event, Session};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{KitchenChange, LocationId, State};
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::{Event, Session};
 
 /// What was seen and what was present at one location so far.
 #[derive(Clone, Debug, Default)]

@@ -1,8 +1,8 @@
 //! Time for which signals were shown on the participant's display.
 
-use super::wizard_log::clock_at;
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::wizard_log::clock_at;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Session times at which signals appeared on the display (true) and vanished (false).
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::follower::SessionFollower;
 use super::offer_summary::{OfferDurations, TimedOffer};
-use crate::session::TimelineEvent;
-use crate::session::settings::ParticipantKind;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::kitchen::{Agent, DishId};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
+use tomcom_session::TimelineEvent;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::study_arm::StudyArm;
 
 /// Summary of one trial: presses, errors, signals, served orders.
 #[derive(Clone, Debug, Default, PartialEq)]

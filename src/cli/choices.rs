@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom_core::communication::concept::ConceptName;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum ParticipantArg {

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use crate::edge::log::LOG_NAME;
+use tomcom_session::log::LOG_NAME;
 
 /// Adds to the message about an unknown command which command takes a file of this name; other messages, and those about
 /// a word that is like a command, stay as they are.

@@ -13,9 +13,9 @@ use crate::edge::forget::{self, ParticipantData};
 use crate::run::code_exchange::{self, ImportableCodes};
 use crate::run::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
-use crate::session::person_code;
-use crate::session::settings::is_code;
 use tomcom_core::base::words::count;
+use tomcom_session::person_code;
+use tomcom_session::settings::is_code;
 
 /// Longest answer to a question, in bytes; no code of a participant is as long.
 const MAX_ANSWER: u64 = 1 << 12;

@@ -44,7 +44,7 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
-    let start = args.start.as_deref().map(files::read_human_model).transpose()?;
+    let start = args.start.as_deref().map(tomcom_session::files::read_human_model).transpose()?;
     let unwritable = |path: &Path, error: std::io::Error| {
         let help = "a place where a file can be written";
         Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::edge::file_error::FileError;
 use crate::edge::forget::ParticipantDeletionError;
-use crate::edge::log::{DecisionError, RecordingWriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
-use crate::session::features::MissingFeature;
-use crate::session::settings::SettingError;
+use tomcom_session::features::MissingFeature;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::{DecisionError, RecordingWriteError};
+use tomcom_session::settings::SettingError;
 
 /// Failure of a command, which decides the program's exit code and message.
 #[derive(Debug)]

@@ -7,13 +7,13 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::edge::log::LOG_NAME;
 use crate::edge::{near_path, recordings};
 use crate::run::gathered::GatheredRecordings;
 use crate::run::pick_recording;
 use crate::run::recording_list::{self, RecordingListDetail};
 use crate::study::planned_trial::copies_in_words;
 use tomcom_core::base::words::count;
+use tomcom_session::log::LOG_NAME;
 
 /// Largest number of recordings that a message names.
 const MOST_NAMED: usize = 12;

@@ -8,13 +8,13 @@ use clap::Args;
 use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
 use super::failure::{Failure, wrong_setting};
 use super::output::{put, put_aside};
-use crate::analysis::watcher::SenderComparisonSettings;
-use crate::edge::file_error::FileError;
 use crate::run::options::{self, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
-use crate::session::features::Feature;
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom_core::communication::concept::ConceptName;
+use tomcom_session::features::Feature;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::watcher::SenderComparisonSettings;
 
 /// Runs a session at the wizard's console, and records it.
 #[derive(Debug, Args)]

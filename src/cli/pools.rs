@@ -7,19 +7,20 @@ use clap::Args;
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::edge::file_error::FileError;
-use crate::edge::files::{SessionSetup, read_session};
+use crate::edge::files::read_session;
 use crate::edge::picture_file::{check_picture, write_picture};
 use crate::edge::{pool_file, power_files};
 use crate::run::pool::{self, PoolRequest};
 use crate::run::power_measurement::{self, PowerRequest};
 use crate::run::simulate::SimulationShard;
 use crate::run::study::describe_arms;
-use crate::session::settings::ArmKind;
 use crate::study::drawn_study::DrawnEffect;
 use crate::study::simulation_pool::SimulationPool;
 use crate::study::{arm_table, power_answer, power_chart};
 use tomcom_core::base::words::count;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::settings::ArmKind;
 
 /// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";

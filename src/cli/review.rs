@@ -7,8 +7,8 @@ use clap::Args;
 use super::failure::Failure;
 use super::list::each_chosen;
 use super::rerun_messages::open;
-use crate::session::features::Feature;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::features::Feature;
 
 /// Opens recordings in the Rerun viewer.
 ///

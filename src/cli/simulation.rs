@@ -4,17 +4,17 @@ use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
 use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
-use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::run::{simulate, sweep};
-use crate::session::SessionSpec;
-use crate::session::features::Feature;
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use crate::session::study_arm::StudyArm;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::settings::WizardKind;
+use tomcom_session::SessionSpec;
+use tomcom_session::features::Feature;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::study_arm::StudyArm;
 
 /// Runs the command `tomcom simulate SESSION`.
 pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {

@@ -8,12 +8,12 @@ use clap::Args;
 use super::failure::{Failure, wrong_argument, wrong_setting};
 use super::operate::address_without_port;
 use super::output::put;
-use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::run::options::{SessionStart, SettingOverrides};
 use crate::run::series;
-use crate::session::plan::Study;
-use crate::session::settings::{ArmKind, GazeSource, ParticipantKind};
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::plan::Study;
+use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 /// Runs the participant's tutorial alone, on the display.
 ///

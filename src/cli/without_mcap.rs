@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::failure::Failure;
-use crate::session::features::{Feature, MissingFeature};
+use tomcom_session::features::{Feature, MissingFeature};
 
 /// No recording is exported.
 pub(super) type ExportedMcap = ();

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::failure::Failure;
-use crate::session::features::{Feature, MissingFeature};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::features::{Feature, MissingFeature};
 
 /// Refuses to write Rerun streams, since this build lacks Rerun.
 pub(super) fn save_all(_: &[PathText]) -> Result<(), Failure> {

@@ -11,16 +11,16 @@ use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
 use crate::analysis::lesson_report::{self, WizardTrainingSummary};
-use crate::analysis::watcher::SenderComparisonSettings;
 use crate::console::playback::SPEEDS;
 use crate::edge::training;
 use crate::run::similarity;
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
-use crate::session::person_code;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::matching::WINDOW;
 use tomcom_core::measures::wizard_performance::TrainingCriterion;
+use tomcom_session::person_code;
+use tomcom_session::watcher::SenderComparisonSettings;
 
 /// Compares a wizard's signals with those that assistants would have sent.
 ///

@@ -11,9 +11,9 @@ use super::map_items::{
     Item, KitchenMapElement, MIN_CARD, clusters, clusters_forced, ends, extent, is_order, items, owner, widths,
 };
 use super::view::regions::top;
-use crate::session::Session;
-use crate::session::settings::ParticipantKind;
 use tomcom_core::kitchen::{Agent, DisplayArea, Kitchen};
+use tomcom_session::Session;
+use tomcom_session::settings::ParticipantKind;
 
 /// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]

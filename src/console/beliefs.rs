@@ -2,13 +2,13 @@
 
 use super::console_model::ConsoleModel;
 use super::key_action::KeyLayer;
-use crate::history::belief_track;
-use crate::session::settings::WizardVisibility;
-use crate::session::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen, LocationId};
+use tomcom_session::history::belief_track;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Session, TrialPhase};
 
 /// Least expected probability of a value for the console to say that the participant believes that value.
 const THINKS: f32 = 0.5;

@@ -11,11 +11,11 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::KeyAction;
 use super::notice::NoticeLevel;
 use super::sending::refusal;
-use crate::session::offers;
-use crate::session::settings::WizardVisibility;
-use crate::session::{Event, Session};
 use tomcom_core::communication::offer::Offer;
 use tomcom_core::communication::{Sender, Signal};
+use tomcom_session::offers;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Event, Session};
 
 /// Asks the wizard whether to send a clicked signal or the clicked offer's signal; or says why the signal cannot be
 /// sent.

@@ -5,8 +5,8 @@ use super::console_model::ConsoleModel;
 use super::key_action::RaterAction;
 use super::notice::NoticeLevel;
 use super::playback::ReplayAction;
-use crate::session::Session;
 use tomcom_core::measures::cause_codes::ErrorCauseCode;
+use tomcom_session::Session;
 
 /// Carries out an action of the rater's keys.
 pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Option<ConsoleCommand> {

@@ -1,6 +1,6 @@
 //! Which difference between wizard and assistant the console's comparison shows.
 
-use crate::history::comparison::{SenderComparison, UnmatchedCommunication};
+use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
 
 /// Action of a key in the list of differences between wizard and assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

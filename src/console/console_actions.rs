@@ -16,13 +16,13 @@ use super::panels;
 use super::possible::effects;
 use super::preflight;
 use super::sending::{resume_robot, send};
-use crate::history::wording;
-use crate::session::event::SignalEndReason;
-use crate::session::offers;
-use crate::session::settings::WizardVisibility;
-use crate::session::{Event, Session, TrialPhase};
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_session::event::SignalEndReason;
+use tomcom_session::history::wording;
+use tomcom_session::offers;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {

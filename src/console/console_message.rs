@@ -3,7 +3,7 @@
 use crossterm::event::KeyEvent;
 
 use super::playback::ReplayAction;
-use crate::session::Event;
+use tomcom_session::Event;
 
 /// Input of the console: a key, a mouse event, pasted text or a change of the terminal.
 #[derive(Clone, Debug, PartialEq)]

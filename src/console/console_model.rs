@@ -22,15 +22,15 @@ use super::playback::Playback;
 use super::probe_entry::ProbeEntry;
 use super::rater_session::RaterSession;
 use super::view::theme::Theme;
-use crate::history::belief_track::BeliefHistory;
-use crate::history::signal_judge::SignalJudge;
-use crate::session::preflight_checks::RejectedGaze;
-use crate::session::settings::GazeSource;
-use crate::session::{TimelineEntry, TimelineEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_session::history::belief_track::BeliefHistory;
+use tomcom_session::history::signal_judge::SignalJudge;
+use tomcom_session::preflight_checks::RejectedGaze;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::{TimelineEntry, TimelineEvent};
 
 /// Time for which a notice is shown, in seconds.
 const NOTICE_S: f64 = 4.0;

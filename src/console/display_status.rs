@@ -1,8 +1,8 @@
 //! State of the participant's display as the wizard needs it: its address, whether a page is connected, and its delays.
 
-use crate::session::Session;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::settings::{GazeSource, ParticipantKind};
+use tomcom_session::Session;
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use tomcom_session::settings::{GazeSource, ParticipantKind};
 
 /// State of the participant's display: the web page on the wall screen and its connection.
 #[derive(Clone, Debug, Default, PartialEq)]

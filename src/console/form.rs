@@ -11,12 +11,12 @@ use super::notice::NoticeLevel;
 use super::probe_keys;
 use super::sending::{refuse, send};
 use super::sheet_key::SheetKey;
-use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
-use crate::session::probes::StartedProbe;
-use crate::session::protocol::{ProtocolEvent, StudyProtocolState};
-use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
-use crate::session::{Event, Session, TrialPhase};
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
+use tomcom_session::probes::StartedProbe;
+use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
+use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Preset reasons for waiving the practice criterion.
 pub const WAIVERS: [&str; 4] = [

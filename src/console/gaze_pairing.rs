@@ -1,8 +1,8 @@
 //! Pairing code and address for gaze senders at other computers, shown while no gaze arrives.
 
-use crate::session::Session;
-use crate::session::preflight_checks::PreflightCheck;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::Session;
+use tomcom_session::preflight_checks::PreflightCheck;
 
 /// Address and pairing code that a gaze sender at another computer needs.
 #[derive(Clone, Debug, PartialEq, Eq)]

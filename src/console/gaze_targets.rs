@@ -8,9 +8,9 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::gaze_advice::AccuracyCheckAction;
 use super::notice::NoticeLevel;
 use super::sending::send;
-use crate::session::accuracy_check::GazeCheckEvent;
-use crate::session::{Event, Session};
 use tomcom_core::gaze::calibration::GazeAccuracy;
+use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::{Event, Session};
 
 /// Key that selects accepting the gaze without a correction.
 pub const AS_IT_IS: char = 'u';

@@ -8,12 +8,12 @@ use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::picker::{Picker, PickerAnswer, PickerOutcome, PickerQuestion};
 use super::sending::{refuse, send};
-use crate::history::wording;
-use crate::session::probes::ProbeEvent;
-use crate::session::{Event, Session, TrialPhase};
 use crossterm::event::KeyCode;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::history::wording;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Carries out a manual intervention of the experimenter, or opens the list that it needs.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {

@@ -25,8 +25,8 @@ use super::sending::send;
 use super::sheet_key::SheetKey;
 use super::view::dialog::report_rest;
 use super::view::help::help_pages;
-use crate::session::event::TrialEndReason;
-use crate::session::{Event, Session, TrialPhase};
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Handles a terminal's report about a key.
 pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {

@@ -10,10 +10,10 @@ use super::key_action::{
 use super::keymap::KeyFileBindings;
 use super::playback::ReplayAction;
 use super::table;
-use crate::history::landmark::ReplayLandmark;
-use crate::session::settings::{ParticipantKind, SessionSpec};
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{ButtonId, Kitchen, LocationId};
+use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::settings::{ParticipantKind, SessionSpec};
 
 /// Key bindings of a console: the key table.
 #[derive(Clone, Debug)]

@@ -22,8 +22,8 @@ use super::panels;
 use super::playback::ReplayAction;
 use super::view::click_targets;
 use super::view::regions::PanelAreas;
-use crate::session::Session;
 use tomcom_core::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
+use tomcom_session::Session;
 
 /// Longest time between the two clicks of a double click, in seconds: the second click of a double click does not
 /// confirm a question.

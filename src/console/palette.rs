@@ -4,7 +4,7 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::{KeyAction, KeyBinding, ManualAction};
 use super::list_cursor::ListCursor;
 use super::possible::is_possible_behind;
-use crate::session::Session;
+use tomcom_session::Session;
 
 /// Further words by which the palette finds an action: what people type who think of it by another name.
 fn synonyms(action: &KeyAction) -> &'static str {

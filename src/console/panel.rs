@@ -1,6 +1,6 @@
 //! Panels of the console that can be shown alone at full size.
 
-use crate::session::settings::WizardVisibility;
+use tomcom_session::settings::WizardVisibility;
 
 /// A panel of the console that can be shown alone at full size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

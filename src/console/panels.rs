@@ -6,7 +6,7 @@ use super::console_model::ConsoleModel;
 use super::key_action::ViewAction;
 use super::panel::Panel;
 use super::view::help::help_pages;
-use crate::session::Session;
+use tomcom_session::Session;
 
 /// One scroll step: seconds in the timeline, entries in the list of events.
 const STEP: (u32, usize) = (5, 1);

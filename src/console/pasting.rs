@@ -5,7 +5,7 @@ use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form;
 use super::sending::refuse;
-use crate::session::Session;
+use tomcom_session::Session;
 
 /// Why pasted text is refused outside of a text field; `None` is a paste that had no end.
 pub fn refusal_of_paste(text: Option<&str>) -> &'static str {

@@ -4,9 +4,9 @@
 use crossterm::event::KeyCode;
 
 use super::list_cursor::{ListCursor, ListReply};
-use crate::history::wording;
-use crate::session::Session;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
+use tomcom_session::Session;
+use tomcom_session::history::wording;
 
 /// Question that a list of answers asks the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,14 +10,14 @@ use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAc
 use super::playback::{Playback, ReplayAction, SPEEDS};
 use super::preflight;
 use super::sending::refusal;
-use crate::session::accuracy_check::GazeCheckEvent;
-use crate::session::admit::admit;
-use crate::session::event::SignalEndReason;
-use crate::session::offers;
-use crate::session::probes::ProbeEvent;
-use crate::session::settings::WizardVisibility;
-use crate::session::{Event, Session, TrialPhase};
 use tomcom_core::communication::Sender;
+use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::admit::admit;
+use tomcom_session::event::SignalEndReason;
+use tomcom_session::offers;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Whether an action would have an effect now, given the dialog or sheet that covers the console.
 pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {

@@ -14,11 +14,11 @@ use super::key_action::KeyAction;
 use super::key_action::ManualAction;
 use super::notice::NoticeLevel;
 use super::probe_keys::{ProbeAnswerer, answerer};
-use crate::session::admit::admit;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
-use crate::session::probes::of_trial;
-use crate::session::{Event, Session};
 use tomcom_core::base::words::count;
+use tomcom_session::admit::admit;
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
+use tomcom_session::probes::of_trial;
+use tomcom_session::{Event, Session};
 
 /// The key that overrides failed preflight checks and starts the trial.
 pub const OVERRIDE: char = 'o';

@@ -7,10 +7,10 @@ use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
 use super::sending::{refuse, send};
 use super::sheet_key::SheetKey;
-use crate::session::probes::{ProbeEvent, ProbeOrigin, StartedProbe};
-use crate::session::settings::ParticipantKind;
-use crate::session::wall_display::AnswerDevice;
-use crate::session::{Event, Session, TrialPhase};
+use tomcom_session::probes::{ProbeEvent, ProbeOrigin, StartedProbe};
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Who enters the answers to a freeze probe's questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

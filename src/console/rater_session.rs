@@ -1,9 +1,9 @@
 //! State of coding a recording: the codes of one rater, or of two raters who settle their differences.
 
-use crate::analysis::error_list::ListedError;
-use crate::history::wording;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_session::error_list::ListedError;
+use tomcom_session::history::wording;
 
 /// Who codes the errors of a recording: one rater, or two raters together.
 #[derive(Clone, Debug, PartialEq)]

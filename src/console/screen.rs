@@ -5,8 +5,8 @@ use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
 use super::picker::PickerQuestion;
 use super::view::regions::{LEAST, PanelAreas, ScreenSize};
-use crate::session::Session;
-use crate::session::wizard_screen::WizardScreenContent;
+use tomcom_session::Session;
+use tomcom_session::wizard_screen::WizardScreenContent;
 
 /// What the wizard's screen shows now: its panels and the open dialog or sheet.
 pub fn screen(session: &Session, model: &ConsoleModel) -> WizardScreenContent {

@@ -3,9 +3,9 @@
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
-use crate::session::admit::{admit, hygiene};
-use crate::session::{Event, Session};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::admit::{admit, hygiene};
+use tomcom_session::{Event, Session};
 
 /// Why the session would reject an event now; `None` if it would accept it.
 pub(super) fn refusal(session: &Session, now: SessionTime, event: &Event) -> Option<String> {

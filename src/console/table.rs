@@ -11,11 +11,11 @@ use super::key_action::RaterAction;
 use super::key_action::ViewAction;
 use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer};
 use super::playback::ReplayAction;
-use crate::history::landmark::ReplayLandmark;
-use crate::session::settings::MAX_NOTES;
 use tomcom_core::communication::{self, HighlightSet, Signal};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use tomcom_core::measures::cause_codes::ErrorCauseKind;
+use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";
 const TRIAL: &str = "Trial";

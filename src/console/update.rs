@@ -8,7 +8,7 @@ use super::hands;
 use super::key_press;
 use super::mouse;
 use super::pasting;
-use crate::session::{Event, Session, TrialPhase};
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Handles a message to the console at the time `model.now`.
 pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {

@@ -1,9 +1,9 @@
 //! Position of the physical arm's tip on the table.
 
-use crate::session::Session;
-use crate::session::settings::ArmKind;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_core::robot::moment::ArmPhase;
+use tomcom_session::Session;
+use tomcom_session::settings::ArmKind;
 
 /// Kinematics of the session's physical arm, from which the tip's position follows.
 #[derive(Clone, Debug)]

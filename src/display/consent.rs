@@ -3,8 +3,8 @@
 use super::displayed_item::{DisplayedAnswerForm, DisplayedQuestionnaireItem};
 use super::page_language::DisplayWords;
 use super::sight::{DisplayContent, DisplayStage, sight};
-use crate::session::Session;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::Session;
 
 /// Time for which the participant holds the consent button, in seconds; long enough to rule out accidental touches.
 const HOLD_S: f64 = 3.0;

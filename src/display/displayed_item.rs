@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::page_language::DisplayWords;
-use crate::session::Session;
-use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{AnswerFormat, ItemOption};
-use crate::session::wall_display::AnswerDevice;
+use tomcom_session::Session;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::plan::{AnswerFormat, ItemOption};
+use tomcom_session::wall_display::AnswerDevice;
 
 /// A questionnaire item as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

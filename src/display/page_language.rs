@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::session::wall_display::DisplaySpec;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::content_wording::SCREEN_LANGUAGE;
+use tomcom_session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");
 const GERMAN: &str = include_str!("languages/de.toml");

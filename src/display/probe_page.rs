@@ -5,10 +5,10 @@ use serde::Serialize;
 
 use super::display_place::{SceneElement, spot};
 use super::page_language::DisplayWords;
-use crate::session::probes::{ProbeQuestion, ProbeSubject, StartedProbe};
-use crate::session::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
+use tomcom_session::probes::{ProbeQuestion, ProbeSubject, StartedProbe};
+use tomcom_session::{Session, TrialPhase};
 
 /// Largest number of contents that are shown as a list; with more, the participant composes a stack from its items.
 const MOST_CARDS: usize = 16;

@@ -11,10 +11,10 @@
 use super::arm_tip::ArmTip;
 use super::robot_pose::RobotHandPose;
 use super::sight::button_place;
-use crate::session::wall_display::RobotDepiction;
-use crate::session::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
+use tomcom_session::wall_display::RobotDepiction;
+use tomcom_session::{Session, TrialPhase};
 
 /// Share of the timed arm's motion after which the hand is above its target and begins to go down.
 const ABOVE: f64 = 0.85;

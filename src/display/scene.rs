@@ -7,11 +7,11 @@ use serde::Serialize;
 
 use super::display_place::{SceneElement, spot};
 use super::page_language::DisplayWords;
-use crate::session::settings::GazeSource;
-use crate::session::wall_display::DisplayedNames;
-use crate::session::{Session, SessionSpec};
 use tomcom_core::gaze::tags::DisplayTags;
 use tomcom_core::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
+use tomcom_session::settings::GazeSource;
+use tomcom_session::wall_display::DisplayedNames;
+use tomcom_session::{Session, SessionSpec};
 
 /// Area on the display: left, top, width and height in fractions of the display's size, with the origin at the top
 /// left.

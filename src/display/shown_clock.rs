@@ -4,8 +4,8 @@
 use serde::Serialize;
 
 use super::probe_page::probe_left;
-use crate::session::Session;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::Session;
 
 /// Whether the trial's clock on the display goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

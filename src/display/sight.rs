@@ -7,14 +7,14 @@ use super::displayed_item::{DisplayedQuestionnaireItem, question};
 use super::probe_page::{DisplayedProbe, probe};
 use super::shown_clock::TrialClockState;
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
-use crate::session::accuracy_check::RunningGazeCheck;
-use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
-use crate::session::wall_display::RobotDepiction;
-use crate::session::{Session, TimelineEvent, TrialPhase, proposals};
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::no_effect::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use tomcom_core::robot::IdleReason;
+use tomcom_session::accuracy_check::RunningGazeCheck;
+use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
+use tomcom_session::wall_display::RobotDepiction;
+use tomcom_session::{Session, TimelineEvent, TrialPhase, proposals};
 
 /// Everything that changes on the participant's display; each update is complete.
 #[derive(Clone, Debug, PartialEq, Serialize)]

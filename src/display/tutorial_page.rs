@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::display_place::{SceneElement, spot};
-use crate::session::Session;
-use crate::session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
-use crate::session::tutorial::TutorialState;
 use tomcom_core::kitchen::{Agent, DishId, Kitchen};
+use tomcom_session::Session;
+use tomcom_session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
+use tomcom_session::tutorial::TutorialState;
 
 /// A step of the tutorial, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,12 +3,13 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::file_error::{FileError, FileResult, missing, read_text};
-use super::files::{SessionSetup, read_session};
-use super::parse::parse;
-use super::place::place_of;
-use crate::session::battery::{BatterySpec, CohortSpec};
-use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
+use crate::edge::files::read_session;
+use tomcom_session::battery::{BatterySpec, CohortSpec};
+use tomcom_session::files::SessionSetup;
+use tomcom_session::files::file_error::{FileError, FileResult, missing, read_text};
+use tomcom_session::files::parse::parse;
+use tomcom_session::files::place::place_of;
+use tomcom_session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// A battery: cohorts of simulated participants, with the session settings that the cohorts share.
 #[derive(Clone, Debug)]

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use flate2::{Compression, GzBuilder};
 
-use super::file_error::{FileError, FileResult, read_regular};
 use crate::analysis::bids::{
     BidsFile, CODE_COLUMN, DESCRIPTION_NAME, LongTableFacts, LongTableRow, PARTICIPANTS_NAME, PROGRAM_NAME,
 };
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
 
 /// Advice in error messages when the data set cannot be written.
 const REMEDY: &str = "a new folder on a disk with free space";

@@ -3,9 +3,8 @@
 
 use std::time::{Duration, Instant};
 
-use jiff::Timestamp;
-
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::files::wall_time::WallTime;
 
 /// Gap between two readings of the clock after which the program counts as having been suspended.
 const STANDSTILL: Duration = Duration::from_secs(1);
@@ -30,7 +29,7 @@ impl SessionClock {
     /// Starts a session clock that shows `offset` now.
     pub fn start(offset: SessionTime) -> SessionClock {
         let now = Instant::now();
-        let ahead_ms = WallTime::now().0.as_millisecond() - millis(offset);
+        let ahead_ms = WallTime::now().millis() - millis(offset);
         SessionClock { offset, began: now, looked: now, stood: Duration::ZERO, ahead_ms }
     }
 
@@ -62,7 +61,7 @@ impl SessionClock {
     }
 
     fn jump_at(&mut self, now: SessionTime, wall: WallTime) -> Option<i64> {
-        let ahead_ms = wall.0.as_millisecond() - millis(now);
+        let ahead_ms = wall.millis() - millis(now);
         let by_ms = ahead_ms - self.ahead_ms;
         if by_ms.abs() < JUMP_MS {
             return None;
@@ -76,27 +75,6 @@ fn millis(time: SessionTime) -> i64 {
     (time.0 / 1_000_000) as i64
 }
 
-/// A date and time of the wall clock, in UTC.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WallTime(Timestamp);
-
-impl WallTime {
-    /// The present wall clock time.
-    pub fn now() -> WallTime {
-        WallTime(Timestamp::now())
-    }
-
-    /// Date of the wall clock time, as in "2026-03-14".
-    pub fn date(self) -> String {
-        self.0.strftime("%F").to_string()
-    }
-
-    /// Date and time in UTC, as in "2026-03-14T09:26:53.589Z" (RFC 3339).
-    pub fn rfc3339(self) -> String {
-        self.0.strftime("%FT%T.%3fZ").to_string()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,7 +86,7 @@ mod tests {
         let (began, wall) = (clock.began, WallTime::now());
         let after = |ms: u64| began + Duration::from_millis(ms);
         let shows = |ms: u64| offset + SessionTime(ms * 1_000_000);
-        let wall_after = |ms: i64| WallTime(wall.0 + jiff::SignedDuration::from_millis(ms));
+        let wall_after = |ms: i64| wall.after_millis(ms);
         assert_eq!(clock.at(after(400)), shows(400));
         assert_eq!(clock.jump_at(shows(400), wall_after(410)), None);
         // Test: the wall clock is set forward by an hour, then back again. Each jump is reported once, and no session

@@ -4,7 +4,7 @@
 use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
-use crate::session::settings::GazeSenders;
+use tomcom_session::settings::GazeSenders;
 
 /// Silence after which the network address that sent gaze loses its exclusive use of the gaze input.
 pub const RELEASE: Duration = Duration::from_secs(5);

@@ -13,15 +13,15 @@ use crossterm::terminal::{disable_raw_mode, enable_raw_mode, size, supports_keyb
 use serde::Serialize;
 
 use super::ask::ask;
-use super::clock::WallTime;
-use super::log::RecordingLock;
 use super::terminal::theme;
 use crate::console::view::theme::TerminalBackground;
-use crate::session::SessionSpec;
-use crate::session::features::Feature;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
-use crate::session::settings::ConsoleSpec;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::SessionSpec;
+use tomcom_session::features::Feature;
+use tomcom_session::files::wall_time::WallTime;
+use tomcom_session::log::RecordingLock;
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
+use tomcom_session::settings::ConsoleSpec;
 
 /// Terminal size at which the console shows all panels, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);

@@ -7,14 +7,14 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::overwrite;
-use super::replace_file::{self, Replacement};
 use super::written_tables::{ListedTables, reader};
 use crate::study::column::{CsvCell, CsvRow, CsvTable};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 use crate::study::study_part::AnalysedRecording;
 use tomcom_core::base::spreadsheet::without_formula;
+use tomcom_session::files::overwrite;
+use tomcom_session::files::replace_file::{self, Replacement};
 
 /// File name of the analysis report.
 pub const REPORT_NAME: &str = "report.html";

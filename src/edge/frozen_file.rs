@@ -7,9 +7,9 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::file_error::{FileError, FileResult, read_text};
-use super::replace_file;
 use crate::study::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
+use tomcom_session::files::file_error::{FileError, FileResult, read_text};
+use tomcom_session::files::replace_file;
 
 /// Text in the first line of a frozen plan's file, before the digest.
 const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";

@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use super::file_error::{FileError, FileResult};
 use super::gaze_table::{self, GazeTable};
-use super::log::{LOG_NAME, LogReader};
 use super::tracker_folder::{TrackerFinding, tracker_data};
-use crate::session::Event;
-use crate::session::apply::apply;
-use crate::session::tracker::TrackerSpec;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_session::Event;
+use tomcom_session::apply::apply;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::{LOG_NAME, LogReader};
+use tomcom_session::tracker::TrackerSpec;
 
 /// Largest number of samples in a gaze file (a day at 60 Hz).
 const MAX_SAMPLES: usize = 5_184_000;

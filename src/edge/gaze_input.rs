@@ -3,9 +3,9 @@
 use std::net::IpAddr;
 use std::time::Instant;
 
-use crate::session::tracker::TrackerRecording;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_session::tracker::TrackerRecording;
 
 /// Largest number of tracker messages that wait for the session.
 pub const WAITING: usize = 4096;

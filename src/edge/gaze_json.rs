@@ -26,7 +26,7 @@ use super::gaze_rejections::RejectionReporter;
 use super::outer_address::reachable;
 use super::pairing_code::pairing_code;
 use super::sender_clock::SenderClock;
-use crate::session::settings::GazeSenders;
+use tomcom_session::settings::GazeSenders;
 
 /// Longest datagram of gaze, in bytes; a datagram can contain several lines.
 const MAX_DATAGRAM: usize = 1 << 16;

@@ -10,15 +10,16 @@ use csv::StringRecord;
 use encoding_rs::{UTF_16BE, UTF_16LE};
 use encoding_rs_io::{DecodeReaderBytes, DecodeReaderBytesBuilder};
 
-use super::file_error::{FileError, FileResult, open_regular};
-use super::log::at_line;
-use crate::session::tracker::MissingConfidence;
 use tomcom_core::base::printable::printable;
+use tomcom_core::base::spreadsheet::SEPARATORS;
 use tomcom_core::base::words::count;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded_gaze::GAP_S;
 use tomcom_core::gaze::recorded_times::{RecordedTimeline, TimeLimits, median_interval};
 use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
+use tomcom_session::log::at_line;
+use tomcom_session::tracker::MissingConfidence;
 
 /// Description of valid gaze files, for error messages.
 const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \
@@ -31,8 +32,6 @@ const MAX_LINE: u64 = 1 << 16;
 const MAX_BYTES: u64 = 4 << 30;
 /// Columns that contain gaze in the scene camera's image, from which the gaze on the display cannot be computed.
 const SCENE_COLUMNS: [&str; 3] = ["gaze x [px]", "gaze position in reference image x [px]", "norm_pos_x"];
-/// Characters that separate columns.
-pub(super) const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 /// Number of intervals between samples from which the unit of the times can be judged.
 const JUDGED: usize = 10;
 /// Largest number of clock steps in a table; lines in which the clock was set more often have no order of time.

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::file_error::{FileError, FileResult};
-use super::parse::{FileKind, ParsedFile, parse};
 use crate::console::KeyFileBindings;
 use crate::console::key_action::{KeyError, KeyErrorSource, KeyLayer};
 use crate::console::keys;
-use crate::session::header::RecordedFile;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::layout::{LayoutSpec, is_same_key};
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::parse::{FileKind, ParsedFile, parse};
+use tomcom_session::header::RecordedFile;
 
 impl ParsedFile for KeyFileBindings {
     const KIND: FileKind = FileKind::Keys;

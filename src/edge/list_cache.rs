@@ -15,12 +15,12 @@ use std::time::UNIX_EPOCH;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::file_error::{open_regular, read_regular};
-use super::log::{LOG_NAME, corrected_code};
-use super::replace_file;
-use crate::session::settings::Condition;
-use crate::session::study_arm::StudyArm;
-use crate::session::{Event, TimestampedEvent};
+use tomcom_session::files::file_error::{open_regular, read_regular};
+use tomcom_session::files::replace_file;
+use tomcom_session::log::{LOG_NAME, corrected_code};
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
+use tomcom_session::{Event, TimestampedEvent};
 
 /// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;

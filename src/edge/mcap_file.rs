@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{McapError, WriteOptions, Writer};
 
-use super::log::MCAP_NAME;
-use super::overwrite;
-use super::replace_file::Replacement;
 use crate::analysis::foxglove::{McapChannel, McapMessage};
+use tomcom_session::files::overwrite;
+use tomcom_session::files::replace_file::Replacement;
+use tomcom_session::log::MCAP_NAME;
 
 /// First bytes of every MCAP file (its magic number).
 const BEGINS: &[u8] = b"\x89MCAP0\r\n";

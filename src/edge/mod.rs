@@ -12,7 +12,6 @@ pub mod datagram_holder;
 pub mod display;
 pub mod doctor;
 pub mod export;
-pub mod file_error;
 pub mod files;
 pub mod forget;
 mod frames;
@@ -28,29 +27,21 @@ mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
 pub mod key_file;
-mod known_settings;
-pub mod language;
 pub mod list_cache;
-pub mod log;
 pub mod lsl;
 #[cfg(feature = "mcap")]
 pub mod mcap_file;
 pub mod near_path;
 mod outer_address;
-pub mod overwrite;
 mod pairing;
 mod pairing_code;
-pub mod parse;
 pub mod picture_file;
-mod place;
 pub mod pool_file;
 pub mod power_files;
 pub mod pupil;
 pub mod recordings;
-pub mod replace_file;
 #[cfg(feature = "rerun")]
 pub mod rerun;
-pub mod rescue;
 #[cfg(feature = "rerun")]
 pub mod rrd;
 mod sender_clock;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::file_error::{FileError, FileResult};
-use super::overwrite;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::overwrite;
 
 /// Checks that a picture can be written to this path. `what` names the picture in messages.
 ///

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file_error::{FileError, FileResult, read_bytes};
-use super::overwrite;
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
+use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
+use tomcom_session::files::overwrite;
 
 /// Largest size of a pool's file, in bytes.
 const MAX_POOL: u64 = 1 << 30;

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use super::file_error::{FileError, FileResult};
-use super::overwrite;
 use crate::study::drawn_study::SignificanceTestMethod;
 use crate::study::power_answer::{PowerSummary, SampleSizePower, TestPower};
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::overwrite;
 
 /// A column of the table of statistical power: its name, and the function that computes its value for a row.
 type PowerColumn = (&'static str, fn(&SampleSizePower, &TestPower) -> String);

@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::file_error::{FileError, FileResult, open_regular};
-use super::log::{LOG_NAME, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling};
-use crate::session::header::{FORMAT, PreviousPart};
-use crate::session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
-use crate::session::protocol::{ProtocolEvent, StudyPhase};
-use crate::session::{Event, TimestampedEvent};
+use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
+use tomcom_session::header::{FORMAT, PreviousPart};
+use tomcom_session::log::{
+    LOG_NAME, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
+};
+use tomcom_session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
+use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::{Event, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
 /// count as one recording, and copies of a log once. Simulated recordings and other files do not count.

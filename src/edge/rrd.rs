@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::file_error::{open_regular, read_regular};
-pub use super::log::RRD_NAME;
-use super::replace_file;
 use super::rerun::VERSION;
 use super::stream_head::{BEGINS, MARK, MARK_END};
 use crate::scene;
+use tomcom_session::files::file_error::{open_regular, read_regular};
+use tomcom_session::files::replace_file;
+pub use tomcom_session::log::RRD_NAME;
 
 /// Marker in the last bytes of a Rerun file that was written to its end.
 const ENDS: &[u8] = b"FOOT";

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file_error::{FileError, FileResult, open_regular};
-use super::log::at_line;
-use super::overwrite;
-use super::replace_file::Replacement;
 use crate::study::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartKitchen};
+use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
+use tomcom_session::files::overwrite;
+use tomcom_session::files::replace_file::Replacement;
+use tomcom_session::log::at_line;
 
 /// Longest line of a part, in bytes: the rows of events of one recording.
 const MAX_LINE: u64 = 1 << 28;

@@ -25,8 +25,8 @@ use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
 use crate::console::{ConsoleModel, view};
-use crate::session::Session;
-use crate::session::settings::{ColourTheme, ConsoleSpec};
+use tomcom_session::Session;
+use tomcom_session::settings::{ColourTheme, ConsoleSpec};
 
 /// Writer of frames; `None` unless the terminal is set up for the console.
 static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);

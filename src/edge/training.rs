@@ -4,9 +4,9 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use super::file_error::{FileError, FileResult, read_regular};
-use super::replace_file;
 use crate::analysis::training_record::WizardTrainingRecord;
+use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
+use tomcom_session::files::replace_file;
 
 /// Writes a training record to a new file in the folder and returns its path.
 ///

@@ -3,12 +3,12 @@
 
 use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::{RecordingReplay, SameKitchenCheck};
 use super::timing::monotonic_ns;
 use crate::analysis::planner_accuracy::{
     ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests, ThreadPlanner,
 };
-use crate::edge::file_error::FileResult;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 
 /// Numbers of steps at which the planner's accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,47 +5,8 @@ use std::thread;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-use crate::analysis::advisor::{AdviceRequest, Advisor};
 use tomcom_core::communication::recommendation::Recommendation;
-
-impl Advisor {
-    /// Starts the assistant's thread, which ends when the returned connection is dropped.
-    pub fn on_thread(mut self) -> AdvisorThreadHandle {
-        let (ask, questions) = channel::<AdviceRequest>();
-        let (answer, answers) = unbounded_channel();
-        thread::spawn(move || {
-            let mut next = questions.recv().ok();
-            while let Some(question) = next {
-                // The newest request for advice replaces earlier ones that have not been answered.
-                let newest = questions.try_iter().last().unwrap_or(question);
-                if answer.send(self.answer(&newest)).is_err() {
-                    return;
-                }
-                next = self.until_asked(&newest, &questions);
-            }
-        });
-        AdvisorThreadHandle { ask, answers }
-    }
-
-    /// Waits for the next request for advice, and works ahead meanwhile if the session's settings say so; `None` once
-    /// nobody can send requests any more.
-    fn until_asked(&mut self, last: &AdviceRequest, questions: &Receiver<AdviceRequest>) -> Option<AdviceRequest> {
-        let mut next = Err(TryRecvError::Empty);
-        if self.works_ahead {
-            self.work_ahead(last, &mut || {
-                if matches!(next, Err(TryRecvError::Empty)) {
-                    next = questions.try_recv();
-                }
-                matches!(next, Err(TryRecvError::Empty))
-            });
-        }
-        match next {
-            Ok(question) => Some(question),
-            Err(TryRecvError::Empty) => questions.recv().ok(),
-            Err(TryRecvError::Disconnected) => None,
-        }
-    }
-}
+use tomcom_session::advisor::{AdviceRequest, Advisor};
 
 /// A live session's connection to the assistant's thread.
 #[derive(Debug)]
@@ -56,6 +17,24 @@ pub struct AdvisorThreadHandle {
 }
 
 impl AdvisorThreadHandle {
+    /// Starts the assistant's thread, which ends when the returned connection is dropped.
+    pub fn start(mut advisor: Advisor) -> AdvisorThreadHandle {
+        let (ask, questions) = channel::<AdviceRequest>();
+        let (answer, answers) = unbounded_channel();
+        thread::spawn(move || {
+            let mut next = questions.recv().ok();
+            while let Some(question) = next {
+                // The newest request for advice replaces earlier ones that have not been answered.
+                let newest = questions.try_iter().last().unwrap_or(question);
+                if answer.send(advisor.answer(&newest)).is_err() {
+                    return;
+                }
+                next = until_asked(&mut advisor, &newest, &questions);
+            }
+        });
+        AdvisorThreadHandle { ask, answers }
+    }
+
     /// Sends a request for advice to the assistant, which replaces an earlier request that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
         // If the assistant's thread has ended, the session continues without recommendations.
@@ -68,5 +47,28 @@ pub async fn next_advice(advisor: &mut Option<AdvisorThreadHandle>) -> Option<Re
     match advisor {
         Some(desk) => desk.answers.recv().await,
         None => std::future::pending().await,
+    }
+}
+
+/// Waits for the next request for advice, and works ahead meanwhile if the session's settings say so; `None` once
+/// nobody can send requests any more.
+fn until_asked(
+    advisor: &mut Advisor,
+    last: &AdviceRequest,
+    questions: &Receiver<AdviceRequest>,
+) -> Option<AdviceRequest> {
+    let mut next = Err(TryRecvError::Empty);
+    if advisor.works_ahead {
+        advisor.work_ahead(last, &mut || {
+            if matches!(next, Err(TryRecvError::Empty)) {
+                next = questions.try_recv();
+            }
+            matches!(next, Err(TryRecvError::Empty))
+        });
+    }
+    match next {
+        Ok(question) => Some(question),
+        Err(TryRecvError::Empty) => questions.recv().ok(),
+        Err(TryRecvError::Disconnected) => None,
     }
 }

@@ -13,17 +13,17 @@ use crate::analysis::bids::{
     QuestionnairePhenotypes, RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
 use crate::edge::bids_tree::BidsTree;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LogEnding, LogReader};
-use crate::session::event::Event;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::settings::ParticipantKind;
-use crate::session::{LogHeader, apply};
 use crate::study::planned_trial::{RecordingCopy, copies_in_words};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::measures::errors::PressJudge;
+use tomcom_session::event::Event;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::{LogEnding, LogReader};
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::{LogHeader, apply};
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]

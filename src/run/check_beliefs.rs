@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use super::gathered::GatheredRecordings;
 use super::parallel;
-use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_figures::ProbeSummary;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::session::settings::ParticipantKind;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::chosen_thresholds;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
+use tomcom_session::settings::ParticipantKind;
 
 /// Checks the belief estimates of recordings in one kitchen. The thresholds for flagging false beliefs are chosen on
 /// the recordings `choose_on`, which are not checked, or by cross-fitting if there are none. `done` is called after

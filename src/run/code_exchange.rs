@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::codes::CodedRecording;
 use super::error::RunError;
-use crate::edge::file_error::FileResult;
-use crate::edge::log::rater_codes::{self, RaterCodeRow};
-use crate::edge::log::{RecordingLock, RecordingWriteError, consensus_file};
-use crate::session::person_code;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::rater_codes::{self, RaterCodeRow};
+use tomcom_session::log::{RecordingLock, RecordingWriteError, consensus_file};
+use tomcom_session::person_code;
 
 /// Advice in error messages on how the table names a rater.
 const RATER: &str = "a rater's code of a letter and up to 15 letters, digits, - and _, never a name; or two codes such as \

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::replay::RecordingReplay;
-use crate::analysis::error_list::ListedError;
-use crate::edge::file_error::FileResult;
-use crate::edge::log::{consensus_file, rater_codes};
-use crate::history::wording;
-use crate::session::settings::ParticipantKind;
 use crate::study::figures::IdenticalCodes;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
 use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
 use tomcom_core::measures::rater_choice::{RaterPair, of_most};
+use tomcom_session::error_list::ListedError;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::history::wording;
+use tomcom_session::log::{consensus_file, rater_codes};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::ParticipantKind;
 
 /// A recording with raters' codes of its errors.
 #[derive(Clone, Debug)]

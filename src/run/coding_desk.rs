@@ -2,13 +2,13 @@
 
 use super::error::ReviewError;
 use super::seekable_replay::SeekableReplay;
-use crate::analysis::error_list::ListedError;
 use crate::console::rater_session::{CodingRaters, RaterSession};
-use crate::edge::file_error::FileError;
-use crate::edge::log::{RecordingWriteError, consensus_file, rater_codes};
-use crate::session::person_code;
 use tomcom_core::measures::cause_codes::{CodableErrors, RaterCodes};
 use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
+use tomcom_session::error_list::ListedError;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::{RecordingWriteError, consensus_file, rater_codes};
+use tomcom_session::person_code;
 
 /// The coding session of one rater, with the codes that the rater gave earlier.
 ///

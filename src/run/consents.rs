@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::edge::file_error::FileResult;
-use crate::edge::log::LogReader;
-use crate::session::Event;
-use crate::session::protocol::ProtocolEvent;
 use crate::study::recorded_consent::RecordedConsent;
+use tomcom_session::Event;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::LogReader;
+use tomcom_session::protocol::ProtocolEvent;
 
 /// The consent with which the recording begins (in its first part); `None` if the recording does not begin with a
 /// consent.

@@ -23,10 +23,10 @@ use crate::edge::lsl::{self, InletThreadGuard, LslError};
 use crate::edge::pupil::{self, CaptureConfiguration, CaptureRequest};
 use crate::edge::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::edge::terminal_input::TerminalInput;
-use crate::session::SessionSpec;
-use crate::session::accuracy_check::AcceptedGazeCheck;
-use crate::session::settings::{ConsoleSpec, GazeSource};
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::SessionSpec;
+use tomcom_session::accuracy_check::AcceptedGazeCheck;
+use tomcom_session::settings::{ConsoleSpec, GazeSource};
 
 /// Largest number of tracker messages that are processed together; more would delay the wizard's keys.
 const PACKET: usize = 32;

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 
 use super::resume::ResumeError;
 use crate::console::key_action::KeyError;
-use crate::edge::file_error::FileError;
-use crate::edge::log::RecordingWriteError;
 use crate::edge::lsl::LslError;
 use tomcom_core::gaze::tags::TagError;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::RecordingWriteError;
 
 /// Error of a command: a file cannot be read, or a result cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -15,8 +15,8 @@ use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::terminal::TerminalScreen;
-use crate::session::Session;
 use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_session::Session;
 
 /// Least time between two frames of the console (30 frames per second).
 pub(super) const FRAME: Duration = Duration::from_millis(33);

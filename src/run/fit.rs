@@ -6,18 +6,18 @@ use std::sync::Arc;
 
 use super::gathered::GatheredRecordings;
 use super::parallel::WorkerPool;
-use super::replay::{RecordingReplay, SameKitchenCheck};
 use crate::analysis::fitting::fitted_answers::IntervalNarrowing;
 use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings, OtherModel, in_words};
-use crate::edge::file_error::{FileError, FileResult};
-use crate::session::Event;
-use crate::session::probe_sampling;
-use crate::session::probes::{ProbeEvent, ProbeQuestion};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::Observation;
+use tomcom_session::Event;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::probe_sampling;
+use tomcom_session::probes::{ProbeEvent, ProbeQuestion};
+use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 
 /// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]

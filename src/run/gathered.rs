@@ -9,12 +9,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{parallel, standing};
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
 use crate::edge::recordings;
-use crate::session::{LogHeader, person_code};
 use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
 use crate::study::preregistration::RecordedPlan;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
+use tomcom_session::{LogHeader, person_code};
 
 /// Recordings without copies, of which no two count for one trial of a plan.
 #[derive(Clone, Debug, Default)]

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::options::SessionStart;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::session::Session;
 use tomcom_core::base::words::count;
+use tomcom_session::Session;
 
 /// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

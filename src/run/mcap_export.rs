@@ -6,16 +6,16 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::analysis::follower::SessionFollower;
 use crate::analysis::foxglove::McapMessageConverter;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogEnding, LogReader};
 use crate::edge::mcap_file::McapFile;
-use crate::session::LogHeader;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::LogHeader;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::log::{LOG_NAME, LogEnding, LogReader};
+use tomcom_session::study_arm::StudyArm;
 
 /// Summary of a recording's export as MCAP.
 #[derive(Clone, Debug, Serialize)]

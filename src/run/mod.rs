@@ -18,7 +18,6 @@ mod coding_desk;
 mod consents;
 #[cfg(feature = "cli")]
 mod desk;
-pub mod engine;
 #[cfg(feature = "cli")]
 pub mod error;
 #[cfg(feature = "cli")]
@@ -28,7 +27,6 @@ pub mod fit;
 #[cfg(feature = "cli")]
 #[cfg(feature = "cli")]
 pub mod gathered;
-pub mod headless;
 #[cfg(feature = "cli")]
 pub mod kept_cost;
 #[cfg(feature = "cli")]
@@ -53,8 +51,6 @@ pub mod pool;
 pub mod power_measurement;
 #[cfg(feature = "cli")]
 pub mod recording_list;
-#[cfg(feature = "cli")]
-pub mod replay;
 #[cfg(feature = "cli")]
 pub mod resume;
 #[cfg(feature = "cli")]
@@ -86,8 +82,6 @@ mod training_shell;
 #[cfg(feature = "cli")]
 mod unfinished_recording;
 #[cfg(feature = "cli")]
-pub mod verify;
-#[cfg(feature = "cli")]
-mod watch_desk;
+pub mod watch_desk;
 #[cfg(feature = "cli")]
 mod wizard_question;

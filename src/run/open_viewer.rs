@@ -8,11 +8,6 @@ use std::time::Duration;
 
 use tempfile::TempPath;
 
-use super::replay::RecordingReplay;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
-use crate::edge::overwrite;
-use crate::edge::replace_file::Replacement;
 use crate::edge::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
 use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
 use crate::edge::stream::{PORTS, is_free};
@@ -21,9 +16,14 @@ use crate::edge::terminal::asked_to_end;
 use crate::edge::viewer::{self, ViewerAvailability};
 use crate::scene::entity_content::slug;
 use crate::scene::{SceneInputs, SessionScene};
-use crate::session::TimestampedEvent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_session::TimestampedEvent;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::overwrite;
+use tomcom_session::files::replace_file::Replacement;
+use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
+use tomcom_session::replay::RecordingReplay;
 
 /// First network ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;

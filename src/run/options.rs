@@ -4,14 +4,15 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::analysis::watcher::SenderComparisonSettings;
-use crate::edge::file_error::FileResult;
-use crate::edge::files::{self, SessionSetup};
-use crate::session::LogHeader;
-use crate::session::plan::PlanSpec;
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
+use crate::edge::files;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::LogHeader;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::files::{SessionSetup, built_in_session};
+use tomcom_session::plan::PlanSpec;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
+use tomcom_session::watcher::SenderComparisonSettings;
 
 /// What a live session starts from: a new session, a repeated trial, or a recording to continue.
 #[derive(Clone, Debug)]
@@ -143,6 +144,6 @@ pub fn session_or_default(path: Option<&Path>) -> FileResult<SessionSetup> {
     match path {
         Some(path) => files::read_session(path),
         None if default.exists() => files::read_session(default),
-        None => files::built_in_session(),
+        None => built_in_session(),
     }
 }

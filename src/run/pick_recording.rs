@@ -14,7 +14,7 @@ use crate::console::recording_picker::{RecordingPicker, RecordingReply};
 use crate::console::view::recordings_page::recording_targets;
 use crate::console::view::theme::Theme;
 use crate::edge::terminal::TerminalScreen;
-use crate::session::settings::ConsoleSpec;
+use tomcom_session::settings::ConsoleSpec;
 
 /// Period of redrawing the list of recordings, in case the terminal's size changed.
 const REDRAW: Duration = Duration::from_millis(100);

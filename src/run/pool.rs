@@ -5,21 +5,21 @@ use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::engine::SessionEngine;
 use super::kept_cost::KeptCost;
+use super::parallel;
 use super::simulate::SimulationShard;
-use super::{headless, parallel};
 use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::files::SessionSetup;
-use crate::session::plan::{Participants, Study};
-use crate::session::settings::Condition;
-use crate::session::study_arm::StudyArm;
-use crate::session::{SessionSpec, TimestampedEvent};
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::plan::{Participants, Study};
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
+use tomcom_session::{SessionSpec, TimestampedEvent};
 
 /// Request to simulate a pool of participants, from which studies are drawn.
 #[derive(Clone, Debug)]
@@ -164,7 +164,7 @@ impl PoolStudy<'_> {
             signals.note(stamped);
             Ok::<(), Infallible>(())
         };
-        headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
+        tomcom_session::headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
         let follower = engine.into_follower();
         let summary = TrialSummary::from_follower(&follower);
         // Simulated participants record their beliefs before every press, so false beliefs are known.

@@ -5,11 +5,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::parallel;
-use crate::edge::file_error::{FileError, FileResult};
 use crate::study::drawn_study::{DrawnEffect, PowerTest, StudySampler, tests};
 use crate::study::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, count, ratios};
 use crate::study::power_answer::{PowerSummary, SampleSizeRejections};
 use crate::study::simulation_pool::SimulationPool;
+use tomcom_session::files::file_error::{FileError, FileResult};
 
 /// Number of studies that a thread draws in one block.
 const BLOCK: u64 = 25;

@@ -7,12 +7,12 @@ use super::kept_cost::KeptCost;
 use super::{parallel, standing};
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
-use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
-use crate::edge::log::{LogEnding, LogReader};
 use crate::edge::recordings;
-use crate::session::apply;
 use tomcom_core::measures::errors::PressJudge;
+use tomcom_session::apply;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::{LogEnding, LogReader};
 
 /// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::engine::SessionEngine;
-use super::verify::RepeatedRecording;
-use crate::edge::file_error::FileError;
-use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued};
-use crate::session::header::PreviousPart;
-use crate::session::{Event, LogHeader, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::header::PreviousPart;
+use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued};
+use tomcom_session::verify::RepeatedRecording;
+use tomcom_session::{Event, LogHeader, TimestampedEvent};
 
 /// Why a recording cannot be continued.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -11,18 +11,18 @@ use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
 use super::seekable_replay::SeekableReplay;
 use super::watch_desk::ComparisonThreadHandle;
-use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use crate::console::compared::SenderComparisonView;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{Playback, ReplayAction};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
-use crate::edge::log::{LogEnding, RecordingLock};
 use crate::edge::terminal::TerminalScreen;
-use crate::history::wording;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::history::wording;
+use tomcom_session::log::{LogEnding, RecordingLock};
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 
 /// Time spent on reading the rest of a recording, of the 50 ms between two ticks for files.
 const READING: Duration = Duration::from_millis(35);
@@ -120,7 +120,7 @@ impl Review {
         let comparison = compare.map(|request| {
             let session = film.replay.log().session();
             let cost = CostToGo::new(session.kitchen.clone());
-            SenderComparisonFollower::new(session, cost, request).without_causes().on_thread()
+            ComparisonThreadHandle::start(SenderComparisonFollower::new(session, cost, request).without_causes())
         });
         let name = recording.file_name().unwrap_or(recording.as_os_str()).to_string_lossy().into_owned();
         let excluded = film.standing()?.excluded.is_some();

@@ -4,22 +4,22 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use super::engine::SessionEngine;
-use super::headless;
 use super::kept_cost::KeptCost;
 use super::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
 use crate::analysis::belief_check::TrialBeliefCollector;
 use crate::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
-use crate::analysis::follower::SessionFollower;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::CohortBattery;
-use crate::session::battery::CohortSpec;
-use crate::session::settings::{Condition, SessionSpec};
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
+use tomcom_session::battery::CohortSpec;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::headless;
+use tomcom_session::settings::{Condition, SessionSpec};
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]

@@ -7,16 +7,16 @@
 
 use std::path::Path;
 
-use super::replay::RecordingReplay;
 use super::standing::exclusion_status;
 use crate::analysis::exclusion_status::ExclusionStatus;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::LogPlace;
-use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
-use crate::history::landmark::ReplayLandmark;
-use crate::session::settings::WizardVisibility;
-use crate::session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
+use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::log::LogPlace;
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
 
 /// Largest number of events in a chunk.
 const CHUNK: usize = 4096;

@@ -10,14 +10,14 @@ use super::live;
 use super::options::{SeriesRequest, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
-use crate::analysis::watcher::SenderComparisonSettings;
 use crate::console::question::StartQuestion;
-use crate::edge::file_error::FileError;
-use crate::edge::files::SessionSetup;
-use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError};
 use crate::edge::recordings;
-use crate::session::plan::{NextRecording, ParticipantProgress, PlanRecording, Study};
-use crate::session::wall_display::AnswerDevice;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, Study};
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::watcher::SenderComparisonSettings;
 
 /// Result of one session, or of a participant's series of sessions.
 #[derive(Clone, Debug)]

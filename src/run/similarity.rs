@@ -6,10 +6,10 @@ use super::gathered::GatheredRecordings;
 use super::parallel;
 use super::standing::exclusion_status;
 use crate::analysis::compared_recording::{RecordingSenderComparison, SenderComparer};
-use crate::analysis::watcher::SenderComparisonSettings;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::LogReader;
 use tomcom_core::base::words::count;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::LogReader;
+use tomcom_session::watcher::SenderComparisonSettings;
 
 /// Matching windows that the option `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;

@@ -10,25 +10,25 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::engine::SessionEngine;
 use super::error::RunError;
 use super::kept_cost::KeptCost;
 use super::leaving::ways_to_look;
+use super::options;
 use super::parallel::WorkerPool;
-use super::replay::RecordingReplay;
-use super::{headless, options};
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
-use crate::edge::file_error::FileError;
-use crate::edge::files::SessionSetup;
-use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated, ruling};
-use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
-use crate::session::study_arm::StudyArm;
-use crate::session::{LogHeader, TimestampedEvent};
 use tomcom_core::base::words::count;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated, ruling};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::{Condition, ParticipantSpec, SessionSpec};
+use tomcom_session::study_arm::StudyArm;
+use tomcom_session::{LogHeader, TimestampedEvent};
 
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]
@@ -258,7 +258,7 @@ fn simulate_trial(
         }
         SimulatedLogState::Begun { mut log, moved } => {
             let mut engine = SessionEngine::new(kitchen.clone(), header.session, header.trial, cost);
-            headless::run(&mut engine, |stamped: &TimestampedEvent| log.append(stamped))?;
+            tomcom_session::headless::run(&mut engine, |stamped: &TimestampedEvent| log.append(stamped))?;
             log.flush()?;
             (engine.into_follower(), false, moved)
         }

@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use crate::analysis::exclusion_status::ExclusionStatus;
-use crate::edge::file_error::FileResult;
-use crate::edge::log::{ExclusionRecord, LogEnding, LogReader, ruling};
-use crate::session::{Event, Session, apply};
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::{ExclusionRecord, LogEnding, LogReader, ruling};
+use tomcom_session::{Event, Session, apply};
 
 /// Reason for which the trial of a recording was aborted; `None` if the trial was not aborted.
 ///

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::gathered::GatheredRecordings;
 use super::parallel;
 use crate::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
-use crate::edge::file_error::FileResult;
-use crate::edge::log::LogReader;
-use crate::session::{Session, apply};
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::LogReader;
+use tomcom_session::{Session, apply};
 
 /// Measures how steady the offers of recordings are. `done` is called after each recording.
 ///

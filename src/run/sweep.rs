@@ -13,17 +13,17 @@ use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_t
 use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
-use crate::edge::file_error::FileError;
-use crate::edge::log::RecordingWriteError;
-use crate::edge::overwrite;
-use crate::session::SessionSpec;
-use crate::session::settings::{Condition, GazeSource};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::decimal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::fitting::HumanModelParameter;
+use tomcom_session::SessionSpec;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::files::overwrite;
+use tomcom_session::log::RecordingWriteError;
+use tomcom_session::settings::{Condition, GazeSource};
 
 /// Name of the results table's file in the folder of the recordings; shards have file names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";

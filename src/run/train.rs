@@ -12,13 +12,13 @@ use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use super::training_shell::TrainingShell;
 use crate::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
-use crate::analysis::wizard_log::false_belief_periods;
 use crate::console::playback::SPEEDS;
-use crate::edge::clock::WallTime;
-use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::training;
-use crate::session::settings::{Condition, WizardVisibility};
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::wall_time::WallTime;
+use tomcom_session::settings::{Condition, WizardVisibility};
+use tomcom_session::wizard_log::false_belief_periods;
 
 /// Request of `tomcom train`.
 #[derive(Clone, Debug)]

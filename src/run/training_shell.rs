@@ -17,9 +17,6 @@ use crate::console::playback::{Playback, SPEEDS};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
-use crate::history::wording;
-use crate::session::event::SignalEndReason;
-use crate::session::{Event, TimestampedEvent, apply};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::recommendation::aspects_told;
@@ -28,6 +25,9 @@ use tomcom_core::measures::wizard_performance::{
     FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, verdicts,
 };
 use tomcom_core::mind::RecordedBelief;
+use tomcom_session::event::SignalEndReason;
+use tomcom_session::history::wording;
+use tomcom_session::{Event, TimestampedEvent, apply};
 
 /// The training console for one recording.
 pub(super) struct TrainingShell {

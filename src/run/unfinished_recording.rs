@@ -3,17 +3,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::engine::SessionEngine;
 use super::error::LiveError;
 use super::options::SessionStart;
 use super::resume::resume;
-use crate::analysis::watcher::SenderComparisonSettings;
-use crate::edge::log::RecordingLock;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::log::RecordingLock;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_session::{LogHeader, SessionSpec, TimestampedEvent};
 
 /// A session that is prepared to be run and recorded.
 pub(super) struct PreparedSession {

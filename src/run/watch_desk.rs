@@ -3,33 +3,9 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-use crate::analysis::watcher::SenderComparisonFollower;
-use crate::history::comparison::SenderComparison;
-use crate::session::{Event, TimestampedEvent};
-
-impl SenderComparisonFollower {
-    /// Starts the comparison's thread, which ends when the returned connection is dropped.
-    pub fn on_thread(mut self) -> ComparisonThreadHandle {
-        let (tell, events) = channel::<TimestampedEvent>();
-        let (show, views) = channel();
-        thread::spawn(move || {
-            while let Ok(stamped) = events.recv() {
-                let before = self.progress();
-                // The session itself has accepted this event. If the comparison's copy of the session refuses the
-                // event, the comparison ends.
-                if self.apply(&stamped).is_err() {
-                    return;
-                }
-                let is_over = matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
-                let is_news = is_over || self.progress() != before;
-                if is_news && show.send(self.comparison(is_over)).is_err() {
-                    return;
-                }
-            }
-        });
-        ComparisonThreadHandle { tell, views }
-    }
-}
+use tomcom_session::history::comparison::SenderComparison;
+use tomcom_session::watcher::SenderComparisonFollower;
+use tomcom_session::{Event, TimestampedEvent};
 
 /// The console's connection to the thread that compares wizard and assistants.
 #[derive(Debug)]
@@ -39,6 +15,28 @@ pub struct ComparisonThreadHandle {
 }
 
 impl ComparisonThreadHandle {
+    /// Starts the comparison's thread, which ends when the returned connection is dropped.
+    pub fn start(mut follower: SenderComparisonFollower) -> ComparisonThreadHandle {
+        let (tell, events) = channel::<TimestampedEvent>();
+        let (show, views) = channel();
+        thread::spawn(move || {
+            while let Ok(stamped) = events.recv() {
+                let before = follower.progress();
+                // The session itself has accepted this event. If the comparison's copy of the session refuses the
+                // event, the comparison ends.
+                if follower.apply(&stamped).is_err() {
+                    return;
+                }
+                let is_over = matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
+                let is_news = is_over || follower.progress() != before;
+                if is_news && show.send(follower.comparison(is_over)).is_err() {
+                    return;
+                }
+            }
+        });
+        ComparisonThreadHandle { tell, views }
+    }
+
     /// Passes an event of the session to the thread that compares wizard and assistants.
     pub fn tell(&self, stamped: &TimestampedEvent) {
         // If the comparison's thread has ended, the session continues without a comparison.

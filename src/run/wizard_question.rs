@@ -10,8 +10,8 @@ use crate::console::pasting::refusal_of_paste;
 use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
 use crate::display::ConsentHold;
-use crate::session::wall_display::AnswerDevice;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::wall_display::AnswerDevice;
 
 /// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);

@@ -4,9 +4,6 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SeriesStyle, slug};
-use crate::history::wording;
-use crate::session::settings::ArmKind;
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::link::{CollisionSolid, LinkShape};
 use tomcom_arm::motion::JointMotion;
@@ -17,6 +14,9 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen, KitchenChange, Press};
 use tomcom_core::robot::moment::{ArmSample, JointAngles};
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::history::wording;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Period of updates of a moving arm, in nanoseconds.
 const EVERY_NS: u64 = 50_000_000;

@@ -2,14 +2,14 @@
 
 use super::colours;
 use super::entity_content::{EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
-use crate::history::wording;
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, Kitchen, State, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::recorded_estimate::RecordedEstimate;
 use tomcom_core::mind::{AspectBelief, RecordedBelief};
+use tomcom_session::history::wording;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;

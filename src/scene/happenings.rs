@@ -3,15 +3,15 @@
 use super::EntityUpdate;
 use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, MarkShape, SceneLogLevel, SeriesStyle, slug};
-use crate::history::wording;
-use crate::session::event::SignalEndReason;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::{Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
+use tomcom_session::event::SignalEndReason;
+use tomcom_session::history::wording;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::{Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Path of the error marks below the belief curves.
 const ERROR_MARKS: &str = "human/errors/marks";

@@ -12,7 +12,6 @@ mod happenings;
 mod place_entities;
 mod probe_entities;
 
-use crate::session::{Event, Session, TimestampedEvent, apply};
 use arm::RobotArmScene;
 use belief_entities::BeliefScene;
 pub use entity_content::{EntityData, EntityUpdate};
@@ -21,6 +20,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
 pub const VERSION: u32 = 6;

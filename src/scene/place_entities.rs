@@ -2,14 +2,14 @@
 
 use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
-use crate::history::wording;
-use crate::session::{Session, proposals};
 use tomcom_core::communication::Signal;
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::{
     self, Agent, AspectId, ContentId, IngredientStorage, Kitchen, Location, LocationId, LocationKind, OrderContent,
     State,
 };
+use tomcom_session::history::wording;
+use tomcom_session::{Session, proposals};
 
 /// Half widths of the outlines in the kitchen, in millimetres.
 const THIN: f64 = 2.0;

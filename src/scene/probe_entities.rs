@@ -3,11 +3,11 @@
 use super::EntityUpdate;
 use super::colours;
 use super::entity_content::{EntityData, SceneLogLevel, slug};
-use crate::history::{probe_wording, wording};
-use crate::session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
-use crate::session::{Session, probe_sampling};
 use tomcom_core::kitchen::Agent;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_session::history::{probe_wording, wording};
+use tomcom_session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
+use tomcom_session::{Session, probe_sampling};
 
 /// Path of the lane with the question that is being asked.
 const ASKED: &str = "human/probes/asked";

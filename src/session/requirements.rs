@@ -1,7 +1,7 @@
 //! Checks that the build contains the optional parts of the program that a session needs.
 
 use super::settings::{ArmKind, ParticipantKind, SessionSpec};
-use crate::session::features::{Feature, MissingFeature};
+use crate::features::{Feature, MissingFeature};
 
 impl SessionSpec {
     /// Checks that this build can run the session without a console; the simulated arm is an optional part of the

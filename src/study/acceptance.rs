@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::trial_statistics::{QuestionnaireAnswer, TrialStatistics, mean};
-use crate::session::plan::QuestionnaireItemKind;
-use crate::session::study_arm::StudyArm;
+use tomcom_session::plan::QuestionnaireItemKind;
+use tomcom_session::study_arm::StudyArm;
 
 /// Acceptance of the assistance: each participant's mean answer, after assisted trials, to the questionnaire items
 /// about acceptance, from 0 (none) to 1 (full). Answers to items in which agreement means rejection are reversed.

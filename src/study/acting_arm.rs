@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use crate::session::study_arm::StudyArm;
 use tomcom_core::communication::concept::ConceptName;
+use tomcom_session::study_arm::StudyArm;
 
 /// Name of the sender of a simulated trial's signals: a study arm's name, or a concept's.
 pub type SignalSenderName = &'static str;

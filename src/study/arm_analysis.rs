@@ -9,8 +9,8 @@ use super::tables::probe_table::PROBES_WRONG;
 use super::tables::trials::measures;
 use super::trial_statistics::{TrialStatistics, mean};
 use super::trial_totals::TrialTotals;
-use crate::session::settings::WizardVisibility;
-use crate::session::study_arm::StudyArm;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::study_arm::StudyArm;
 
 /// A trial that was carried out in another arm than the one to which the plan assigned it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

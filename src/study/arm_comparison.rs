@@ -15,8 +15,8 @@ use super::group_orders::{GroupOrder, group_orders};
 use super::linear_mixed_model::{LinearMixedModel, MixedModelContrast};
 use super::negative_binomial_model::WaldContrast;
 use super::trial_statistics::TrialStatistics;
-use crate::session::plan::{PrimaryOutcome, StudyAims};
-use crate::session::study_arm::StudyArm;
+use tomcom_session::plan::{PrimaryOutcome, StudyAims};
+use tomcom_session::study_arm::StudyArm;
 
 /// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,7 +2,7 @@
 
 use super::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
 use super::negative_binomial_model::{CountObservation, NegativeBinomialModel};
-use crate::session::study_arm::StudyArm;
+use tomcom_session::study_arm::StudyArm;
 
 /// A trial in the comparison of arms: participant, period, arm, and counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

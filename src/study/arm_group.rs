@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::robot_tally::RobotEventSummary;
 use super::trial_statistics::TrialStatistics;
-use crate::session::settings::ArmKind;
+use tomcom_session::settings::ArmKind;
 
 /// Robot statistics summed over the trials with one kind of robot arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]

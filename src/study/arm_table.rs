@@ -7,8 +7,8 @@ use super::arm_comparison::{StudyArmComparison, compare_counts};
 use super::arm_design::StudyArmTrial;
 use super::simulation_pool::{PoolTrialCounts, SimulationPool};
 use crate::analysis::trial_bootstrap::interval_where_known;
-use crate::session::plan::{PrimaryOutcome, StudyAims};
-use crate::session::study_arm::StudyArm;
+use tomcom_session::plan::{PrimaryOutcome, StudyAims};
+use tomcom_session::study_arm::StudyArm;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;

@@ -2,11 +2,11 @@
 //! signals and the participant's presses. Neither estimates nor recorded beliefs are part of this trace.
 
 use crate::analysis::looks::LocationDwells;
-use crate::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::gaze::MIN_CONFIDENCE;
 use tomcom_core::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Event of a trial that can change or show the participant's belief.
 #[derive(Clone, Debug, PartialEq)]

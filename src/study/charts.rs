@@ -10,9 +10,9 @@ use super::svg::{PlotAxis, SvgChart, minus};
 use super::tables::trials::HEADLINE;
 use super::trial_statistics::{TrialStatistics, mean};
 use crate::analysis::probe_figures::ProbeSummary;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::detection::CalibrationBin;
+use tomcom_session::study_arm::StudyArm;
 
 /// Chart of errors by condition and participant (after the paper's figure, top left); lines join the two trials of a
 /// participant, means are black.

@@ -17,9 +17,9 @@ use super::arm_comparison::primary_contrasts;
 use super::arm_design::{StudyArmTrial, pairs};
 use super::simulation_pool::SimulationPool;
 use super::statistics::mixed_anova;
-use crate::session::plan::orders;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::base::rng::{Stream, shuffle, stream};
+use tomcom_session::plan::orders;
+use tomcom_session::study_arm::StudyArm;
 
 /// Least number of participants in each order of arms: drawing from a single participant would give no variance between
 /// participants.

@@ -11,7 +11,7 @@ use super::statistics::{
     ConfidenceInterval, Correlation, FTest, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
 };
 use super::trial_statistics::TrialStatistics;
-use crate::session::study_arm::StudyArm;
+use tomcom_session::study_arm::StudyArm;
 
 /// Confidence level of the report's intervals.
 pub const LEVEL: f64 = 0.95;

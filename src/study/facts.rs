@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
-use crate::session::{LogHeader, Session};
 use tomcom_core::kitchen::{LocationId, LocationKind};
 use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
+use tomcom_session::{LogHeader, Session};
 
 /// Settings and circumstances by name (key), from one or several recordings; every value that occurred is kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -24,15 +24,15 @@ use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
-use crate::session::code_correction::CodeCorrection;
-use crate::session::event::TrialEndReason;
-use crate::session::settings::ParticipantKind;
 use tomcom_core::base::words::count;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::{AgreementTable, RaterAgreement};
 use tomcom_core::measures::matching::{MatchCounts, Similarity};
 use tomcom_core::measures::rater_choice::RaterPair;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
+use tomcom_session::code_correction::CodeCorrection;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::settings::ParticipantKind;
 
 /// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;

@@ -7,8 +7,8 @@ use serde_json::Value;
 use super::arm_design::pairs;
 use super::definitions::DEFINITIONS;
 use super::effect::LEVEL;
-use crate::session::plan::{PrimaryOutcome, Study};
-use crate::session::study_arm::StudyArm;
+use tomcom_session::plan::{PrimaryOutcome, Study};
+use tomcom_session::study_arm::StudyArm;
 
 /// Version of the frozen plan's file format.
 pub const FROZEN_FORMAT: u32 = 1;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::trial_statistics::TrialStatistics;
-use crate::session::study_arm::StudyArm;
+use tomcom_session::study_arm::StudyArm;
 
 /// A starting group with its order of conditions, as the group's trials show it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::acting_arm::SignalSenderWithParameter;
 use super::roc::ConceptRocCurve;
 use super::trial_statistics::{TrialStatistics, mean_length};
-use crate::session::settings::ParticipantKind;
+use tomcom_session::settings::ParticipantKind;
 
 /// Results of one sender of signals over the simulated trials that all compared arms have.
 #[derive(Clone, Debug, PartialEq, Serialize)]

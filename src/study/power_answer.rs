@@ -6,9 +6,9 @@ use serde::Serialize;
 use super::drawn_study::{DrawnEffect, PowerTest, SignificanceTestMethod, reference, tests};
 use super::power::{RejectionCount, RejectionShare, WANTED, least_ratio};
 use super::simulation_pool::PoolHeader;
-use crate::session::plan::PrimaryOutcome;
-use crate::session::study_arm::StudyArm;
 use tomcom_core::base::words::count;
+use tomcom_session::plan::PrimaryOutcome;
+use tomcom_session::study_arm::StudyArm;
 
 /// Counts of rejections for one number of participants; each list has an entry per test and a last entry for any of the
 /// contrasts.

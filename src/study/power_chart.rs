@@ -5,7 +5,7 @@ use super::power::{ALPHA, WANTED};
 use super::power_answer::PowerSummary;
 use super::report::STYLE;
 use super::svg::{PlotAxis, SvgChart, document};
-use crate::session::study_arm::StudyArm;
+use tomcom_session::study_arm::StudyArm;
 
 /// Size of the chart, in pixels.
 const SIZE: [f64; 2] = [720.0, 420.0];

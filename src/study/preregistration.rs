@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::frozen_plan::FrozenPlan;
-use crate::session::LogHeader;
 use tomcom_core::base::words::count;
+use tomcom_session::LogHeader;
 
 /// The study plan to which a recording belongs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

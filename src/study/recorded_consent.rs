@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::wall_display::AnswerDevice;
+use tomcom_session::wall_display::AnswerDevice;
 
 /// A participant's consent, as the first event of a recording has it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

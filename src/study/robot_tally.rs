@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::Event;
-use crate::session::event::TrialEndReason;
-use crate::session::settings::ArmKind;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::Event;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::settings::ArmKind;
 
 /// Robot statistics of a trial from its start to its end, pauses included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

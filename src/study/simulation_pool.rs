@@ -10,8 +10,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::plan::{PrimaryOutcome, StudyAims};
-use crate::session::study_arm::StudyArm;
+use tomcom_session::plan::{PrimaryOutcome, StudyAims};
+use tomcom_session::study_arm::StudyArm;
 
 /// Version of the pool's file format.
 pub const POOL_FORMAT: u32 = 1;

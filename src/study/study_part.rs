@@ -27,9 +27,9 @@ use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_details::TrialDetails;
 use super::trial_statistics::TrialStatistics;
-use crate::session::code_correction::CodeCorrection;
-use crate::session::header::RecordedFile;
-use crate::session::plan::PlanPosition;
+use tomcom_session::code_correction::CodeCorrection;
+use tomcom_session::header::RecordedFile;
+use tomcom_session::plan::PlanPosition;
 
 /// Version of the file format of a study's parts.
 pub const PART_FORMAT: u32 = 5;

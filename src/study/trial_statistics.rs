@@ -8,16 +8,16 @@ use super::known_beliefs::RaterFalseBeliefAgreement;
 use super::robot_tally::RobotEventSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_record::ProbedTrialStatistics;
-use crate::session::answer_value::AnswerValue;
-use crate::session::event::TrialEndReason;
-use crate::session::plan::{ItemOption, QuestionnaireItemKind, StudyAims};
-use crate::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
-use crate::session::study_arm::StudyArm;
-use crate::session::wall_display::RobotDepiction;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
 use tomcom_core::measures::rater_choice::RaterPair;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::plan::{ItemOption, QuestionnaireItemKind, StudyAims};
+use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
+use tomcom_session::study_arm::StudyArm;
+use tomcom_session::wall_display::RobotDepiction;
 
 /// Statistics of one trial of a study: conditions, counts, medians, answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

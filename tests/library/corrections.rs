@@ -7,7 +7,6 @@ use miette::Diagnostic;
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
 use tomcom::edge::forget;
-use tomcom::edge::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct, rule};
 use tomcom::edge::recordings;
 use tomcom::run::bids_export;
 use tomcom::run::gathered::GatheredRecordings;
@@ -17,7 +16,8 @@ use tomcom::run::series::recordings_of;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::run::study::{self, AnalysisRequest, NamedRecordings, describe};
-use tomcom::session::plan::{ParticipantProgress, Study};
+use tomcom_session::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct, rule};
+use tomcom_session::plan::{ParticipantProgress, Study};
 
 /// An empty folder for the test of this name.
 fn folder(name: &str) -> PathBuf {

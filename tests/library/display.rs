@@ -6,21 +6,22 @@ use std::sync::Arc;
 use serde_json::Value;
 use tomcom::display::page_language::DisplayWords;
 use tomcom::display::{DisplayStage, scene, sight};
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::edge::language::LanguageFile;
-use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::edge::parse::parse;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::verify::verify;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::wall_display::{AnswerDevice, DisplayEvent, DisplaySpec};
-use tomcom::session::{Event, LogHeader, Session};
+use tomcom::edge::files::read_session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::files::language::LanguageFile;
+use tomcom_session::files::parse::parse;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::verify::verify;
+use tomcom_session::wall_display::{AnswerDevice, DisplayEvent, DisplaySpec};
+use tomcom_session::{Event, LogHeader, Session};
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
@@ -259,7 +260,7 @@ fn phases_of_a_plan_are_those_of_the_display() {
     files.spec.display.questionnaire = AnswerDevice::Display;
     let study = files.study().expect("a plan");
     // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
-    let wanted = tomcom::session::plan::WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
+    let wanted = tomcom_session::plan::WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
     let (spec, trial) = study.settings(wanted);
     let kitchen = Arc::new(files.kitchen.kitchen);
     let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));

@@ -1,11 +1,11 @@
 //! The trial's clock and the number of served orders on the participant's display.
 
 use tomcom::display::{TrialClockState, scene, sight, time_left};
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::Event;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::wall_display::DisplaySpec;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::wall_display::DisplaySpec;
 
 use super::display::{engine, files};
 

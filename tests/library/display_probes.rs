@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
-use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use tomcom::session::settings::ParticipantKind;
-use tomcom::session::wall_display::AnswerDevice;
-use tomcom::session::{Event, Session, TimestampedEvent, apply};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen};
+use tomcom_session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 use super::display::{engine, files};
 

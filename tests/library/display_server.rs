@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tomcom::display::page_language::DisplayWords;
 use tomcom::edge::display::DisplayServer;
-use tomcom::session::wall_display::DisplaySpec;
+use tomcom_session::wall_display::DisplaySpec;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.
 const PATIENCE: Duration = Duration::from_secs(300);

@@ -3,11 +3,11 @@
 use serde_json::Value;
 use tomcom::display::page_language::DisplayWords;
 use tomcom::display::{scene, sight};
-use tomcom::session::Event;
-use tomcom::session::settings::{ArmKind, ParticipantKind};
-use tomcom::session::wall_display::DisplaySpec;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::Event;
+use tomcom_session::settings::{ArmKind, ParticipantKind};
+use tomcom_session::wall_display::DisplaySpec;
 
 use super::display::{check, engine, files};
 

@@ -7,18 +7,18 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::analysis::event_lines;
-use tomcom::analysis::follower::SessionFollower;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
-use tomcom::edge::file_error::FileError;
-use tomcom::edge::parse::parse;
-use tomcom::session::tracker::TrackerEvent;
-use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply};
 use tomcom_core::base::printable::{printable, printable_lines};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::files::parse::parse;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply};
 
 use crate::kitchen;
 

@@ -38,7 +38,7 @@ fn a_fit_says_which_recordings_were_made_with_which_model() {
     let mut paths = Vec::new();
     for (name, model, tau) in [("a", PAPER_2021, 4.0), ("b", PLAIN, 4.0), ("c", PLAIN, 3.0), ("d", PAPER_2021, 4.0)] {
         let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-        files.spec.robot.arm = tomcom::session::settings::ArmKind::Timed;
+        files.spec.robot.arm = tomcom_session::settings::ArmKind::Timed;
         files.spec.trial.presses = 6;
         files.spec.human = model;
         files.spec.human.decision.tau = tau;

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::{LOG_NAME, RecordingLock, correct, rule};
 use tomcom::edge::recordings;
 use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::standing::left_out;
 use tomcom::run::study::NamedRecordings;
-use tomcom::session::plan::RecordingOutcome;
 use tomcom::study::planned_trial::copies_in_words;
+use tomcom_session::log::{LOG_NAME, RecordingLock, correct, rule};
+use tomcom_session::plan::RecordingOutcome;
 
 /// An empty folder for the test of this name.
 fn folder(name: &str) -> PathBuf {

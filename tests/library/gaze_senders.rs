@@ -17,13 +17,13 @@ use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
 use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::preflight_checks::RejectedGaze;
-use tomcom::session::settings::{GazeSenders, GazeSource, ParticipantKind};
-use tomcom::session::{Event, SessionSpec};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::preflight_checks::RejectedGaze;
+use tomcom_session::settings::{GazeSenders, GazeSource, ParticipantKind};
+use tomcom_session::{Event, SessionSpec};
 
 use crate::kitchen;
 

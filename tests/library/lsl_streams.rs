@@ -6,24 +6,24 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::lsl::{
     LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
 };
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::LogReader;
 use tomcom::edge::lsl::{LslError, load};
-use tomcom::history::belief_track::BeliefSnapshot;
-use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::probes::ProbeEvent;
-use tomcom::session::protocol::ProtocolEvent;
-use tomcom::session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
-use tomcom::session::tracker::TrackerEvent;
-use tomcom::session::tutorial::TutorialEvent;
-use tomcom::session::wall_display::AnswerDevice;
-use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::log::LogReader;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::tutorial::TutorialEvent;
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
 
 /// Name of the recording.
 const RECORDING: &str = "2026-03-14-P07-1";
@@ -200,7 +200,7 @@ fn presses_say_whether_they_did_anything_and_were_errors() {
     let effective = session
         .timeline
         .iter()
-        .filter(|entry| matches!(entry.what, tomcom::session::TimelineEvent::Press { no_effect: None, .. }));
+        .filter(|entry| matches!(entry.what, tomcom_session::TimelineEvent::Press { no_effect: None, .. }));
     assert_eq!(sum("human", "yes") + sum("robot", "yes"), effective.count(), "{counts:?}");
     assert!(counts.iter().any(|(key, _)| key[2] == "yes"), "an error among {counts:?}");
 }

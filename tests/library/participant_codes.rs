@@ -1,6 +1,6 @@
 //! Which codes people have: participants, raters and wizards.
 
-use tomcom::session::person_code::{differing_in_case, fault, without_seed};
+use tomcom_session::person_code::{differing_in_case, fault, without_seed};
 
 /// What pandas 2.3 and R 4 read as missing, as a truth value or as a number, of what has the signs of a code.
 const CHANGED: [&str; 24] = [

@@ -3,12 +3,12 @@
 use serde_json::json;
 use tomcom::display::{RobotHand, RobotHandPose, scene};
 use tomcom::edge::files::read_session;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::settings::ArmKind;
-use tomcom::session::wall_display::RobotDepiction;
-use tomcom::session::{Event, Session, TimelineEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::wall_display::RobotDepiction;
+use tomcom_session::{Event, Session, TimelineEvent};
 
 use super::display::{engine, files};
 

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Kitchen, State};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::{Event, TrialPhase};
 
 use crate::kitchen;
 

@@ -13,13 +13,13 @@ use tomcom::edge::files::read_session;
 use tomcom::edge::rerun::StreamIdentity;
 use tomcom::edge::rrd;
 use tomcom::edge::stream::RerunStream;
-use tomcom::run::engine::SessionEngine;
 use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom::session::Event;
-use tomcom::session::settings::Condition;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::settings::Condition;
 
 pub const SERVICE: &str = "/rerun.sdk_comms.v1alpha1.MessageProxyService";
 /// What is waited for comes within this time, however busy the machine is.

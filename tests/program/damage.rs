@@ -8,7 +8,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use tomcom::edge::log::{LOG_NAME, RecordingLock};
+use tomcom_session::log::{LOG_NAME, RecordingLock};
 
 use crate::program::{PATIENCE, TOMCOM, done, end, folder, json, refused, start, tomcom, verified};
 use crate::pseudo_terminal::Terminal;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::log::LOG_NAME;
+use tomcom_session::log::LOG_NAME;
 
 use crate::program::{done, folder, tomcom};
 

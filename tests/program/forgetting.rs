@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::RecordingLock;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom_session::log::RecordingLock;
 
 use crate::program::TOMCOM;
 

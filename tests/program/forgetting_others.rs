@@ -3,8 +3,8 @@
 use std::fs;
 
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::LogWriter;
-use tomcom::session::LogHeader;
+use tomcom_session::LogHeader;
+use tomcom_session::log::LogWriter;
 
 use crate::forgetting::RecordingsFolder;
 

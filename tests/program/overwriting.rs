@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::LogWriter;
-use tomcom::session::LogHeader;
+use tomcom_session::LogHeader;
+use tomcom_session::log::LogWriter;
 
 use crate::forgetting::RecordingsFolder;
 use crate::program::TOMCOM;

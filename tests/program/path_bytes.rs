@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde_json::Value;
-use tomcom::edge::log::LOG_NAME;
+use tomcom_session::log::LOG_NAME;
 
 use crate::program::{self, TOMCOM};
 

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::LOG_NAME;
-use tomcom::session::LogHeader;
-use tomcom::session::plan::{PlanPosition, Study, WantedRecording};
-use tomcom::session::settings::Condition;
+use tomcom_session::LogHeader;
+use tomcom_session::log::LOG_NAME;
+use tomcom_session::plan::{PlanPosition, Study, WantedRecording};
+use tomcom_session::settings::Condition;
 
 use crate::program::{folder, json, refused, tiny_plan, tomcom, verified};
 use crate::pseudo_terminal::Terminal;

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use rand::RngExt;
 use rustix::process::Signal;
-use tomcom::edge::log::{LOG_NAME, RRD_NAME};
 use tomcom_core::base::rng::stream;
+use tomcom_session::log::{LOG_NAME, RRD_NAME};
 
 use crate::program::{TOMCOM, done, json, refused, session_with_tracker, tiny_plan, verified};
 use crate::pseudo_terminal::Terminal;

@@ -2,10 +2,10 @@
 
 use super::sample_rows::{LongTable, LongTableRow};
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts};
-use crate::session::TimestampedEvent;
-use crate::session::event::Event;
 use tomcom_core::mind::AspectBelief;
 use tomcom_core::mind::recorded_estimate::AspectEstimate;
+use tomcom_session::TimestampedEvent;
+use tomcom_session::event::Event;
 
 const SOURCES: &[(&str, &str)] = &[
     ("participant", "The belief of a simulated participant before its press"),

@@ -3,18 +3,18 @@
 use serde::Serialize;
 
 use super::tsv::{or_nothing, seconds};
-use crate::session::accuracy_check::GazeCheckEvent;
-use crate::session::answer_value::AnswerValue;
-use crate::session::event::Event;
-use crate::session::probes::{ProbeEvent, ProbeSubject};
-use crate::session::protocol::ProtocolEvent;
-use crate::session::tracker::TrackerEvent;
-use crate::session::tutorial::TutorialEvent;
-use crate::session::wall_display::DisplayEvent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::event::Event;
+use tomcom_session::probes::{ProbeEvent, ProbeSubject};
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::tutorial::TutorialEvent;
+use tomcom_session::wall_display::DisplayEvent;
 
 /// The cells of an event's row in the BIDS table that follow from the event alone; a cell is empty where the event says
 /// nothing about the column.

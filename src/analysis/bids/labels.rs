@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::session::plan::PlanPosition;
+use tomcom_session::plan::PlanPosition;
 
 /// The letters and digits of a name; a BIDS label may contain nothing else.
 pub fn letters_and_digits(name: &str) -> String {

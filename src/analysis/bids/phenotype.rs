@@ -7,10 +7,10 @@ use serde_json::{Map, Value, json};
 
 use super::labels::free;
 use super::tsv::{self, BidsFile};
-use crate::session::Session;
-use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem};
 use tomcom_core::base::spreadsheet::GUARDED;
+use tomcom_session::Session;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem};
 
 /// A questionnaire that a participant has filled in.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,15 +6,15 @@ use super::event_columns::{EVENTS, WORDS};
 use super::sample_rows::{LongTable, LongTableFacts, LongTableRow, SampleRows, ViewingFacts};
 use super::spans::OpenSpans;
 use super::tsv::{self, BidsFile, TaskFacts, or_nothing, seconds, yes};
-use crate::session::accuracy_check::GazeCheckEvent;
-use crate::session::event::{Event, TrialEndReason};
-use crate::session::plan::AnswerFormat;
-use crate::session::probes::ProbeEvent;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::settings::GazeSource;
-use crate::session::wall_display::DisplayEvent;
-use crate::session::{Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::event::{Event, TrialEndReason};
+use tomcom_session::plan::AnswerFormat;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::wall_display::DisplayEvent;
+use tomcom_session::{Session, TimestampedEvent, TrialPhase};
 
 /// Whether a press had an effect, and whether it was an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

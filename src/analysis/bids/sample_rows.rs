@@ -4,12 +4,12 @@ use serde_json::{Map, Value, json};
 
 use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, device_seconds, or_nothing, seconds};
-use crate::session::settings::GazeSource;
-use crate::session::tracker::TrackerEvent;
-use crate::session::{Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::robot::moment::ArmSample;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::{Session, TimestampedEvent};
 
 /// Intervals between samples that are longer than this count as gaps and are left out of the sampling rate, in seconds.
 const GAP_S: f64 = 0.5;

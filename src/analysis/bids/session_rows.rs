@@ -2,9 +2,9 @@
 
 use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, YES_NO, or_nothing, seconds, yes};
-use crate::session::event::TrialEndReason;
-use crate::session::{LogHeader, Session};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::{LogHeader, Session};
 
 const CONDITIONS: &[(&str, &str)] = &[
     ("none", "Nobody sent signals"),

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::session::accuracy_check::GazeCheckEvent;
-use crate::session::event::Event;
-use crate::session::probes::ProbeEvent;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::tracker::TrackerEvent;
-use crate::session::wall_display::DisplayEvent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::event::Event;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::wall_display::DisplayEvent;
 
 /// Something that lasts from one event to another in a recording, such as a pause or a signal.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

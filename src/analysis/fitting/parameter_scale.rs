@@ -1,9 +1,9 @@
 //! The unbounded scale on which parameters are searched: points on that scale, the human models that the points stand
 //! for, and the bounds of a search.
 
-use crate::session::ranges;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_core::mind::model::HumanModel;
+use tomcom_session::ranges;
 
 /// The human model whose `parameters` have the values of a point on the scale of the fit; other parameters as in
 /// `base`.

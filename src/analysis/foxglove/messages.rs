@@ -6,12 +6,12 @@ use serde_json::{Map, Value, json};
 
 use super::channels::McapChannel;
 use crate::analysis::event_lines;
-use crate::analysis::follower::SessionFollower;
-use crate::session::TimestampedEvent;
-use crate::session::event::Event;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::moment::{ArmSample, JOINT_NAMES};
+use tomcom_session::TimestampedEvent;
+use tomcom_session::event::Event;
+use tomcom_session::follower::SessionFollower;
 
 /// Name of the coordinate frame of the arm's base.
 const BASE: &str = "base_link";

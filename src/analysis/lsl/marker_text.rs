@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::session::TimestampedEvent;
-use crate::session::event::Event;
-use crate::session::probes::ProbeEvent;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::tracker::TrackerEvent;
-use crate::session::tutorial::TutorialEvent;
+use tomcom_session::TimestampedEvent;
+use tomcom_session::event::Event;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::tutorial::TutorialEvent;
 
 /// Names of the log's fields whose values become parts of an event's code, in this order.
 const PARTS: [&str; 14] = [

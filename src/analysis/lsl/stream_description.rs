@@ -1,12 +1,12 @@
 //! Descriptions of the LSL streams: names, channels and metadata.
 
-use crate::session::SessionSpec;
-use crate::session::settings::LslOutlet;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::signals;
 use tomcom_core::kitchen::{Kitchen, Location};
 use tomcom_core::robot::moment::JOINT_NAMES;
+use tomcom_session::SessionSpec;
+use tomcom_session::settings::LslOutlet;
 
 /// Beginning of the names and source identifiers of all LSL streams of this program.
 pub const SOURCE: &str = "tomcom";

@@ -4,15 +4,15 @@ use serde_json::json;
 
 use super::marker_text::{code, event_text};
 use super::stream_description::session_signals;
-use crate::history::belief_track::BeliefSnapshot;
-use crate::session::event::Event;
-use crate::session::settings::LslOutlet;
-use crate::session::{Session, TimelineEvent, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::JudgedPress;
+use tomcom_session::event::Event;
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::settings::LslOutlet;
+use tomcom_session::{Session, TimelineEvent, TimestampedEvent};
 
 /// Least time between two samples of the beliefs stream if only gaze has changed the beliefs, in seconds.
 const BELIEF_STEP_S: f64 = 0.1;

@@ -12,13 +12,13 @@ use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
 use crate::console::text_columns::{fit, width, wrap};
-use crate::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
-use crate::session::Session;
-use crate::session::settings::WizardVisibility;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_session::Session;
+use tomcom_session::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
+use tomcom_session::settings::WizardVisibility;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;

@@ -15,15 +15,15 @@ use crate::console::form::sheet;
 use crate::console::hands::can_redo;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use crate::console::text_columns::width;
-use crate::history::signal_judge::SignalJudgementCounts;
-use crate::history::wording;
-use crate::session::settings::{ArmKind, ParticipantKind, WizardVisibility};
-use crate::session::{Session, TimelineEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, Dish};
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::history::signal_judge::SignalJudgementCounts;
+use tomcom_session::history::wording;
+use tomcom_session::settings::{ArmKind, ParticipantKind, WizardVisibility};
+use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
 const COLUMNS: u16 = 62;

@@ -5,16 +5,16 @@ use ratatui::layout::Rect;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::analysis::error_list::ListedError;
 use crate::console::click::ClickAction;
 use crate::console::codebook::{self, CodebookEntry};
 use crate::console::coding_list::ErrorListLayout;
 use crate::console::console_model::ConsoleModel;
 use crate::console::rater_session::{CodingRaters, RaterSession};
 use crate::console::text_columns::{fit, width, wrap};
-use crate::history::wording;
-use crate::session::Session;
 use tomcom_core::measures::cause_codes::ErrorCauseCode;
+use tomcom_session::Session;
+use tomcom_session::error_list::ListedError;
+use tomcom_session::history::wording;
 
 /// Columns of the number of an error in a rater's list, and of the error's time.
 const NUMBER: u16 = 4;

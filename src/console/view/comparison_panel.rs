@@ -12,10 +12,12 @@ use crate::console::compared::ComparisonAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::width;
-use crate::history::comparison::{Communication, CommunicationContent, SenderComparison, UnmatchedCommunication};
-use crate::session::Session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::decimal;
+use tomcom_session::Session;
+use tomcom_session::history::comparison::{
+    Communication, CommunicationContent, SenderComparison, UnmatchedCommunication,
+};
 
 /// Time that one terminal column of the comparison stands for, in seconds.
 const COLUMN_S: f64 = 1.0;

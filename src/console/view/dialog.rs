@@ -14,7 +14,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::{width, wrap};
-use crate::session::{Session, TrialPhase};
+use tomcom_session::{Session, TrialPhase};
 
 /// Draws the open dialog, if there is one.
 pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

@@ -4,9 +4,9 @@ use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
-use crate::history::wording;
-use crate::session::{Session, TimelineEvent};
 use tomcom_core::kitchen::Agent;
+use tomcom_session::history::wording;
+use tomcom_session::{Session, TimelineEvent};
 
 /// Columns for the name of the agent; the longest is "assistant".
 const WHO: u16 = 10;

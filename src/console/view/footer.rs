@@ -17,9 +17,9 @@ use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayAction;
 use crate::console::possible::is_possible;
 use crate::console::text_columns::width;
-use crate::history::wording;
-use crate::session::settings::ParticipantKind;
-use crate::session::{Session, TrialPhase};
+use tomcom_session::history::wording;
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::{Session, TrialPhase};
 
 /// A key hint in the console's lowest line: keys, the action of a click on each, and a label.
 struct Hint<'a> {

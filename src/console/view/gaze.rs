@@ -10,11 +10,11 @@ use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::console::text_columns::{fit, width};
-use crate::session::Session;
-use crate::session::gaze_samples::faults;
 use tomcom_core::base::words::count;
 use tomcom_core::gaze::nearest_location;
 use tomcom_core::kitchen::LocationId;
+use tomcom_session::Session;
+use tomcom_session::gaze_samples::faults;
 
 /// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;

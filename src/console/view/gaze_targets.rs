@@ -12,8 +12,8 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::gaze_advice::AccuracyCheckAction;
 use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, REPEAT, chosen};
 use crate::console::text_columns::width;
-use crate::session::Session;
 use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
+use tomcom_session::Session;
 
 const COLUMNS: u16 = 76;
 /// Column, inside the frame, at which the measured values of the gaze accuracy check begin.

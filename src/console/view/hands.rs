@@ -12,8 +12,8 @@ use crate::console::key_action::KeyAction;
 use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
 use crate::console::text_columns::wrap;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::{Session, TrialPhase};
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use tomcom_session::{Session, TrialPhase};
 
 const COLUMNS: u16 = 76;
 /// Label before the remedy of a failed preflight check.

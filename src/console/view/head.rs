@@ -8,12 +8,12 @@ use super::theme::TextRole;
 use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
 use crate::console::text_columns::width;
-use crate::history::wording;
-use crate::session::settings::{Condition, GazeSource};
-use crate::session::tracker::TrackerConnection;
-use crate::session::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::history::wording;
+use tomcom_session::settings::{Condition, GazeSource};
+use tomcom_session::tracker::TrackerConnection;
+use tomcom_session::{Session, TrialPhase};
 
 /// Draws the head line of the console: phase, clock, condition, devices.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

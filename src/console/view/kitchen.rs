@@ -17,11 +17,11 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::console::map_items::KitchenMapElement;
 use crate::console::text_columns::{squeeze, width, wrap, wrap_to};
-use crate::history::wording;
-use crate::session::Session;
-use crate::session::settings::Condition;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
+use tomcom_session::Session;
+use tomcom_session::history::wording;
+use tomcom_session::settings::Condition;
 
 /// Short text in place of the falsely believed value, where there is no room for that value.
 const FALSE_BELIEF: &str = "false belief";

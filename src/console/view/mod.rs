@@ -37,10 +37,10 @@ use super::beliefs::beliefs;
 use super::click::ClickTarget;
 use super::console_model::{ConsoleModel, Dialog};
 use super::text_columns::wrap;
-use crate::session::Session;
 use paint::Painter;
 use regions::{LEAST, PanelAreas};
 use theme::TextRole;
+use tomcom_session::Session;
 
 /// Draws the console.
 pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {

@@ -11,17 +11,17 @@ use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::console::text_columns::{width, wrap};
-use crate::history::wording;
-use crate::session::admit::may_send;
-use crate::session::offers;
-use crate::session::settings::{Condition, WizardVisibility};
-use crate::session::{Session, TimelineEvent, TrialPhase};
 use tomcom_core::base::words::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::communication::recommendation::SignalReason;
 use tomcom_core::communication::{Sender, Signal, unavailable};
 use tomcom_core::kitchen::{AspectId, LocationId};
+use tomcom_session::admit::may_send;
+use tomcom_session::history::wording;
+use tomcom_session::offers;
+use tomcom_session::settings::{Condition, WizardVisibility};
+use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {

@@ -14,8 +14,8 @@ use crate::console::palette;
 use crate::console::picker::Picker;
 use crate::console::possible::is_possible_behind;
 use crate::console::text_columns::width;
-use crate::session::Session;
 use crossterm::event::KeyCode;
+use tomcom_session::Session;
 
 /// Largest size of a list: columns and rows.
 const MOST: (u16, u16) = (72, 26);

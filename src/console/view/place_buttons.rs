@@ -9,8 +9,8 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::console::text_columns::fit;
-use crate::session::Session;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, LocationId};
+use tomcom_session::Session;
 
 /// Key and name of each further button at a place; none while the wizard's keys are active.
 pub(super) fn further(session: &Session, model: &ConsoleModel, place: LocationId) -> Vec<(KeyChord, String)> {

@@ -16,9 +16,9 @@ use crate::console::probe_entry::ProbeEntry;
 use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
 use crate::console::text_columns::width;
 use crate::display::{ProbeWording, probe_left, probe_wording};
-use crate::session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
-use crate::session::settings::WizardVisibility;
-use crate::session::{Session, TrialPhase};
+use tomcom_session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Session, TrialPhase};
 
 /// Confidence of the participant in an answer, in words.
 const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];

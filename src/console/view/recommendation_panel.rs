@@ -9,14 +9,14 @@ use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::wrap;
-use crate::history::wording;
-use crate::session::Session;
-use crate::session::admit::may_send;
-use crate::session::settings::Condition;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
+use tomcom_session::Session;
+use tomcom_session::admit::may_send;
+use tomcom_session::history::wording;
+use tomcom_session::settings::Condition;
 
 /// Width of a benefit bar in columns; a column stands for half a saved press, or for the concept ToM a twelfth of the
 /// belief deviation.

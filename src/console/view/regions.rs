@@ -7,8 +7,8 @@ use crate::console::codebook;
 use crate::console::compared::SenderComparisonView;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel;
-use crate::session::Session;
-use crate::session::settings::WizardVisibility;
+use tomcom_session::Session;
+use tomcom_session::settings::WizardVisibility;
 
 /// Smallest terminal that the console supports: columns and rows.
 pub const LEAST: (u16, u16) = (72, 22);

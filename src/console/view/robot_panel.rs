@@ -9,13 +9,13 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::key_action::ManualAction;
 use crate::console::text_columns::width;
-use crate::history::wording;
-use crate::session::settings::ArmKind;
-use crate::session::{Session, TrialPhase};
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::robot::moment::ArmSample;
 use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
+use tomcom_session::history::wording;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::{Session, TrialPhase};
 
 /// Draws the robot panel.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

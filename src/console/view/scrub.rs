@@ -9,8 +9,8 @@ use super::theme::TextRole;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::width;
-use crate::session::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::{Session, TrialPhase};
 
 /// Words before the times while the trial has not started: the longest of all phases.
 const BEFORE: &str = " before the trial, ";

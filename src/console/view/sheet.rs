@@ -15,11 +15,11 @@ use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::form::{FormContent, WAIVERS, sheet};
 use crate::console::question::StartQuestion;
 use crate::console::text_columns::width;
-use crate::session::Session;
-use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
-use crate::session::protocol::{ItemAnswer, StudyProtocolState};
 use tomcom_core::base::words::count;
+use tomcom_session::Session;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
+use tomcom_session::protocol::{ItemAnswer, StudyProtocolState};
 
 /// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {

@@ -6,9 +6,9 @@ use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::{width, wrap};
-use crate::history::wording;
-use crate::session::{Session, ShownSignal, TrialPhase, proposals};
 use tomcom_core::communication::Signal;
+use tomcom_session::history::wording;
+use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
 
 /// Draws the panel that tells which signal the participant sees now.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

@@ -10,15 +10,15 @@ use crate::console::beliefs::visibility;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::width;
-use crate::session::event::SignalEndReason;
-use crate::session::offers;
-use crate::session::probes::ProbeEvent;
-use crate::session::settings::WizardVisibility;
-use crate::session::{Session, TimelineEntry, TimelineEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferKeyKind;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::event::SignalEndReason;
+use tomcom_session::offers;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Session, TimelineEntry, TimelineEvent, TrialPhase};
 
 /// Time that one terminal column of the timeline stands for, in seconds.
 const COLUMN_S: f64 = 0.5;

@@ -1,5 +1,8 @@
 //! Makes text from outside safe for tables that people open with a spreadsheet program.
 
+/// Separators of cells in tables that other programs write.
+pub const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
+
 use std::borrow::Cow;
 
 /// What a table's description says about [`without_formula`].

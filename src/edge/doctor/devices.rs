@@ -4,16 +4,16 @@
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
-use crate::edge::file_error::FileError;
 use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
-use crate::session::SessionSpec;
-use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
-use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
-use crate::session::tracker::TrackerSpec;
 use tomcom_core::base::printable::printable;
 use tomcom_core::gaze::tags::TagError;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::SessionSpec;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
+use tomcom_session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
+use tomcom_session::tracker::TrackerSpec;
 
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;

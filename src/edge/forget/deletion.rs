@@ -7,9 +7,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::{ParticipantData, RetainedFile, find};
-use crate::edge::file_error::FileError;
-use crate::edge::log::{LOG_NAME, RecordingLock, RecordingWriteError, SETTINGS_NAME};
-use crate::edge::replace_file::Replacement;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::files::replace_file::Replacement;
+use tomcom_session::log::{LOG_NAME, RecordingLock, RecordingWriteError, SETTINGS_NAME};
 
 /// Why no data of a participant were deleted.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -20,17 +20,17 @@ use self::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, RecordingOwner, file_
 use self::tables::{FolderTables, TableMatch};
 use crate::analysis::training_record::WizardTrainingRecord;
 use crate::edge::bids_tree;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::consensus_file::CONSENSUS_NAME;
-use crate::edge::log::rater_codes::is_codes_file;
-use crate::edge::log::{
+use crate::edge::stream_head;
+use crate::study::report::page_head;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::replace_file::replaced_name;
+use tomcom_session::files::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
+use tomcom_session::log::consensus_file::CONSENSUS_NAME;
+use tomcom_session::log::rater_codes::is_codes_file;
+use tomcom_session::log::{
     CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
     is_damaged_log,
 };
-use crate::edge::replace_file::replaced_name;
-use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
-use crate::edge::stream_head;
-use crate::study::report::page_head;
 
 /// Largest size of a report or a training record that is read, in bytes.
 const MAX_BYTES: u64 = 64 << 20;

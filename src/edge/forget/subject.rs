@@ -8,10 +8,10 @@ use std::path::{Component, Path, PathBuf};
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 
-use crate::edge::file_error::read_regular;
-use crate::edge::log::{LOG_NAME, SETTINGS_NAME, corrected_code, first_line, is_written_settings};
-use crate::session::header::FORMAT;
-use crate::session::person_code::without_seed;
+use tomcom_session::files::file_error::read_regular;
+use tomcom_session::header::FORMAT;
+use tomcom_session::log::{LOG_NAME, SETTINGS_NAME, corrected_code, first_line, is_written_settings};
+use tomcom_session::person_code::without_seed;
 
 /// Why a file is kept that names a recording, if recordings of several people have this name.
 pub(super) const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use crate::edge::file_error::read_regular;
+use tomcom_session::files::file_error::read_regular;
 
 /// Environment variable that names liblsl's configuration file.
 const VARIABLE: &str = "LSLAPICFG";

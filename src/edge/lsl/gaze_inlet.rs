@@ -16,8 +16,8 @@ use super::library::{DiscoveredLslStream, LslInletHandle, LslLibrary, LslStreamW
 use super::{described, gaze_streams, predicate};
 use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use crate::edge::gaze_input::{TrackerMessage, WAITING};
-use crate::session::settings::LslGazeSpec;
 use tomcom_core::gaze::GazeSample;
+use tomcom_session::settings::LslGazeSpec;
 
 /// Time for which a gaze stream is looked for before the thread checks whether the session goes on, in seconds.
 const LOOK_S: f64 = 1.0;

@@ -16,7 +16,7 @@ mod outlet_thread;
 use std::path::absolute;
 
 use crate::analysis::lsl::SOURCE;
-use crate::session::settings::{LslGazeSpec, LslSpec};
+use tomcom_session::settings::{LslGazeSpec, LslSpec};
 
 pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
 pub use library::{DiscoveredLslStream, LslLibrary};

@@ -13,7 +13,7 @@ use super::library::{LslLibrary, LslOutletHandle};
 use super::lsl_error::LslError;
 use crate::analysis::lsl::{LslSampleValues, StreamDescription};
 use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
-use crate::session::settings::LslOutlet;
+use tomcom_session::settings::LslOutlet;
 
 /// Number of packets of samples that may wait to be sent: the packets of 20 seconds at 200 gaze samples per second.
 const WAITING: usize = 4096;

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
 use super::message::CaptureNotification;
-use crate::session::tracker::TrackerRecording;
+use tomcom_session::tracker::TrackerRecording;
 
 /// Longest time from a request for a Capture recording to the recording's beginning.
 const BEGINS_WITHIN: Duration = Duration::from_secs(3);

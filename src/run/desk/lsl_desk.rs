@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::analysis::lsl::describe;
 use crate::edge::lsl::{self, LslError, LslLibrary, LslStreams};
-use crate::session::{Session, SessionSpec};
+use tomcom_session::{Session, SessionSpec};
 
 /// The LSL library, if the session uses LSL, and the streams that are sent. A participant's streams stay open from one
 /// recording to the next, so that a recorder can continue.

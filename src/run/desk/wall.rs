@@ -5,9 +5,9 @@ use crate::display::{ConsentHold, consent_sight, scene};
 pub(in crate::run) use crate::edge::display::PageInput;
 use crate::edge::display::{DisplayServer, ParticipantResponse};
 use crate::run::error::LiveError;
-use crate::session::settings::ParticipantKind;
-use crate::session::{Session, SessionSpec};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::{Session, SessionSpec};
 
 /// The server of the participant's display, if the session has one.
 #[derive(Default)]

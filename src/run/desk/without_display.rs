@@ -2,8 +2,8 @@
 
 use crate::display::ConsentHold;
 use crate::run::error::LiveError;
-use crate::session::{Session, SessionSpec};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::{Session, SessionSpec};
 
 /// Input of a participant's page, which never occurs in this build; so the type has no values.
 pub(in crate::run) enum PageInput {}

@@ -6,8 +6,8 @@ use tokio::sync::mpsc::Sender;
 
 use crate::edge::pupil::CaptureRequest;
 use crate::run::desk::GazeTracker;
-use crate::session::probes::ProbeEvent;
-use crate::session::{Event, Session, TrialPhase};
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::{Event, Session, TrialPhase};
 
 const RUNNING: &str = "trial running";
 const PAUSED: &str = "trial paused";

@@ -7,17 +7,17 @@ use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
 use crate::edge::display::{DisplayHandle, DisplayServer, ParticipantResponse};
 use crate::run::desk::{OperatorDesk, PageInput};
-use crate::session::admit::admit;
-use crate::session::probes::ProbeEvent;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::settings::GazeSource;
-use crate::session::tutorial::{TutorialEvent, TutorialPageTurner};
-use crate::session::wall_display::{AnswerDevice, DisplayEvent};
-use crate::session::{Event, Session};
 use tomcom_core::base::printable::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::admit::admit;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
+use tomcom_session::wall_display::{AnswerDevice, DisplayEvent};
+use tomcom_session::{Event, Session};
 
 /// Number of characters that a message to the wizard shows of a name that the participant's page sent.
 const SHOWN_NAME: usize = 40;
@@ -246,7 +246,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::edge::files::built_in_session;
+    use tomcom_session::files::built_in_session;
 
     #[test]
     fn a_press_that_is_refused_names_its_button_in_signs_that_can_be_shown() {

@@ -6,12 +6,12 @@ use std::time::Instant;
 use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{TrackerMessage, TrackerTime};
 use crate::run::desk::GazeTracker;
-use crate::session::tracker::{MissingConfidence, TrackerEvent};
-use crate::session::{Event, Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
 use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_session::tracker::{MissingConfidence, TrackerEvent};
+use tomcom_session::{Event, Session, TrialPhase};
 
 /// Gaze input of one recording.
 #[derive(Debug, Default)]

@@ -5,13 +5,13 @@ use super::live_session::Live;
 use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::edge::gaze_input::TrackerMessage;
-use crate::history::wording;
 use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
-use crate::session::preflight_checks::RejectedGaze;
-use crate::session::tracker::{TrackerEvent, TrackerRecording};
-use crate::session::{Event, TrialPhase};
 use tomcom_core::gaze::GazeSample;
+use tomcom_session::history::wording;
+use tomcom_session::preflight_checks::RejectedGaze;
+use tomcom_session::tracker::{TrackerEvent, TrackerRecording};
+use tomcom_session::{Event, TrialPhase};
 
 impl Live {
     /// Handles a message from the terminal; returns how the wizard leaves the recording, if the message leaves it.

@@ -9,32 +9,33 @@ use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::analysis::watcher::SenderComparisonFollower;
 use crate::console::compared::SenderComparisonView;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleModel, KeyBindings};
-use crate::edge::clock::{SessionClock, WallTime};
+use crate::edge::clock::SessionClock;
 use crate::edge::doctor::free_bytes;
 use crate::edge::key_file::key_map;
-use crate::edge::log::{LogWriter, RecordingLock, RecordingWriteError};
 use crate::edge::terminal::{TerminalScreen, theme};
 use crate::run::advisor_desk::{AdvisorThreadHandle, next_advice};
 use crate::run::desk::{GazeTracker, OperatorDesk};
-use crate::run::engine::SessionEngine;
 use crate::run::error::{LiveError, TerminalError};
 use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialProgress};
 use crate::run::options::SessionStart;
 use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
 use crate::run::watch_desk::ComparisonThreadHandle;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::settings::GazeSource;
-use crate::session::tracker::{TrackerEvent, TrackerRecording};
-use crate::session::wizard_screen::WizardScreenContent;
-use crate::session::{Event, LogHeader, Session};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::wall_time::WallTime;
+use tomcom_session::log::{LogWriter, RecordingLock, RecordingWriteError};
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::tracker::{TrackerEvent, TrackerRecording};
+use tomcom_session::watcher::SenderComparisonFollower;
+use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::{Event, LogHeader, Session};
 
 /// Period of redrawing clocks and ages on the console while the trial is running.
 const RUNNING: Duration = Duration::from_millis(100);
@@ -169,13 +170,13 @@ impl Live {
             let session = Session::new(kitchen.clone(), spec.clone(), header.trial);
             SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request)
         });
-        let comparison = comparison.map(|follower| follower.without_causes().on_thread());
+        let comparison = comparison.map(|follower| ComparisonThreadHandle::start(follower.without_causes()));
         let (display, health) = ParticipantDisplay::at(desk);
         model.display = health;
         model.gaze_pairing = desk.tracker.pairing();
         model.recorded_gaze = desk.tracker.file().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
-        let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
+        let advisor = spec.asks_assistant().then(|| AdvisorThreadHandle::start(engine.advisor()));
         let mut live = Live {
             engine,
             advisor,

@@ -7,11 +7,11 @@ use crate::analysis::lsl::{LslSampleConverter, StreamSample};
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
 use crate::edge::lsl::{LslCounts, LslSample, LslStreams};
-use crate::history::belief_track::BeliefSnapshot;
 use crate::run::desk::OperatorDesk;
-use crate::run::engine::SessionEngine;
-use crate::session::{Session, TimestampedEvent};
 use tomcom_core::base::words::count;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::{Session, TimestampedEvent};
 
 /// Sends a session's samples to its LSL streams.
 pub(super) struct LslStreaming {

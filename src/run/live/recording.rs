@@ -6,11 +6,11 @@ use super::viewing::StreamedSession;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
-use crate::edge::log::{LogWriter, RecordingWriteError};
-use crate::history::belief_track::{self, BeliefSnapshot};
-use crate::history::{probe_wording, wording};
-use crate::session::probes::ProbeEvent;
-use crate::session::{Event, TimestampedEvent, TrialPhase};
+use tomcom_session::history::belief_track::{self, BeliefSnapshot};
+use tomcom_session::history::{probe_wording, wording};
+use tomcom_session::log::{LogWriter, RecordingWriteError};
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 impl Live {
     /// Writes events to the log. If writing fails, the session ends, since it would have no data.

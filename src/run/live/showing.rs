@@ -4,8 +4,8 @@ use super::live_session::Live;
 use crate::console::screen::screen;
 use crate::console::{click_question, hands};
 use crate::run::watch_desk::ComparisonThreadHandle;
-use crate::session::wall_display::DisplayEvent;
-use crate::session::{Event, TrialPhase};
+use tomcom_session::wall_display::DisplayEvent;
+use tomcom_session::{Event, TrialPhase};
 
 impl Live {
     /// Updates the time that the wizard's console shows.

@@ -1,10 +1,10 @@
 //! Timing of the targets in a gaze accuracy check.
 
 use super::live_session::Live;
-use crate::session::Event;
-use crate::session::accuracy_check::{AcceptedGazeCheck, GazeCheckEvent, RunningGazeCheck};
-use crate::session::settings::GazeSource;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::Event;
+use tomcom_session::accuracy_check::{AcceptedGazeCheck, GazeCheckEvent, RunningGazeCheck};
+use tomcom_session::settings::GazeSource;
 
 impl Live {
     /// Uses the gaze accuracy check that was accepted in the previous recording again, since tracker and participant

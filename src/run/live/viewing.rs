@@ -4,14 +4,14 @@
 use std::net::SocketAddr;
 
 use crate::console::console_model::RerunStreamStatus;
-use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
 use crate::edge::stream::RerunStream;
-use crate::run::engine::SessionEngine;
 use crate::scene::{SceneInputs, SessionScene};
-use crate::session::{LogHeader, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::{LogHeader, Session, TimestampedEvent};
 
 /// Delay with which motion between events is streamed, so that no event with an earlier time can follow.
 const BEHIND: SessionTime = SessionTime(100_000_000);

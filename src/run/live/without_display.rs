@@ -3,8 +3,8 @@
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
-use crate::session::{Event, Session};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::{Event, Session};
 
 /// The participant's display, which this build lacks; so the type has no values.
 pub(super) enum ParticipantDisplay {}

@@ -2,11 +2,11 @@
 //! for a stream.
 
 use crate::console::console_model::RerunStreamStatus;
-use crate::edge::log::LogWriter;
-use crate::run::engine::SessionEngine;
-use crate::session::features::{Feature, MissingFeature};
-use crate::session::{LogHeader, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::features::{Feature, MissingFeature};
+use tomcom_session::log::LogWriter;
+use tomcom_session::{LogHeader, Session, TimestampedEvent};
 
 /// The stream to Rerun, which this build lacks; so the type has no values.
 pub(super) enum StreamedSession {}

@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 use super::Review;
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::{ReplayAction, SPEEDS};
-use crate::history::landmark::ReplayLandmark;
-use crate::session::Event;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::Event;
+use tomcom_session::history::landmark::ReplayLandmark;
 
 /// Longest time per frame that is spent on applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);

@@ -1,16 +1,16 @@
 //! The causes of a person's errors, from the consensus of two raters, from both raters' codes, or from the belief
 //! estimate.
 
-use crate::analysis::follower::SessionFollower;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LogReader, consensus_file, rater_codes};
-use crate::session::settings::ParticipantKind;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use tomcom_core::measures::rater_choice::{RaterChoice, RaterPair};
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::log::{LogReader, consensus_file, rater_codes};
+use tomcom_session::settings::ParticipantKind;
 
 /// Raters' codes of the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -24,12 +24,9 @@ use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
 use super::gathered::GatheredRecordings;
 use super::kept_cost::KeptCost;
-use super::replay::SameKitchenCheck;
 use super::{consents, parallel};
 use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
-use crate::edge::file_error::FileError;
 use crate::edge::frozen_file::read_frozen;
-use crate::edge::log::{LogReader, header_digest, rater_codes};
 use crate::study::column::CsvTable;
 use crate::study::detail_totals::DetailTotals;
 use crate::study::dictionary::{DataDictionaryRow, dictionary};
@@ -49,6 +46,9 @@ use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::tables::tutorial_answers::TutorialQuestionRow;
 use crate::study::trial_statistics::{TrialStatistics, arrange};
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::{LogReader, header_digest, rater_codes};
+use tomcom_session::replay::SameKitchenCheck;
 
 /// Error of analysing a study.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

@@ -1,9 +1,9 @@
 //! Answers to a questionnaire in the form that the tables need, and the questionnaire's score.
 
-use crate::session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
-use crate::session::protocol::StudyProtocolState;
-use crate::session::{Session, TrialPhase};
 use crate::study::trial_statistics::QuestionnaireAnswer;
+use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
+use tomcom_session::protocol::StudyProtocolState;
+use tomcom_session::{Session, TrialPhase};
 
 /// Answers to the questionnaire that the participant has just confirmed.
 pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {

@@ -8,20 +8,12 @@ use super::questionnaire_answers;
 use super::replay_pass::ReplayPass;
 use super::rows::{RowCollector, TrialPressAnalyses};
 use super::twin::useful_signals;
-use crate::analysis::follower::SessionFollower;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::analysis::wizard_log::{WizardLog, clock_at};
-use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogEnding, LogReader, rater_codes};
-use crate::history::comparison::CommunicationContent;
 use crate::run::kept_cost::KeptCost;
 use crate::run::standing::exclusion_status;
-use crate::session::protocol::ProtocolEvent;
-use crate::session::settings::{Condition, ParticipantKind};
-use crate::session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 use crate::study::acting_arm::SignalSenderWithParameter;
 use crate::study::belief_trace::BeliefEvidence;
 use crate::study::facts::RecordingFacts;
@@ -41,6 +33,14 @@ use tomcom_core::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequen
 use tomcom_core::measures::{JudgedPress, median};
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::comparison::CommunicationContent;
+use tomcom_session::log::{LogEnding, LogReader, rater_codes};
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::settings::{Condition, ParticipantKind};
+use tomcom_session::wizard_log::{WizardLog, clock_at};
+use tomcom_session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 
 /// Result of analysing one recording.
 #[derive(Debug)]

@@ -1,15 +1,15 @@
 //! Replay of a recording, with hypothetical signals where the analysis of a study needs them.
 
 use super::sweep::ConceptSweep;
-use crate::analysis::follower::SessionFollower;
-use crate::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use crate::session::apply::ApplyError;
-use crate::session::settings::Condition;
-use crate::session::{Session, TimestampedEvent};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::matching::WINDOW;
+use tomcom_session::apply::ApplyError;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::settings::Condition;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
+use tomcom_session::{Session, TimestampedEvent};
 
 /// Replay of a recording together with the hypothetical signals that its condition needs.
 #[derive(Debug)]

@@ -2,11 +2,8 @@
 //! declares the tables' columns.
 
 use super::coded_errors::CodedErrors;
-use crate::analysis::follower::SessionFollower;
 use crate::analysis::offer_summary::TimedOffer;
-use crate::analysis::wizard_log::clock_at;
 use crate::edge::export::TableRows;
-use crate::session::{Event, Session, TimestampedEvent};
 use crate::study::column::{CsvRow, CsvTable};
 use crate::study::known_beliefs::KnownFalseBeliefs;
 use crate::study::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
@@ -23,6 +20,9 @@ use tomcom_core::measures::matching::{CommunicationEvent, MatchCriterion, matche
 use tomcom_core::measures::sequences::ErrorSequence;
 use tomcom_core::mind::RecordedBelief;
 use tomcom_core::mind::recorded_estimate::RecordedEstimate;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::wizard_log::clock_at;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Collects the rows of the tables of events of one recording.
 #[derive(Debug)]

@@ -12,13 +12,9 @@ use std::sync::Arc;
 use super::reading::AnalysisScope;
 use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
 use crate::edge::export::AnalysisFolder;
-use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::files::compile_kitchen;
-use crate::edge::log::{LogReader, rater_codes};
 use crate::edge::study_part_file::{PartReader, PartWriter};
 use crate::run::kept_cost::KeptCost;
 use crate::run::parallel::{self, WorkerPool};
-use crate::run::replay::SameKitchenCheck;
 use crate::run::simulate::SimulationShard;
 use crate::study::figures::StudySummary;
 use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
@@ -26,6 +22,10 @@ use crate::study::preregistration::RecordedPlan;
 use crate::study::study_part::{
     AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index,
 };
+use tomcom_session::files::compile_kitchen;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::{LogReader, rater_codes};
+use tomcom_session::replay::SameKitchenCheck;
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;

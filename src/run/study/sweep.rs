@@ -2,12 +2,6 @@
 //! parameters in one replay. The planner runs once per decision; all costs of communication are then applied to the
 //! same benefits. A benefit has to be known only where it can exceed a cost at which its signal may be sent.
 
-use crate::analysis::advisor::AdviceRequest;
-use crate::analysis::follower::SessionFollower;
-use crate::analysis::watcher::follows_at_once;
-use crate::session::advice_moments::leads_to_advice;
-use crate::session::apply::ApplyError;
-use crate::session::{AppliedEvent, Event, Session, TimestampedEvent};
 use crate::study::concept_totals::ConceptPreventionCounts;
 use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, parameters};
@@ -21,6 +15,12 @@ use tomcom_core::communication::settings::AssistantSpec;
 use tomcom_core::communication::tom::TomConcept;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, KitchenChange};
+use tomcom_session::advice_moments::leads_to_advice;
+use tomcom_session::advisor::AdviceRequest;
+use tomcom_session::apply::ApplyError;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::watcher::follows_at_once;
+use tomcom_session::{AppliedEvent, Event, Session, TimestampedEvent};
 
 /// A concept with one value of its parameter, and the signals that the concept would have sent.
 #[derive(Debug)]

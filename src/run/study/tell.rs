@@ -1,7 +1,6 @@
 //! Text summary of a study for the terminal.
 
 use crate::analysis::probe_lines;
-use crate::session::event::TrialEndReason;
 use crate::study::arm_comparison::StudyArmComparison;
 use crate::study::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::study::figures::{StudySummary, pairs_in_words};
@@ -12,6 +11,7 @@ use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use tomcom_core::base::words::count;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::matching::{MatchShares, Similarity};
+use tomcom_session::event::TrialEndReason;
 
 /// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {

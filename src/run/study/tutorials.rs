@@ -1,9 +1,9 @@
 //! Reads the answers to the comprehension questions of tutorials, including those in practice recordings, which are not
 //! analysed as trials.
 
-use crate::edge::file_error::FileResult;
-use crate::edge::log::LogReader;
 use crate::study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::LogReader;
 
 /// The participant's answers in a log of which nothing was read yet; `name` is the recording's name in tables. None if
 /// the recording has no tutorial.

@@ -10,14 +10,6 @@
 use std::collections::VecDeque;
 use std::path::Path;
 
-use crate::analysis::follower::SessionFollower;
-use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, event_line};
-use crate::run::engine::SessionEngine;
-use crate::run::headless::SimulatedRobotOperator;
-use crate::session::admit::is_external;
-use crate::session::settings::Condition;
-use crate::session::{Event, Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::recommendation::aspects_told;
@@ -25,6 +17,14 @@ use tomcom_core::kitchen::AspectId;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
+use tomcom_session::admit::is_external;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::headless::SimulatedRobotOperator;
+use tomcom_session::log::{LogReader, event_line};
+use tomcom_session::settings::Condition;
+use tomcom_session::{Event, Session, TimestampedEvent, TrialPhase};
 
 /// Which errors a signal can prevent.
 enum SignalScope {

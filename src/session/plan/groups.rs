@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use crate::session::study_arm::StudyArm;
+use crate::study_arm::StudyArm;
 
 /// A starting group: an order of the study's conditions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

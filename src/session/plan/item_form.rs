@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::answer_value::AnswerValue;
+use crate::answer_value::AnswerValue;
 
 /// The greatest position of a slider in a questionnaire; the least is 0.
 pub const SLIDER_END: i64 = 100;

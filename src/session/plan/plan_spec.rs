@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::groups::orders;
 use super::study_aims::StudyAims;
-use crate::session::console_settings::WizardVisibility;
-use crate::session::person_code;
-use crate::session::setting_checks::{SettingError, is_code};
-use crate::session::study_arm::StudyArm;
-use crate::session::wall_display::AnswerDevice;
+use crate::console_settings::WizardVisibility;
+use crate::person_code;
+use crate::setting_checks::{SettingError, is_code};
+use crate::study_arm::StudyArm;
+use crate::wall_display::AnswerDevice;
 use tomcom_core::base::words::count;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.

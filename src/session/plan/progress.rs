@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::planned_study::{PlannedTrial, Study, WantedRecording};
 use super::step::PlanPosition;
-use crate::session::study_arm::StudyArm;
+use crate::study_arm::StudyArm;
 
 /// State of a recording of a plan: complete, open, excluded or void.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, RatingScale};
-use crate::session::condition::Condition;
+use crate::condition::Condition;
 
 /// Largest length of a text answer in characters, unless the item sets another one.
 const LENGTH: u32 = 200;

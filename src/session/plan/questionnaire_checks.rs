@@ -2,8 +2,8 @@
 
 use super::item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, SLIDER_END};
 use super::questionnaire::{Questionnaire, QuestionnaireItem, ScoreRule};
-use crate::session::ranges;
-use crate::session::setting_checks::{SettingError, is_code};
+use crate::ranges;
+use crate::setting_checks::{SettingError, is_code};
 
 /// Largest number of answer options of a questionnaire item: each option is chosen by a digit key.
 const MOST_OPTIONS: usize = 9;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::questionnaire::Questionnaire;
 use super::study_aims::StudyAims;
 use super::tutorial::Tutorial;
-use crate::session::protocol_event::StudyPhase;
-use crate::session::study_arm::StudyArm;
+use crate::protocol_event::StudyPhase;
+use crate::study_arm::StudyArm;
 
 /// Position of a recording in its study plan, and its phases; part of the settings of every recording of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::setting_checks::{SettingError, is_code};
+use crate::setting_checks::{SettingError, is_code};
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
 /// Longest time for which a tutorial may show the recipe cards, in seconds.

@@ -2,8 +2,8 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::session::settings::ArmKind;
 use crate::study::svg::minus;
+use tomcom_session::settings::ArmKind;
 
 /// Text in place of an unknown value: a dash.
 pub(super) const UNKNOWN: &str = "\u{2013}";

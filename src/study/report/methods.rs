@@ -3,12 +3,12 @@
 use maud::{Markup, html};
 
 use super::elements::{arm, section};
-use crate::session::event::TrialEndReason;
 use crate::study::arm_group::RobotArmTotals;
 use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 use tomcom_core::base::words;
 use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_session::event::TrialEndReason;
 
 /// Section of the report on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup {

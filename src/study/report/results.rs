@@ -4,14 +4,14 @@ use maud::{Markup, html};
 
 use super::elements::{Captions, UNKNOWN, cells, count, nothing, number, p_value, percent, scroll, section};
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
-use crate::session::plan::QuestionnaireItemKind;
-use crate::session::study_arm::StudyArm;
 use crate::study::figures::StudySummary;
 use tomcom_core::base::words;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::matching::MatchShares;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
+use tomcom_session::plan::QuestionnaireItemKind;
+use tomcom_session::study_arm::StudyArm;
 
 /// Table with this study's results beside the results of the paper.
 pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) -> Markup {

@@ -3,7 +3,6 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
-use crate::session::event::TrialEndReason;
 use crate::study::column::CsvTable;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::{StudySummary, pairs_in_words};
@@ -13,6 +12,7 @@ use crate::study::trial_statistics::TrialStatistics;
 use tomcom_core::base::words;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::RaterAgreement;
+use tomcom_session::event::TrialEndReason;
 
 /// Least number of participants with both trials from which on r and p are shown among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;

@@ -1,9 +1,9 @@
 //! Table of answers to questionnaires.
 
-use crate::session::answer_value::AnswerValue;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 use tomcom_core::base::spreadsheet::GUARDED;
+use tomcom_session::answer_value::AnswerValue;
 
 /// Row of the table of questionnaires: an answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,6 @@
 use super::trial_column::TrialColumn::{self, Compared};
 use super::trial_column::plain;
 use crate::analysis::offer_summary::OfferSummary;
-use crate::session::event::TrialEndReason;
-use crate::session::wall_display::RobotDepiction;
 use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::StudyMeasure;
 use crate::study::known_beliefs::RaterFalseBeliefAgreement;
@@ -16,6 +14,8 @@ use tomcom_core::base::spreadsheet::GUARDED;
 use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_core::robot::AbortReason;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::wall_display::RobotDepiction;
 
 /// Main measure of the report, which is the first of the compared measures.
 pub const HEADLINE: StudyMeasure = StudyMeasure {

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
-use crate::session::protocol::{ProtocolEvent, StudyPhase};
-use crate::session::tutorial::TutorialEvent;
-use crate::session::{Event, SessionSpec, TimestampedEvent};
 use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::base::spreadsheet::GUARDED;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
+use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::tutorial::TutorialEvent;
+use tomcom_session::{Event, SessionSpec, TimestampedEvent};
 
 /// Row of the table of tutorials: a question of a tutorial with the participant's answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,9 +5,6 @@ use std::sync::Arc;
 
 use nalgebra::Point3;
 use tomcom::edge::files::read_session;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::Event;
-use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom_arm::clearance::Capsule;
 use tomcom_arm::controller::ArmController;
 use tomcom_core::base::time::SessionTime;
@@ -18,6 +15,9 @@ use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::moment::{ArmPhase, ArmSample, JOINTS};
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 use super::{STILL_RAD, SUSHI};
 

@@ -4,8 +4,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
-use tomcom::edge::log::rater_codes::{read_all, write};
-use tomcom::edge::log::{LOG_NAME, RecordingLock, consensus_file};
 use tomcom::run::code_exchange::{self, export};
 use tomcom::run::codes::{CodedRecording, InterRaterSummary, describe};
 use tomcom::run::error::RunError;
@@ -15,6 +13,8 @@ use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom_core::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
 use tomcom_core::measures::rater_choice::RaterChoice;
+use tomcom_session::log::rater_codes::{read_all, write};
+use tomcom_session::log::{LOG_NAME, RecordingLock, consensus_file};
 
 use super::{folder, paper, run};
 

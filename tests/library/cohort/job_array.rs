@@ -4,12 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tomcom::analysis::sweep_row::ParameterSweepRow;
-use tomcom::edge::log::LOG_NAME;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard};
 use tomcom::run::sweep::{ParameterSweepAxis, TABLE_NAME, sweep, trials};
-use tomcom::run::verify::verify;
-use tomcom::session::Event;
-use tomcom::session::settings::Condition;
+use tomcom_session::Event;
+use tomcom_session::log::LOG_NAME;
+use tomcom_session::settings::Condition;
+use tomcom_session::verify::verify;
 
 use super::{events, folder, paper, run};
 

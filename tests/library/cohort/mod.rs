@@ -12,10 +12,11 @@ mod wizard;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::edge::log::LogReader;
+use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::session::TimestampedEvent;
+use tomcom_session::TimestampedEvent;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::log::LogReader;
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cohort").join(name);
@@ -40,7 +41,7 @@ fn run(
     simulate(&simulation, || ()).expect("the folder can be written")
 }
 
-fn events(recording: &Path) -> (tomcom::session::LogHeader, Vec<TimestampedEvent>) {
+fn events(recording: &Path) -> (tomcom_session::LogHeader, Vec<TimestampedEvent>) {
     let mut log = LogReader::open(recording).expect("a recording");
     let mut all = Vec::new();
     while let Some(line) = log.next_line().expect("an event") {

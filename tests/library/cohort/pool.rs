@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use tomcom::edge::files::SessionSetup;
 use tomcom::run::pool::{PoolRequest, simulate};
 use tomcom::run::simulate::SimulationShard;
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::simulation_pool::{PoolTrialPair, SimulationPool};
+use tomcom_session::files::SessionSetup;
+use tomcom_session::study_arm::StudyArm;
 
 use super::{folder, paper, run};
 

@@ -10,11 +10,11 @@ use tomcom::run::check_beliefs;
 use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::robustness::{RobustnessRequest, measure};
 use tomcom::run::simulate::SimulationShard;
-use tomcom::session::battery::CohortSpec;
-use tomcom::session::settings::{ArmKind, Condition};
 use tomcom::study::cohort_chart::robustness;
 use tomcom_core::measures::flags::ThresholdSource;
 use tomcom_people::participant::population::Population;
+use tomcom_session::battery::CohortSpec;
+use tomcom_session::settings::{ArmKind, Condition};
 
 use super::{folder, run};
 

@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use tomcom::edge::files::read_session;
 use tomcom::run::simulate::SimulationShard;
-use tomcom::run::verify::verify;
-use tomcom::session::admit::hygiene;
-use tomcom::session::settings::Condition;
-use tomcom::session::study_arm::StudyArm;
-use tomcom::session::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{HighlightSet, Sender};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{DishId, LocationId};
 use tomcom_people::wizard::settings::{OfferReading, WizardKind, WizardSpec};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
+use tomcom_session::admit::hygiene;
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
+use tomcom_session::verify::verify;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 use super::{events, folder, paper, run};
 

@@ -8,12 +8,12 @@ use ratatui::style::{Color, Modifier};
 use tomcom::console::panel::Panel;
 use tomcom::console::view;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
-use tomcom::session::event::{Event, SignalEndReason};
-use tomcom::session::settings::{Condition, ParticipantKind, WizardVisibility};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::communication::{Sender, Signal};
+use tomcom_session::event::{Event, SignalEndReason};
+use tomcom_session::settings::{Condition, ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;

@@ -1,10 +1,10 @@
 //! The belief panel, and the track of estimates behind it.
 
 use crossterm::event::KeyCode;
-use tomcom::history::belief_track;
-use tomcom::session::event::{Event, TrialEndReason};
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::event::{Event, TrialEndReason};
+use tomcom_session::history::belief_track;
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, panels};
 use crate::check_snapshot;

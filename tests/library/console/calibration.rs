@@ -3,10 +3,10 @@
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::gaze_advice::AccuracyCheckAction;
-use tomcom::session::accuracy_check::GazeCheckEvent;
-use tomcom::session::event::Event;
-use tomcom::session::settings::ParticipantKind;
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
+use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::event::Event;
+use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;

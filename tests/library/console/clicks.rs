@@ -7,11 +7,11 @@ use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::view::click_targets;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::session::Event;
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
+use tomcom_session::Event;
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, input};
 

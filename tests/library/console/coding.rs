@@ -1,15 +1,15 @@
 //! The rater's view: codebook and errors at three sizes, keys and clicks, undo, and two raters who settle.
 
 use crossterm::event::KeyCode;
-use tomcom::analysis::error_list::ListedError;
 use tomcom::console::key_action::{KeyAction, RaterAction};
 use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::rater_session::{CodingRaters, RaterSession};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::session::TimelineEvent;
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_session::TimelineEvent;
+use tomcom_session::error_list::ListedError;
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

@@ -6,7 +6,7 @@ use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 use tomcom::console::view;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
-use tomcom::session::settings::ParticipantKind;
+use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

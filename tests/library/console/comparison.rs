@@ -8,16 +8,16 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::panel::Panel;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::history::belief_track::BeliefSnapshot;
-use tomcom::history::comparison::{
-    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
-};
-use tomcom::session::settings::ParticipantKind;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::measures::matching::CommunicationEvent;
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::history::comparison::{
+    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
+};
+use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

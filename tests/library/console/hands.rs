@@ -3,9 +3,9 @@
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
-use tomcom::session::event::{Event, TrialEndReason};
-use tomcom::session::settings::ParticipantKind;
 use tomcom_core::communication::Sender;
+use tomcom_session::event::{Event, TrialEndReason};
+use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;

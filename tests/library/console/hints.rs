@@ -5,8 +5,8 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::Playback;
 use tomcom::console::{KeyBindings, KeyFileBindings};
-use tomcom::session::event::{Event, SignalEndReason};
-use tomcom::session::settings::ParticipantKind;
+use tomcom_session::event::{Event, SignalEndReason};
+use tomcom_session::settings::ParticipantKind;
 
 use super::Stage;
 

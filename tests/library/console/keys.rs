@@ -5,11 +5,11 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::key_action::{KeyErrorSource, KeyLayer};
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom::session::SessionSpec;
-use tomcom::session::event::{Event, SignalEndReason, TrialEndReason};
-use tomcom::session::settings::ParticipantKind;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, Kitchen, LocationKind};
+use tomcom_session::SessionSpec;
+use tomcom_session::event::{Event, SignalEndReason, TrialEndReason};
+use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input};
 use crate::kitchen;

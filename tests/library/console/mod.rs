@@ -29,10 +29,6 @@ use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
-use tomcom::history::belief_track::BeliefSnapshot;
-use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
-use tomcom::session::settings::{GazeSource, ParticipantKind};
-use tomcom::session::{Session, SessionSpec, apply, offers};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::GazeSample;
@@ -40,6 +36,10 @@ use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::PriorModel;
+use tomcom_session::event::{Event, SignalEndReason, TimestampedEvent};
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::settings::{GazeSource, ParticipantKind};
+use tomcom_session::{Session, SessionSpec, apply, offers};
 
 use crate::kitchen;
 

@@ -7,8 +7,8 @@ use tomcom::console::list_cursor::ListCursor;
 use tomcom::console::palette::actions;
 use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom::session::event::{Event, SignalEndReason};
-use tomcom::session::settings::ParticipantKind;
+use tomcom_session::event::{Event, SignalEndReason};
+use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;

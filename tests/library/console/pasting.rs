@@ -4,8 +4,8 @@ use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::playback::Playback;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::session::event::Event;
-use tomcom::session::settings::ParticipantKind;
+use tomcom_session::event::Event;
+use tomcom_session::settings::ParticipantKind;
 
 use super::Stage;
 

@@ -4,7 +4,7 @@ use tomcom::console::arrange::KitchenMap;
 use tomcom::console::map_items::KitchenMapElement;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleMessage, update};
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, panels};
 use crate::kitchen;

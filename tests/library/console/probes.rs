@@ -5,12 +5,12 @@ use tomcom::console::display_status::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom::console::probe_keys::status;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom::session::Event;
-use tomcom::session::preflight_checks::PreflightVerdict;
-use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
-use tomcom::session::wall_display::AnswerDevice;
 use tomcom_core::kitchen::{AspectId, AspectKind};
+use tomcom_session::Event;
+use tomcom_session::preflight_checks::PreflightVerdict;
+use tomcom_session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
+use tomcom_session::wall_display::AnswerDevice;
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;

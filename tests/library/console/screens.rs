@@ -10,12 +10,12 @@ use tomcom::console::screen::screen;
 use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom::session::event::{Event, TrialEndReason};
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::event::{Event, TrialEndReason};
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, panels};
 use crate::check_snapshot;

@@ -5,8 +5,8 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
-use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

@@ -5,12 +5,12 @@ use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::display_status::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
-use tomcom::session::TrialPhase;
-use tomcom::session::event::Event;
-use tomcom::session::preflight_checks::PreflightVerdict;
-use tomcom::session::settings::{GazeSource, ParticipantKind};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
+use tomcom_session::TrialPhase;
+use tomcom_session::event::Event;
+use tomcom_session::preflight_checks::PreflightVerdict;
+use tomcom_session::settings::{GazeSource, ParticipantKind};
 
 use super::{SIZES, Stage, input, type_in};
 use crate::check_snapshot;

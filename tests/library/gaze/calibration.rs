@@ -1,12 +1,12 @@
 //! The check of the gaze with targets in a session.
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::accuracy_check::{GazeCheckEvent, RunningGazeCheck};
-use tomcom::session::admit::is_external;
-use tomcom::session::{Event, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure};
+use tomcom_session::accuracy_check::{GazeCheckEvent, RunningGazeCheck};
+use tomcom_session::admit::is_external;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::{Event, TimestampedEvent};
 
 use super::engine;
 

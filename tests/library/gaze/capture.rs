@@ -7,11 +7,11 @@ use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMer
 use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom::edge::pupil::{CaptureConfiguration, follow};
-use tomcom::session::settings::GazeSource;
-use tomcom::session::tracker::TrackerEvent;
-use tomcom::session::{Event, preflight_checks};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::tracker::TrackerEvent;
+use tomcom_session::{Event, preflight_checks};
 
 use super::engine;
 
@@ -364,7 +364,7 @@ fn a_recording_that_was_ours_before_a_kill_is_ours_in_the_continued_trial() {
 
 #[test]
 fn a_recording_of_the_tracker_is_ours_in_the_log_until_it_ends() {
-    use tomcom::session::tracker::TrackerRecording::{Begun, Ended, GoesOn, NotAnnotated, NotBegun};
+    use tomcom_session::tracker::TrackerRecording::{Begun, Ended, GoesOn, NotAnnotated, NotBegun};
     let mut engine = engine(|spec| spec.participant.gaze = GazeSource::Pupil);
     assert!(!engine.session().tracker.is_recording());
     for (state, is_ours) in [(NotBegun, false), (Begun, true), (NotAnnotated, true), (Ended, false), (GoesOn, true)] {

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use rand::RngExt;
 use rmpv::Value;
-use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_file;
 use tomcom::edge::pupil::message::{self, CaptureNotification, PupilMessage};
 use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
 use tomcom::run::options::SettingOverrides;
-use tomcom::session::settings::GazeSource;
-use tomcom::session::tracker::TrackerSpec;
 use tomcom_core::base::rng::stream;
 use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_session::files::file_error::FileError;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::tracker::TrackerSpec;
 
 const DATUM: &[u8] = include_bytes!("../../pupil/surfaces_wall.msgpack");
 

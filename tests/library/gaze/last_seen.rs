@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use tomcom::analysis::seen_contents::LastSeenContents;
 use tomcom::edge::files::read_session;
-use tomcom::session::probes::{ProbeEvent, ProbeOrigin};
-use tomcom::session::{Event, Session, TimestampedEvent, apply};
 use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::{Agent, KitchenChange, LocationId};
+use tomcom_session::probes::{ProbeEvent, ProbeOrigin};
+use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// A session with what was last seen in it, event by event.
 struct Look {

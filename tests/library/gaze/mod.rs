@@ -12,9 +12,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::edge::files::read_session;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::SessionSpec;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::SessionSpec;
+use tomcom_session::engine::SessionEngine;
 
 /// A session of the sushi kitchen with these settings.
 fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {

@@ -1,11 +1,11 @@
 //! Streams of samples: faults, delays, sampling rates, and floods.
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::Event;
-use tomcom::session::settings::{GazeSource, ParticipantKind};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::quality::{GazeFault, GazeRateLimiter};
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::settings::{GazeSource, ParticipantKind};
 
 use super::engine;
 

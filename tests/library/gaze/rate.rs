@@ -1,11 +1,11 @@
 //! The estimate of beliefs does not depend on the tracker's sampling rate.
 
 use rand::RngExt;
-use tomcom::session::Event;
-use tomcom::session::settings::{GazeSource, ParticipantKind};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
+use tomcom_session::Event;
+use tomcom_session::settings::{GazeSource, ParticipantKind};
 
 use super::engine;
 use crate::kitchen;

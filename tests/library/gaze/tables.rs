@@ -5,9 +5,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::gaze_file::{self, GazeFile};
-use tomcom::session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
-use tomcom::session::tracker::{MissingConfidence, TrackerSpec};
 use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
+use tomcom_session::tracker::{MissingConfidence, TrackerSpec};
 
 const PLAYER: &str = "world_timestamp,world_index,gaze_timestamp,x_norm,y_norm,x_scaled,y_scaled,on_surf,confidence";
 const NEON: &str = "section id,recording id,timestamp [ns],gaze detected on surface,\

@@ -4,15 +4,16 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::settings::{ArmKind, Condition, GazeSource};
-use tomcom::session::tracker::GazeGapSpec;
-use tomcom::session::{Event, SessionSpec, TimestampedEvent, TrialPhase};
+use tomcom::edge::files::read_session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen, State};
 use tomcom_core::mind::filter::BeliefFilter;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource};
+use tomcom_session::tracker::GazeGapSpec;
+use tomcom_session::{Event, SessionSpec, TimestampedEvent, TrialPhase};
 
 /// Seed and number of the sessions.
 const SEED: u64 = 61;

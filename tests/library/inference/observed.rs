@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use tomcom::analysis::follower::SessionFollower;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::{Event, Session, SessionSpec};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::observation::Observation;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::{Event, Session, SessionSpec};
 
 /// All observations of an unassisted trial, until so many presses of both agents.
 pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observation> {

@@ -2,18 +2,18 @@
 
 use std::convert::Infallible;
 
-use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::likelihood::PressLogLikelihood;
 use tomcom::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, OrderContent, WeightedWorlds, World};
 use tomcom_core::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::choice_parameters::ChoiceParameters;
 use tomcom_core::mind::{ChoiceModel, RecordedBelief};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::headless;
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use crate::kitchen;
 

@@ -1,11 +1,11 @@
 //! Signals that are judged when they are sent.
 
-use tomcom::history::signal_judge::{SignalJudge, SignalJudgementCounts};
-use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
-use tomcom::session::{Session, SessionSpec, apply};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::Agent;
+use tomcom_session::event::{Event, SignalEndReason, TimestampedEvent};
+use tomcom_session::history::signal_judge::{SignalJudge, SignalJudgementCounts};
+use tomcom_session::{Session, SessionSpec, apply};
 
 use crate::kitchen;
 

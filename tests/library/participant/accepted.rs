@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Deserialize;
-use tomcom::edge::parse::parse;
-use tomcom::session::SessionSpec;
+use tomcom_session::SessionSpec;
+use tomcom_session::files::parse::parse;
 
 const PAPER: &str = "sessions/paper.toml";
 const ACCEPTED: &str = "sessions/people/accepted.toml";

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::sequences;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::headless;
+use tomcom_session::{Event, SessionSpec, TimestampedEvent};
 
 use crate::kitchen;
 

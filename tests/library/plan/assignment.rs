@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::session::orders::OrderList;
-use tomcom::session::plan::{Participants, QuestionnaireItem, Study, WantedRecording, orders as orders_of_conditions};
-use tomcom::session::settings::{ArmKind, ColourTheme, ParticipantKind, WizardVisibility};
-use tomcom::session::wall_display::RobotDepiction;
+use tomcom::edge::files::read_session;
 use tomcom_core::kitchen::DishId;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::orders::OrderList;
+use tomcom_session::plan::{Participants, QuestionnaireItem, Study, WantedRecording, orders as orders_of_conditions};
+use tomcom_session::settings::{ArmKind, ColourTheme, ParticipantKind, WizardVisibility};
+use tomcom_session::wall_display::RobotDepiction;
 
 use super::{folder, study};
 

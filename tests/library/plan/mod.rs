@@ -10,8 +10,9 @@ mod tutorial;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::session::plan::Study;
+use tomcom::edge::files::read_session;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::plan::Study;
 
 fn files() -> SessionSetup {
     read_session(Path::new("sessions/study.toml")).expect("the study of the project")

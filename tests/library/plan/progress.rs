@@ -1,6 +1,6 @@
 //! What comes next, whatever was recorded, cut or left.
 
-use tomcom::session::plan::{
+use tomcom_session::plan::{
     NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, WantedRecording,
 };
 

@@ -7,18 +7,18 @@ use std::sync::Arc;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
-use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::recordings;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::verify::verify;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome, WantedRecording};
-use tomcom::session::protocol::ProtocolEvent;
-use tomcom::session::study_arm::StudyArm;
-use tomcom::session::wall_display::AnswerDevice;
-use tomcom::session::{Event, LogHeader, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome, WantedRecording};
+use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::study_arm::StudyArm;
+use tomcom_session::verify::verify;
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::{Event, LogHeader, TrialPhase};
 
 use super::{files, folder, study};
 

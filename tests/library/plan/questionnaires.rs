@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::log::LogWriter;
-use tomcom::edge::parse::parse;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::verify::verify;
-use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
-use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom::session::{Event, LogHeader};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::parse::parse;
+use tomcom_session::log::LogWriter;
+use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
+use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::verify::verify;
+use tomcom_session::{Event, LogHeader};
 
 use super::{files, folder};
 
@@ -97,7 +97,7 @@ fn the_questionnaires_ask_the_same_in_both_languages() {
                 (&other.id, other.kind, &other.about, other.reversed)
             );
             assert_ne!(one.text, other.text, "{}", one.id);
-            let ids = |item: &tomcom::session::plan::QuestionnaireItem| {
+            let ids = |item: &tomcom_session::plan::QuestionnaireItem| {
                 item.options.iter().map(|one| one.id.clone()).collect::<Vec<_>>()
             };
             assert_eq!(ids(one), ids(other));

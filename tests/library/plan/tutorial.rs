@@ -6,17 +6,17 @@ use std::sync::Arc;
 
 use tomcom::display::{DisplayStage, ShownContent, sight};
 use tomcom::edge::files::{read_kitchen, read_session};
-use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::run::engine::SessionEngine;
 use tomcom::run::leaving::TutorialProgress;
-use tomcom::run::verify::verify;
-use tomcom::session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
-use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom::session::settings::ParticipantKind;
-use tomcom::session::tutorial::{TutorialEvent, TutorialPageTurner};
-use tomcom::session::{Event, LogHeader, Session};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
+use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
+use tomcom_session::verify::verify;
+use tomcom_session::{Event, LogHeader, Session};
 
 use super::{files, folder, study};
 
@@ -234,7 +234,7 @@ fn a_plan_has_the_tutorial_once_and_on_the_display_only() {
 fn german_and_english_ask_for_the_same() {
     let english = files().tutorial.expect("a tutorial");
     let text = fs::read_to_string("sessions/tutorials/sushi.de.toml").expect("the file of the project");
-    let german: tomcom::session::plan::Tutorial = toml::from_str(&text).expect("a tutorial");
+    let german: tomcom_session::plan::Tutorial = toml::from_str(&text).expect("a tutorial");
     assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
     german.check().and_then(|()| german.check_kitchen(&files().kitchen.kitchen)).expect("it fits the kitchen");
     assert_eq!(english.steps.len(), german.steps.len());

@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::edge::files::{read_human_model, read_kitchen, read_session};
-use tomcom::session::ranges;
+use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom_core::base::number_range::NumberRange;
 use tomcom_core::kitchen::layout_ranges;
+use tomcom_session::files::read_human_model;
+use tomcom_session::ranges;
 
 use super::{as_number, every_setting, extremes, folder, has, questionnaire, set};
 
@@ -54,7 +55,7 @@ fn is_ruled(path: &str) -> bool {
     RULED.contains(&path)
 }
 
-fn told<T>(read: tomcom::edge::file_error::FileResult<T>) -> Result<(), String> {
+fn told<T>(read: tomcom_session::files::file_error::FileResult<T>) -> Result<(), String> {
     read.map(drop).map_err(|error| format!("{:?}", miette::Report::new(error)))
 }
 

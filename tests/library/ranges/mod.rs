@@ -9,9 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::read_kitchen;
-use tomcom::session::ranges;
 use tomcom_core::base::number_range::{NumberRange, numbers};
 use tomcom_core::kitchen::{Kitchen, layout_ranges};
+use tomcom_session::ranges;
 
 /// A session file that has every setting with a range.
 const SETTINGS: &str = r#"
@@ -76,7 +76,7 @@ const SETTINGS: &str = r#"
 
 /// A session file with every setting that is a number.
 fn every_setting() -> toml::Table {
-    let given: tomcom::session::SessionSpec = toml::from_str(SETTINGS).expect("a session");
+    let given: tomcom_session::SessionSpec = toml::from_str(SETTINGS).expect("a session");
     let mut all = toml::Table::try_from(given).expect("settings are TOML");
     let offers = Some(tomcom_people::wizard::settings::OfferReading::default());
     let wizard = tomcom_people::wizard::settings::WizardSpec { offers, ..Default::default() };

@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::log::{LOG_NAME, LogReader, SimulatedLogState};
-use tomcom::session::{Event, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::choice::ChoiceModel;
 use tomcom_core::mind::choice_parameters::ChoiceParameters;
 use tomcom_core::robot::moment::ArmSample;
+use tomcom_session::log::{LOG_NAME, LogReader, SimulatedLogState};
+use tomcom_session::{Event, TimestampedEvent};
 
 use super::folder;
 

@@ -4,16 +4,17 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::edge::log::LogReader;
+use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::session::apply::apply;
-use tomcom::session::settings::{ArmKind, Condition, SessionSpec};
-use tomcom::session::{Event, ranges};
 use tomcom_core::base::number_range::NumberRange;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::layout_ranges;
 use tomcom_people::wizard::settings::WizardKind;
+use tomcom_session::apply::apply;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::log::LogReader;
+use tomcom_session::settings::{ArmKind, Condition, SessionSpec};
+use tomcom_session::{Event, ranges};
 
 use super::{every_setting, folder, set};
 

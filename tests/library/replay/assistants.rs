@@ -5,19 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::analysis::advisor::Advisor;
-use tomcom::analysis::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom::edge::files::SessionSetup;
-use tomcom::edge::log::{LOG_NAME, LogReader};
-use tomcom::history::comparison::CommunicationContext;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::run::replay::RecordingReplay;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::run::verify::verify;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
@@ -29,6 +17,18 @@ use tomcom_core::kitchen::{Agent, AspectId, LocationId};
 use tomcom_core::measures::matching::ComparedContent;
 use tomcom_core::mind::named_models::PAPER_2021;
 use tomcom_people::participant::population::{Population, TraitSpread};
+use tomcom_session::advisor::Advisor;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::headless;
+use tomcom_session::history::comparison::CommunicationContext;
+use tomcom_session::log::{LOG_NAME, LogReader};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::verify::verify;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use super::{SESSIONS, folder, same, session, simulated};
 
@@ -323,7 +323,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
     let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window: 3 };
     let watcher = || SenderComparisonFollower::new(log.session(), CostToGo::new(log.kitchen.clone()), &request);
-    let (mut here, there) = (watcher(), watcher().on_thread());
+    let (mut here, there) = (watcher(), ComparisonThreadHandle::start(watcher()));
     let mut compared = 0;
     // Locations that were known or had just changed, each with the number of presses until then.
     let mut renewed: Vec<(u32, LocationId)> = Vec::new();

@@ -3,13 +3,13 @@
 use std::fs;
 use std::path::PathBuf;
 
-use tomcom::edge::log::LOG_NAME;
-use tomcom::run::replay::RecordingReplay;
-use tomcom::run::verify::verify;
-use tomcom::session::TrialPhase;
-use tomcom::session::header::VERSION;
-use tomcom::session::settings::ArmKind;
 use tomcom_core::kitchen::{AspectId, LocationId};
+use tomcom_session::TrialPhase;
+use tomcom_session::header::VERSION;
+use tomcom_session::log::LOG_NAME;
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::verify::verify;
 
 use super::{SESSIONS, by_hand, same, simulated};
 use crate::check_snapshot;

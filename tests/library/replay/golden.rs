@@ -6,12 +6,12 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::LOG_NAME;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::session::SessionSpec;
-use tomcom::session::header::VERSION;
-use tomcom::session::settings::{ArmKind, Condition, GazeSource};
 use tomcom_core::communication::settings::ShadowMode;
+use tomcom_session::SessionSpec;
+use tomcom_session::header::VERSION;
+use tomcom_session::log::LOG_NAME;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource};
 
 use super::{by_hand, folder};
 

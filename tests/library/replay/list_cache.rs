@@ -3,9 +3,9 @@
 use std::fs;
 
 use tomcom::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
-use tomcom::edge::log::LogReader;
-use tomcom::session::settings::ArmKind;
-use tomcom::session::study_arm::StudyArm;
+use tomcom_session::log::LogReader;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::study_arm::StudyArm;
 
 use super::simulated;
 

@@ -15,19 +15,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::edge::files::{SessionSetup, read_session};
-use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::run::engine::SessionEngine;
+use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::session::event::{SignalEndReason, TrialEndReason};
-use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
-use tomcom::session::{Event, LogHeader};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{HighlightSet, Sender, signals};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::{SignalEndReason, TrialEndReason};
+use tomcom_session::files::SessionSetup;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
+use tomcom_session::{Event, LogHeader};
 
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];

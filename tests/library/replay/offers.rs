@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use tomcom::analysis::offer_summary::TimedOffer;
-use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::run::engine::SessionEngine;
 use tomcom::run::gathered::GatheredRecordings;
-use tomcom::run::replay::RecordingReplay;
 use tomcom::run::resume::resume;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::steadiness::measure;
-use tomcom::run::verify::verify;
-use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, LogHeader};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom_session::verify::verify;
+use tomcom_session::{Event, LogHeader};
 
 use super::{folder, session};
 

@@ -5,21 +5,21 @@ use std::fs;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::edge::files::SessionSetup;
-use tomcom::edge::log::{LOG_NAME, LogWriter};
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::replay::RecordingReplay;
 use tomcom::run::resume::resume;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::run::verify::verify;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::probes::{ProbeEndReason, ProbeEvent};
-use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
-use tomcom::session::wall_display::AnswerDevice;
-use tomcom::session::{Event, LogHeader};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::log::{LOG_NAME, LogWriter};
+use tomcom_session::probes::{ProbeEndReason, ProbeEvent};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
+use tomcom_session::verify::verify;
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::{Event, LogHeader};
 
 use super::{anything, folder, session};
 

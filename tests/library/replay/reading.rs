@@ -5,15 +5,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::edge::log::{LOG_NAME, LogReader, LogWriter};
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::replay::RecordingReplay;
-use tomcom::run::verify::verify;
-use tomcom::session::settings::ArmKind;
-use tomcom::session::{Event, LogHeader};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::log::{LOG_NAME, LogReader, LogWriter};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::verify::verify;
+use tomcom_session::{Event, LogHeader};
 
 use super::{by_hand, folder, session};
 

@@ -3,16 +3,16 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::history::probe_wording;
-use tomcom::run::replay::RecordingReplay;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom::session::probes::ProbeEvent;
-use tomcom::session::settings::ArmKind;
-use tomcom::session::{Event, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::Agent;
+use tomcom_session::history::probe_wording;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::{Event, TimestampedEvent};
 
 use super::{folder, session, simulated};
 

@@ -5,12 +5,12 @@ use std::fs;
 use std::path::Path;
 
 use rand::RngExt;
-use tomcom::history::landmark::ReplayLandmark;
 use tomcom::run::seekable_replay::SeekableReplay;
-use tomcom::session::settings::ArmKind;
-use tomcom::session::{TimelineEvent, TrialPhase};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
+use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::{TimelineEvent, TrialPhase};
 
 use super::{SESSIONS, simulated};
 

@@ -1,7 +1,7 @@
 //! When the assistant is asked besides presses and changes of the task: once in every unusual silence.
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::Event;
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
 
 use super::{at, check, engine, press};
 

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
-use tomcom::edge::parse::parse;
-use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
 use tomcom_core::communication::{Signal, signals};
 use tomcom_core::mind::named_models::{PAPER_2021, PLAIN};
+use tomcom_session::files::parse::parse;
+use tomcom_session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
 
 #[test]
 fn every_session_file_loads_and_its_keys_are_unambiguous() {

@@ -3,16 +3,16 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::analysis::follower::SessionFollower;
 use tomcom::edge::files::read_session;
-use tomcom::edge::log::LogWriter;
-use tomcom::run::engine::{InputResult, SessionEngine};
 use tomcom::run::recording_list::{RecordingListDetail, list};
-use tomcom::session::probes::ProbeEvent;
-use tomcom::session::{Event, LogHeader, Session, TimestampedEvent};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, OrderContent};
 use tomcom_core::measures::errors::{PressJudge, PressVerdict};
+use tomcom_session::engine::{InputResult, SessionEngine};
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::log::LogWriter;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::{Event, LogHeader, Session, TimestampedEvent};
 
 use super::probes::on_request;
 use super::{at, kitchen, press};

@@ -16,12 +16,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::edge::files::read_session;
-use tomcom::run::engine::{InputResult, SessionEngine};
-use tomcom::session::Event;
-use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind, SessionSpec};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_session::Event;
+use tomcom_session::engine::{InputResult, SessionEngine};
+use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind, SessionSpec};
 
 fn kitchen() -> Arc<Kitchen> {
     Arc::new(read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen)

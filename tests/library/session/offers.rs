@@ -1,15 +1,15 @@
 //! The rules of offers: opening, holding, closing, and what `enter` means.
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::settings::{Condition, SessionSpec, WizardVisibility};
-use tomcom::session::wizard_screen::WizardScreenContent;
-use tomcom::session::{Event, offers};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::recommendation::{HumanPressProposal, Recommendation, SignalOption};
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::OrderContent;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::settings::{Condition, SessionSpec, WizardVisibility};
+use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::{Event, offers};
 
 use super::{at, check, engine};
 
@@ -150,7 +150,7 @@ fn an_offer_that_became_impossible_closes_at_once_and_so_does_one_at_the_end_of_
     let cleared = Event::OrderCleared { order: "order_1".to_string() };
     let inputs = [nets(1.0, &[(recipe("order_1"), 2.0)]), (1.3, cleared)];
     assert_eq!(changes(&mut engine, &inputs), expected(&[("opens order_1", 1.0), ("impossible", 1.3)]));
-    let ended = Event::TrialEnded { reason: tomcom::session::event::TrialEndReason::Wizard };
+    let ended = Event::TrialEnded { reason: tomcom_session::event::TrialEndReason::Wizard };
     let inputs = [pot(2.0, 1.0), marker(2.4), (2.6, ended)];
     assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 2.3), ("trial_ended", 2.6)]));
 }

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use tomcom::edge::files::read_session;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::probe_sampling::{aspect, questions};
-use tomcom::session::settings::{ParticipantKind, ProbeSpec};
-use tomcom::session::{Event, Session};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::AspectId;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::probe_sampling::{aspect, questions};
+use tomcom_session::settings::{ParticipantKind, ProbeSpec};
+use tomcom_session::{Event, Session};
 
 use super::{at, kitchen};
 

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use tomcom::edge::files::read_session;
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::session::probe_sampling::aspect;
-use tomcom::session::probes::{ProbeEvent, ProbeOrigin};
-use tomcom::session::settings::{Condition, SessionSpec};
-use tomcom::session::{Event, TimestampedEvent};
 use tomcom_core::kitchen::AspectKind;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::headless;
+use tomcom_session::probe_sampling::aspect;
+use tomcom_session::probes::{ProbeEvent, ProbeOrigin};
+use tomcom_session::settings::{Condition, SessionSpec};
+use tomcom_session::{Event, TimestampedEvent};
 
 use super::probes::probes_of;
 

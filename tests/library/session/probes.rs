@@ -1,16 +1,16 @@
 //! Freeze probes by hand: when they begin, how they end, and what is refused.
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::probe_sampling::aspect;
-use tomcom::session::probes::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin};
-use tomcom::session::settings::{Condition, GazeSource, ProbeSpec, SessionSpec};
-use tomcom::session::wall_display::AnswerDevice;
-use tomcom::session::{Event, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::GazeSample;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::probe_sampling::aspect;
+use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin};
+use tomcom_session::settings::{Condition, GazeSource, ProbeSpec, SessionSpec};
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 use super::{at, check, engine, kitchen, press, refused};
 

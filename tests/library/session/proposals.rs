@@ -1,13 +1,13 @@
 //! DEV as a live arm: an error gets one proposal on the display, until it is out of date.
 
 use tomcom::display::sight;
-use tomcom::run::engine::SessionEngine;
-use tomcom::session::Event;
-use tomcom::session::event::SignalEndReason;
-use tomcom::session::settings::{Condition, SessionSpec};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::Agent;
+use tomcom_session::Event;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::SignalEndReason;
+use tomcom_session::settings::{Condition, SessionSpec};
 
 use super::{at, engine, press, refused};
 

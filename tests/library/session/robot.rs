@@ -2,11 +2,6 @@
 
 use std::convert::Infallible;
 
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::session::orders::OrderList;
-use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply, silence};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::settings::ShadowMode;
@@ -15,6 +10,11 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::initiative::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::headless;
+use tomcom_session::orders::OrderList;
+use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply, silence};
 
 use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
 

@@ -1,11 +1,11 @@
 //! The trial's clock, pauses and orders, and its end.
 
-use tomcom::session::event::{SignalEndReason, TrialEndReason};
-use tomcom::session::settings::Condition;
-use tomcom::session::{Event, TrialPhase};
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen, State};
+use tomcom_session::event::{SignalEndReason, TrialEndReason};
+use tomcom_session::settings::Condition;
+use tomcom_session::{Event, TrialPhase};
 
 use super::{at, check, engine, press, refused};
 

@@ -1,8 +1,6 @@
 //! The effect of assistance, against values of other programs.
 
 use tomcom::run::study::describe;
-use tomcom::session::settings::Condition;
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::effect::{effect, left_out_in_words, pairs};
 use tomcom::study::facts::RecordingFacts;
@@ -11,6 +9,8 @@ use tomcom::study::report;
 use tomcom::study::statistics::{hodges_lehmann, permutation_p};
 use tomcom::study::tables::trials::HEADLINE;
 use tomcom::study::trial_statistics::{TrialStatistics, arrange};
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
 
 use super::{near, trial, trials};
 

@@ -3,9 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::edge::files::{SessionSetup, read_session};
+use tomcom::edge::files::read_session;
 use tomcom::edge::frozen_file::{freeze, read_frozen};
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::CsvTable;
 use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::facts::RecordingFacts;
@@ -13,6 +12,8 @@ use tomcom::study::figures::StudySummary;
 use tomcom::study::frozen_plan::{FrozenDefinition, FrozenPlan};
 use tomcom::study::preregistration::{PreregistrationCheck, RecordedPlan};
 use tomcom::study::report;
+use tomcom_session::files::SessionSetup;
+use tomcom_session::study_arm::StudyArm;
 
 use super::trials;
 

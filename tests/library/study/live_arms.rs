@@ -1,9 +1,9 @@
 //! Concepts that acted by themselves on the same seeds.
 
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::acting_arm::SignalSenderWithParameter;
 use tomcom::study::live_arms::live_arms;
 use tomcom::study::trial_statistics::TrialStatistics;
+use tomcom_session::study_arm::StudyArm;
 
 use super::{near, trial};
 

@@ -15,9 +15,6 @@ mod tables;
 mod tutorials;
 
 use tomcom::analysis::offer_summary::OfferSummary;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::acting_arm::SignalSenderWithParameter;
 use tomcom::study::robot_tally::RobotEventSummary;
 use tomcom::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
@@ -25,6 +22,9 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
+use tomcom_session::study_arm::StudyArm;
 
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");

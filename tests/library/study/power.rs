@@ -9,9 +9,6 @@ use tomcom::edge::picture_file::{check_picture, write_picture};
 use tomcom::edge::pool_file::{read_pool, write_pool};
 use tomcom::edge::power_files::{check_table, write_table};
 use tomcom::run::power_measurement::{PowerRequest, measure};
-use tomcom::session::plan::{PrimaryOutcome, StudyAims, orders};
-use tomcom::session::settings::Condition;
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::arm_comparison::compare_arms;
 use tomcom::study::arm_table::StudyArmTable;
 use tomcom::study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampler, results, tests};
@@ -23,6 +20,9 @@ use tomcom::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTri
 use tomcom::study::tables::trials::HEADLINE;
 use tomcom::study::trial_statistics::TrialStatistics;
 use tomcom_core::base::rng::stream;
+use tomcom_session::plan::{PrimaryOutcome, StudyAims, orders};
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
 
 use super::trial;
 

@@ -2,17 +2,17 @@
 
 use std::convert::Infallible;
 
-use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::probe_collector::ProbeCollector;
 use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
-use tomcom::run::engine::SessionEngine;
-use tomcom::run::headless;
-use tomcom::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
-use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectKind, LocationId};
 use tomcom_core::mind::RecordedBelief;
+use tomcom_session::engine::SessionEngine;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::headless;
+use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use super::near;
 use crate::kitchen;

@@ -10,9 +10,6 @@ use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{
     AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
-use tomcom::session::probes::ProbeOrigin;
-use tomcom::session::settings::Condition;
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::CsvRow;
 use tomcom::study::detail_totals::DetailTotals;
 use tomcom::study::facts::RecordingFacts;
@@ -23,6 +20,9 @@ use tomcom::study::trial_details::TrialDetails;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_session::probes::ProbeOrigin;
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
 
 use super::{near, trial};
 

@@ -4,16 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::analysis::offer_summary::TimedOffer;
-use tomcom::edge::log::{consensus_file, rater_codes};
 use tomcom::run::codes::CodedRecording;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::describe;
 use tomcom::run::study::reading::{self, AnalysisScope};
-use tomcom::session::Event;
-use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::event::TrialEndReason;
-use tomcom::session::plan::QuestionnaireItemKind;
-use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::column::{CsvCell, CsvRow, CsvTable};
 use tomcom::study::concept_totals::ConceptPreventionCounts;
 use tomcom::study::detail_totals::DetailTotals;
@@ -35,6 +29,12 @@ use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::Event;
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::log::{consensus_file, rater_codes};
+use tomcom_session::plan::QuestionnaireItemKind;
+use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
 
 use super::{at, near, trial, trials};
 

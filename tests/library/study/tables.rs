@@ -7,10 +7,6 @@ use std::path::{Path, PathBuf};
 use tomcom::edge::export::AnalysisFolder;
 use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
-use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::plan::QuestionnaireItemKind;
-use tomcom::session::settings::Condition;
-use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use tomcom::study::concept_totals::ConceptPreventionCounts;
 use tomcom::study::dictionary::{DataDictionaryRow, columns, dictionary};
@@ -26,6 +22,10 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::LocationId;
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
+use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::plan::QuestionnaireItemKind;
+use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
 
 use super::probes::one_right_answer;
 

@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 
 use rayon::prelude::*;
 use snapbox::Assert;
-use tomcom::session::event::TimestampedEvent;
+use tomcom_session::event::TimestampedEvent;
 
 use self::markdown::{Block, Page};
 use crate::program::{self, TOMCOM};

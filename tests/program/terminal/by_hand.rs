@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use tomcom::console::arrange::KitchenMap;
 use tomcom::console::map_items::KitchenMapElement;
 use tomcom::console::view::regions::PanelAreas;
-use tomcom::run::replay::RecordingReplay;
-use tomcom::session::settings::WizardVisibility;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId};
+use tomcom_session::replay::RecordingReplay;
+use tomcom_session::settings::WizardVisibility;
 
 use super::kitchen;
 use crate::program::{PATIENCE, session_with_tracker};

@@ -1,0 +1,60 @@
+//! The errors of a recording as raters see them: number, time and press.
+
+use serde::Serialize;
+
+use super::follower::SessionFollower;
+use super::wizard_log::clock_at;
+use crate::TimelineEvent;
+use crate::history::wording;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
+
+/// One error of the human in a list of errors for raters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ListedError {
+    /// Number of the error in the recording, from 1.
+    pub error: u64,
+    /// Sequence number of the press in the log.
+    pub press: u64,
+    /// Time of the press on the trial's clock, in seconds.
+    pub time_s: f64,
+    /// The button that was pressed in error, in words.
+    pub button: String,
+    /// Whether the erroneous press changed the kitchen.
+    pub effective: bool,
+}
+
+impl ListedError {
+    /// The errors of the human in a recording that was read to its end, in order.
+    pub fn all(follower: &SessionFollower) -> Vec<ListedError> {
+        let session = &follower.session;
+        let presses = session.timeline.iter().filter_map(|entry| match entry.what {
+            TimelineEvent::Press { agent: Agent::Human, button, no_effect, .. } => Some((button, no_effect.is_none())),
+            _ => None,
+        });
+        // The judged presses and the human's presses on the timeline are the same presses in the same order.
+        let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
+        let listed =
+            |(index, (judged, (button, effective))): (usize, (&tomcom_core::measures::JudgedPress, _))| ListedError {
+                error: index as u64 + 1,
+                press: judged.seq,
+                time_s: clock_at(session, judged.time).as_secs_f64(),
+                button: wording::button(&session.kitchen, Agent::Human, button),
+                effective,
+            };
+        errors.enumerate().map(listed).collect()
+    }
+
+    /// Time of the error as the console shows it: "1:34".
+    pub fn clock(&self) -> String {
+        SessionTime::from_secs_f64(self.time_s).to_string()
+    }
+
+    /// The erroneous press in words: "take rice", "cooking pot (no effect)".
+    pub fn words(&self) -> String {
+        match self.effective {
+            true => self.button.clone(),
+            false => format!("{} (no effect)", self.button),
+        }
+    }
+}

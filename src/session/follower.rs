@@ -1,0 +1,325 @@
+//! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
+//! Live sessions and replays derive these with the same code.
+
+use crate::apply::ApplyError;
+use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
+use crate::tracker::TrackerEvent;
+use crate::{AppliedEvent, Event, Session, TimestampedEvent, apply};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
+use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
+use tomcom_core::measures::errors::PressJudge;
+use tomcom_core::measures::sequences::FalseBeliefTracker;
+use tomcom_core::mind::belief::Belief;
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::filter::signals_so_far::EndedSignal;
+use tomcom_core::mind::filter::{BeliefFilter, PressEvidence};
+use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
+use tomcom_core::mind::recorded_estimate::RecordedEstimate;
+
+/// A session with its judged presses, false belief episodes and belief estimate.
+#[derive(Clone, Debug)]
+pub struct SessionFollower {
+    /// The session after the last applied event.
+    pub session: Session,
+    /// Every press of the human so far, with its judgement (error or not, and why).
+    pub judged: Vec<JudgedPress>,
+    /// False belief episodes, as far as the participant's beliefs are known.
+    pub episodes: FalseBeliefTracker,
+    /// The belief filter, which estimates the human's belief.
+    pub filter: BeliefFilter,
+    /// Rule that says which signals the assistant is not to repeat yet.
+    pub repeats: SignalRepeatRule,
+    /// Computing times of updates of the belief estimate; `None` if the times are not measured.
+    pub timing: Option<InferenceTiming>,
+    /// The cost to go that judges presses; its caches can serve the next session in the same kitchen.
+    pub cost: CostToGo,
+    judge: PressJudge,
+    attributor: ErrorAttributor,
+    /// Session time of the last update of the belief estimate.
+    updated_at: Option<SessionTime>,
+    /// Recorded belief of the participant before its next press.
+    belief: Option<Belief>,
+    /// Cause that a simulated participant recorded in advance for its next press, in case the press is an error.
+    told_cause: Option<ErrorCause>,
+    /// Whether the follower attributes errors to their causes.
+    finds_causes: bool,
+    /// Whether the follower updates the belief estimate.
+    estimates: bool,
+    /// The belief estimate before the last counted press of the human.
+    pub estimated: Option<PressBeliefEstimate>,
+    /// The belief estimate at the beginning of the last freeze probe.
+    pub probed: Option<ProbedEstimate>,
+}
+
+/// The belief estimate when the task stopped for a freeze probe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbedEstimate {
+    /// Number of the freeze probe in the trial.
+    pub probe: u32,
+    /// True state of the kitchen when the task stopped.
+    pub state: State,
+    /// The estimate of the human's belief when the task stopped.
+    pub belief: DirichletBelief,
+}
+
+/// The belief estimate before a press of the human.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressBeliefEstimate {
+    /// Sequence number of the press.
+    pub press: u64,
+    /// True state of the kitchen before the press.
+    pub state: State,
+    /// The estimate of the human's belief before the press.
+    pub belief: DirichletBelief,
+    /// Likelihood of the press under the estimate before the press, and quality of the belief samples behind it.
+    pub evidence: PressEvidence,
+}
+
+impl PressBeliefEstimate {
+    /// The belief estimate before the press in the form that the log records.
+    pub fn witness(&self, kitchen: &Kitchen) -> RecordedEstimate {
+        RecordedEstimate::new(kitchen, self.press, &self.belief, self.state, self.evidence)
+    }
+}
+
+/// Computing times of single updates of the belief estimate, in nanoseconds.
+#[derive(Clone, Debug)]
+pub struct InferenceTiming {
+    /// A monotonic clock of the caller, in nanoseconds.
+    now_ns: fn() -> u64,
+    /// Computing times of updates by a gaze sample, in nanoseconds.
+    pub gaze_ns: Vec<u64>,
+    /// Computing times of updates by a press of the human or the robot, in nanoseconds.
+    pub action_ns: Vec<u64>,
+}
+
+impl InferenceTiming {
+    /// Starts measuring computing times with the caller's monotonic clock, in nanoseconds.
+    pub fn with_clock(now_ns: fn() -> u64) -> InferenceTiming {
+        InferenceTiming { now_ns, gaze_ns: Vec::new(), action_ns: Vec::new() }
+    }
+}
+
+impl SessionFollower {
+    /// The follower of a session, before the session's first event.
+    pub fn new(session: Session, cost: CostToGo) -> SessionFollower {
+        let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
+        let judge = PressJudge::new(kitchen.clone());
+        let attributor = ErrorAttributor::new(spec.human.decision.clone(), seed);
+        let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
+        let (judged, episodes) = (Vec::new(), FalseBeliefTracker::default());
+        let (timing, belief, told_cause, estimated, finds_causes) = (None, None, None, None, true);
+        let repeats = SignalRepeatRule::default();
+        SessionFollower {
+            session,
+            judged,
+            episodes,
+            filter,
+            repeats,
+            timing,
+            cost,
+            judge,
+            attributor,
+            updated_at: None,
+            belief,
+            told_cause,
+            finds_causes,
+            estimates: true,
+            estimated,
+            probed: None,
+        }
+    }
+
+    /// The belief estimate at `now`, updated by the time of unknown gaze since the last event.
+    pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
+        self.filter.at(now, &mut self.cost)
+    }
+
+    /// The belief estimate from which a request for advice at `now` starts: as expected once the participant has read
+    /// the signal on the display. Most requests follow an event that has just updated the estimate.
+    pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
+        let is_current = self.updated_at.is_some_and(|updated| updated >= now);
+        self.filter.foreseen(now, is_current, &mut self.cost)
+    }
+
+    /// Applies the next event to the session, and updates judgements and belief estimate.
+    ///
+    /// # Errors
+    /// The errors of [`apply()`].
+    pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
+        let applied = apply(&mut self.session, stamped)?;
+        match (&stamped.event, applied.change) {
+            (Event::ParticipantBelieves(witness), _) if self.finds_causes => {
+                let session = &self.session;
+                self.belief = Belief::of_witness(&session.kitchen, session.state, witness);
+                self.told_cause = ErrorCause::recorded(&session.kitchen, session.state, witness);
+                if let Some(belief) = &self.belief {
+                    let (now, changed_at) = (stamped.time, &session.changed_at);
+                    self.episodes.believed(&session.kitchen, now, session.state, belief, changed_at);
+                }
+            }
+            (_, KitchenChange::Press { press, .. }) => match press.agent {
+                Agent::Robot => self.judge.others_changed(stamped.time, press.before, press.after),
+                Agent::Human => self.human_pressed(stamped, &press),
+            },
+            (_, KitchenChange::Correction { before, after, .. }) => {
+                self.judge.others_changed(stamped.time, before, after)
+            }
+            _ => {}
+        }
+        if let Event::Probe(ProbeEvent::Begun { probe, .. }) = stamped.event {
+            let (state, belief) = (self.session.state, self.belief_at(stamped.time));
+            self.probed = Some(ProbedEstimate { probe, state, belief });
+        }
+        if let Some(pause) = self.session.probe_pause(stamped) {
+            self.judge.postpone(pause);
+        }
+        self.estimate(stamped, &applied.change);
+        Ok(applied)
+    }
+
+    /// Updates the belief estimate by an event that has just been applied.
+    fn estimate(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
+        let Some(what) = self.observed(stamped, change).filter(|_| self.estimates) else { return };
+        let observation = Observation { time: stamped.time, what };
+        let human_press = change.human_press();
+        if human_press.is_some() {
+            self.filter.advance(stamped.time, &mut self.cost);
+        }
+        let belief = human_press.map(|_| self.filter.belief().clone());
+        let began = self.timing.as_ref().map(|timing| (timing.now_ns)());
+        self.filter.observe(&observation, &mut self.cost);
+        self.updated_at = Some(stamped.time);
+        if let (Some(timing), Some(began)) = (&mut self.timing, began) {
+            let took_ns = (timing.now_ns)().saturating_sub(began);
+            match what {
+                ObservedEvidence::Gaze { .. } => timing.gaze_ns.push(took_ns),
+                ObservedEvidence::Pressed(_) => timing.action_ns.push(took_ns),
+                _ => {}
+            }
+        }
+        self.remember(stamped);
+        if let (Some(press), Some(belief), Some(evidence)) = (human_press, belief, self.filter.evidence()) {
+            self.estimated = Some(PressBeliefEstimate { press: stamped.seq, state: press.before, belief, evidence });
+        }
+    }
+
+    /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after gaze
+    /// samples.
+    fn remember(&mut self, stamped: &TimestampedEvent) {
+        let (kitchen, state) = (&self.session.kitchen, self.session.state);
+        if let Some(EndedSignal { location, read }) = self.filter.take_signal_over() {
+            self.repeats.over(location, read);
+        }
+        match &stamped.event {
+            Event::Gaze(_) | Event::Probe(_) => return,
+            Event::TrialStarted => self.repeats = SignalRepeatRule::default(),
+            Event::SignalShown { signal, .. } => self.repeats.shown(kitchen, state, signal),
+            _ => {}
+        }
+        self.repeats.update(kitchen, state, self.filter.belief());
+    }
+
+    /// The observation that the belief filter receives for an event; `None` if the event is no evidence.
+    pub fn observed(&self, stamped: &TimestampedEvent, change: &KitchenChange) -> Option<ObservedEvidence> {
+        match *change {
+            KitchenChange::TrialStarted { after, .. } => return Some(ObservedEvidence::Started { state: after }),
+            KitchenChange::Press { press, .. } => return Some(ObservedEvidence::Pressed(press)),
+            KitchenChange::Order { after, .. } | KitchenChange::Correction { after, .. } => {
+                return Some(ObservedEvidence::Displayed { state: after });
+            }
+            KitchenChange::None | KitchenChange::UncountedPress { .. } => {}
+        }
+        // An event during a freeze probe is no such observation: the kitchen is not on the display, and the probe's
+        // pause says nothing about the human's silence.
+        let is_frozen = self.session.is_frozen();
+        match &stamped.event {
+            Event::TrialPaused | Event::TrialResumed if is_frozen => None,
+            Event::TrialPaused => Some(ObservedEvidence::Paused),
+            Event::TrialResumed => Some(ObservedEvidence::Resumed),
+            // The belief filter does not use gaze samples that are late, duplicate or out of order; they are recorded
+            // only.
+            Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
+            Event::Gaze(sample) => {
+                let taken = sample.taken(stamped.time);
+                let evidence = ObservedEvidence::Gaze { sample: self.session.corrected(*sample), taken };
+                self.session.had_kitchen_on_display(taken).then_some(evidence)
+            }
+            Event::Tracker(TrackerEvent::DisplayLost) => Some(ObservedEvidence::DisplayInView(false)),
+            Event::Tracker(TrackerEvent::DisplayFound | TrackerEvent::Lost { .. }) => {
+                Some(ObservedEvidence::DisplayInView(true))
+            }
+            Event::Probe(ProbeEvent::Begun { .. }) => Some(ObservedEvidence::Frozen),
+            Event::Probe(ProbeEvent::Ended { .. }) => {
+                let over = self.session.probes.over.last()?;
+                let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
+                Some(ObservedEvidence::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
+            }
+            Event::SignalShown { signal: Signal::Propose(presses), .. } => {
+                let button = |name: &String| self.session.kitchen.button_named(Agent::Human, name);
+                Some(ObservedEvidence::Proposed(ProposedPresses::new(presses.iter().filter_map(button))))
+            }
+            Event::SignalShown { .. } => {
+                Some(ObservedEvidence::Told { location: self.session.shown.as_ref()?.location? })
+            }
+            Event::SignalEnded { .. } if self.session.spec.human.signal.takes_time() => {
+                Some(ObservedEvidence::EndedSignal)
+            }
+            _ => None,
+        }
+    }
+
+    /// The locations about which a freeze probe asked, as a bit set.
+    fn asked_about(&self, probe: &StartedProbe) -> u32 {
+        let asked = probe.questions.iter().take(probe.shown.map_or(0, |shown| shown + 1));
+        let locations = asked.filter_map(|question| match &question.about {
+            ProbeSubject::Location { location } => self.session.kitchen.location_named(location),
+            _ => None,
+        });
+        locations.fold(0, |bits, location| bits | 1 << location.index())
+    }
+
+    /// This follower without attribution of errors to causes, because attribution takes too long in a running session.
+    pub fn without_causes(self) -> SessionFollower {
+        SessionFollower { finds_causes: false, ..self }
+    }
+
+    /// This follower with the belief estimate as it is now, because updates take most of the time of a session of which
+    /// only presses and errors count.
+    pub fn without_estimate(self) -> SessionFollower {
+        SessionFollower { estimates: false, ..self }
+    }
+
+    /// Judges a press of the human that has just been applied, and attributes an error to its cause.
+    fn human_pressed(&mut self, stamped: &TimestampedEvent, press: &Press) {
+        let kitchen = self.session.kitchen.clone();
+        let number = self.session.all_presses();
+        let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);
+        // The participant's belief is recorded before every press and belongs to the next press only.
+        let (belief, told) = (self.belief.take(), self.told_cause.take());
+        let cause = belief.as_ref().filter(|_| verdict.error).map(|belief| {
+            told.unwrap_or_else(|| self.attributor.cause(&kitchen, &mut self.cost, belief, press, number))
+        });
+        if let Some(cause) = cause {
+            self.episodes.erred(&kitchen, cause);
+        }
+        let belief_known = belief.is_some();
+        let (seq, time, before) = (stamped.seq, stamped.time, press.before);
+        self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
+    }
+
+    /// Number of the human's presses so far whose judgement rests on a cost to go that is not proven.
+    pub fn unproven(&self) -> usize {
+        self.judged.iter().filter(|press| !press.verdict.is_proven).count()
+    }
+
+    /// The number of the human's errors so far.
+    pub fn errors(&self) -> usize {
+        self.judged.iter().filter(|press| press.verdict.error).count()
+    }
+}

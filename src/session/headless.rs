@@ -1,0 +1,54 @@
+//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
+
+use super::engine::SessionEngine;
+use crate::protocol::ProtocolEvent;
+use crate::{Event, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+
+/// Time after which a simulated attendant resumes an arm that has stopped by itself, in seconds.
+const LOOKS_S: f64 = 3.0;
+
+/// Stands in for a wizard in simulations: resumes an arm that has stopped by itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SimulatedRobotOperator {
+    stopped: Option<SessionTime>,
+}
+
+impl SimulatedRobotOperator {
+    /// Raises the next internal event of a running session, and resumes the arm if it has been stopped for a while.
+    pub fn step(&mut self, engine: &mut SessionEngine) -> Vec<TimestampedEvent> {
+        let now = engine.next_due().unwrap_or(engine.session().time);
+        let mut events = engine.fire();
+        self.stopped = engine.session().robot.stopped.then(|| self.stopped.unwrap_or(now));
+        if self.stopped.is_some_and(|since| now.secs_since(since) >= LOOKS_S) {
+            events.extend(engine.input(now, Event::RobotResumed).events);
+        }
+        events
+    }
+}
+
+/// Runs a whole session of one trial and passes every event to `record`.
+///
+/// # Errors
+/// The first error of `record`; the session stops there.
+pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
+    let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
+    if let Some(phase) = engine.session().next_phase() {
+        let event = Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 });
+        engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
+    }
+    engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
+    let mut attendant = SimulatedRobotOperator::default();
+    // Until the trial ends, a next event is always pending, since the end of the trial's time is one.
+    while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
+        for question in engine.take_questions() {
+            if let Some(advisor) = &mut advisor {
+                let advice = Event::Advised(advisor.answer(&question));
+                engine.input(engine.session().time, advice).events.iter().try_for_each(&mut record)?;
+            }
+        }
+        attendant.step(engine).iter().try_for_each(&mut record)?;
+    }
+    let end = engine.session().time;
+    engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)
+}

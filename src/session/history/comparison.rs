@@ -1,0 +1,320 @@
+//! Comparison of wizard and assistants: the communications of each sender in a lane, the matches between lanes, and the
+//! differences with context.
+
+use std::sync::Arc;
+
+use super::belief_track::AspectBeliefSnapshot;
+use crate::history::wording;
+use crate::wizard_screen::WizardScreenContent;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::Signal;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
+use tomcom_core::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use tomcom_core::measures::matching::{
+    CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
+};
+use tomcom_core::measures::sequences::FALSE_BELOW;
+
+/// A belief with a P(truth) of at least this counts as certain.
+const SURE: f64 = 0.9;
+
+/// Context of a possible communication: true state, belief estimate, recommendations, and what the wizard saw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommunicationContext {
+    /// Sequence number of the event after which the assistants were asked for advice.
+    pub seq: u64,
+    /// The true state of the kitchen at that event.
+    pub state: State,
+    /// Estimated belief by state aspect, without the effect of signals that were sent within the matching window.
+    pub held: Arc<[AspectBeliefSnapshot]>,
+    /// Recommendation of each assistant, in the order of the assistants' lanes.
+    pub advice: Vec<Recommendation>,
+    /// Content of the wizard's screen; `None` before the screen was first drawn, and without a wizard.
+    pub screen: Option<WizardScreenContent>,
+}
+
+/// What one communication tells the participant: a signal, or proposed presses.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CommunicationContent {
+    /// A signal that the wizard or an assistant sends.
+    Signal(Signal),
+    /// Proposed presses, as the names of their buttons.
+    Proposal(Vec<String>),
+}
+
+impl CommunicationContent {
+    /// Content of a communication that consists of this signal.
+    pub fn from_signal(signal: &Signal) -> CommunicationContent {
+        match signal {
+            Signal::Propose(presses) => CommunicationContent::Proposal(presses.clone()),
+            signal => CommunicationContent::Signal(signal.clone()),
+        }
+    }
+
+    /// Content of the communication in the form that the matching of communications compares.
+    pub fn content(&self, kitchen: &Kitchen) -> ComparedContent {
+        let kind = match self {
+            CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
+            CommunicationContent::Signal(Signal::Highlight(_)) => CommunicationKind::Highlight,
+            CommunicationContent::Signal(Signal::Propose(_)) | CommunicationContent::Proposal(_) => {
+                CommunicationKind::Proposal
+            }
+        };
+        ComparedContent { kind, target: self.target(kitchen) }
+    }
+
+    fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
+        match self {
+            CommunicationContent::Signal(signal) => signal.location(kitchen),
+            CommunicationContent::Proposal(_) => None,
+        }
+    }
+
+    /// Content of the communication in words.
+    pub fn words(&self) -> String {
+        match self {
+            CommunicationContent::Signal(signal) => wording::signal(signal),
+            CommunicationContent::Proposal(presses) => wording::proposal(presses),
+        }
+    }
+}
+
+/// One communication of the wizard or of an assistant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Communication {
+    /// The communication in the form that the matching compares: number of presses, trial clock and content.
+    pub said: CommunicationEvent,
+    /// Session time of the communication.
+    pub time: SessionTime,
+    /// The signal, or the proposed presses, that the communication consists of.
+    pub what: CommunicationContent,
+    /// Context of the communication: what was known when the assistants were last asked for advice before it.
+    pub known: Option<Arc<CommunicationContext>>,
+}
+
+/// All communications of one sender (the wizard or one assistant) in a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SenderCommunications {
+    /// Name of the sender: "wizard", "tom-com".
+    pub name: String,
+    /// Communication concept of the assistant; `None` for the signals that the participant saw.
+    pub concept: Option<ConceptName>,
+    /// Communications of this sender, in the order of time.
+    pub spoken: Vec<Communication>,
+}
+
+impl SenderCommunications {
+    /// Communications of the sender in the form that the matching takes, in the order of time.
+    pub fn said(&self) -> Vec<CommunicationEvent> {
+        self.spoken.iter().map(|spoken| spoken.said).collect()
+    }
+}
+
+/// A communication of one sender without a match among the communications of another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnmatchedCommunication {
+    /// Index of the lane with the communication.
+    pub lane: usize,
+    /// Index of the communication in its lane.
+    pub index: usize,
+    /// Index of the lane that has no communication matching this one.
+    pub not: usize,
+}
+
+/// Comparison of the first lane, which holds the signals that the participant saw, with an assistant's lane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SenderMatches {
+    /// Strict matches, as pairs of indices into the first and the other lane.
+    pub matched: Vec<(usize, usize)>,
+    /// Similarity of the two lanes' communications: how many of them match.
+    pub similarity: Similarity,
+}
+
+/// Comparison of the wizard's and the assistants' communications in a trial so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SenderComparison {
+    /// Two communications can match if at most this many presses of the human lie between them.
+    pub window: u32,
+    /// The lanes, one for each sender; the first holds the signals that the participant saw.
+    pub lanes: Vec<SenderCommunications>,
+    /// Comparisons of the first lane with each assistant's lane.
+    pub pairs: Vec<SenderMatches>,
+    /// Communications without a match, in order of time; a communication that a later one can still match is left out.
+    pub differences: Vec<UnmatchedCommunication>,
+}
+
+impl SenderComparison {
+    /// Compares the communications of all senders in a trial after `presses` presses of the human; `over` says whether
+    /// the trial has ended.
+    pub fn new(lanes: Vec<SenderCommunications>, window: u32, presses: u32, over: bool) -> SenderComparison {
+        let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(SenderCommunications::said).collect();
+        let pair = |with: &Vec<CommunicationEvent>| {
+            let mut tally = MatchCounts::default();
+            tally.add(&said[0], with, presses, window);
+            let matched = matched(&said[0], with, window, MatchCriterion::Signal);
+            SenderMatches { matched, similarity: tally.similarity() }
+        };
+        let pairs: Vec<SenderMatches> = said.iter().skip(1).map(pair).collect();
+        let mut differences = Vec::new();
+        for (not, pair) in pairs.iter().enumerate() {
+            let other = not + 1;
+            let alone = |lane: usize, index: usize| {
+                !pair.matched.iter().any(|&(a, b)| if lane == 0 { a == index } else { b == index })
+            };
+            for (lane, not) in [(0, other), (other, 0)] {
+                let settled = |index: &usize| over || said[lane][*index].press + window < presses;
+                let indices = (0..said[lane].len()).filter(|&index| alone(lane, index)).filter(settled);
+                differences.extend(indices.map(|index| UnmatchedCommunication { lane, index, not }));
+            }
+        }
+        let time = |one: &UnmatchedCommunication| lanes[one.lane].spoken[one.index].time;
+        differences.sort_by_key(|one| (time(one), one.lane, one.not));
+        SenderComparison { window, lanes, pairs, differences }
+    }
+
+    /// The communication that is without a match.
+    pub fn spoken(&self, difference: &UnmatchedCommunication) -> &Communication {
+        &self.lanes[difference.lane].spoken[difference.index]
+    }
+
+    /// Index of the assistant's lane in a difference between two lanes.
+    fn assistant(&self, difference: &UnmatchedCommunication) -> usize {
+        difference.lane.max(difference.not)
+    }
+
+    /// Recommendation, at the time of an unmatched communication, of the assistant that is compared with the first
+    /// lane.
+    pub fn advice(&self, difference: &UnmatchedCommunication) -> Option<&Recommendation> {
+        self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
+    }
+
+    /// An unmatched communication in one line: "4:32  only tom-com: recipe of order 1".
+    pub fn headline(&self, difference: &UnmatchedCommunication) -> String {
+        let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
+        let (clock, words) = (spoken.said.clock, spoken.what.words());
+        match self.lanes.len() {
+            0..=2 => format!("{clock}  only {by}: {words}"),
+            _ => format!("{clock}  {by}, not {}: {words}", self.lanes[difference.not].name),
+        }
+    }
+
+    /// The context of an unmatched communication, as lines of text.
+    pub fn opened(&self, kitchen: &Kitchen, difference: &UnmatchedCommunication) -> Vec<String> {
+        let spoken = self.spoken(difference);
+        let other = &self.lanes[difference.not];
+        let apart = |near: &&Communication| near.said.press.abs_diff(spoken.said.press);
+        let (press, name) = (spoken.said.press, &other.name);
+        let lacks = match other.spoken.iter().min_by_key(apart) {
+            Some(near) => {
+                let (words, clock, presses) =
+                    (near.what.words(), near.said.clock, count(apart(&near), "press", "presses"));
+                format!(
+                    "after press {press}; not sent by {name}, whose nearest signal is {words} at {clock}, {presses} away"
+                )
+            }
+            None => format!("after press {press}; not sent by {name}, which sent no signal in this trial"),
+        };
+        let mut lines = vec![self.headline(difference), lacks];
+        let Some(known) = &spoken.known else {
+            lines.push("the assistant had not been asked: there was no press or order before".to_string());
+            return lines;
+        };
+        if let Some(advice) = self.advice(difference) {
+            let lane = &self.lanes[self.assistant(difference)];
+            lines.push(format!(
+                "recommendation of {} at this time: {}",
+                lane.name,
+                thought(kitchen, advice, lane.concept == Some(ConceptName::Tom))
+            ));
+        }
+        lines.extend(believed(kitchen, known));
+        lines.push(format!("true contents of the kitchen: {}", truly(kitchen, known.state)));
+        lines.push(format!("panels on the wizard's screen: {}", seen(known.screen.as_ref())));
+        lines
+    }
+}
+
+/// A recommendation in words; for the concept ToM, the values of its options are expected deviations of beliefs.
+fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
+    if let Some(proposal) = &advice.proposal {
+        return CommunicationContent::Proposal(proposal.presses.clone()).words();
+    }
+    let option = |option: &SignalOption| {
+        let (signal, SignalOption { benefit, standard_error, net, .. }) = (wording::signal(&option.signal), option);
+        match is_tom {
+            true => format!("{signal} {benefit:.2} (above threshold {net:+.2})"),
+            false => format!("{signal} {benefit:.2} ±{standard_error:.2} (net benefit {net:+.2})"),
+        }
+    };
+    let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
+    let best = advice.best.as_ref().map_or("send no signal".to_string(), wording::signal);
+    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
+    let reason = reason.map_or(String::new(), |reason| format!("; the human {}", reason.words()));
+    match options.is_empty() {
+        true => best,
+        false if is_tom => format!("{best}{reason}; expected deviation of beliefs: {}", options.join(", ")),
+        false => format!("{best}{reason}; presses saved by each signal: {}", options.join(", ")),
+    }
+}
+
+/// Two lists of state aspects in words: the aspects with false beliefs (lowest P(truth) first), and the aspects with
+/// beliefs that are right but uncertain.
+fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
+    let mut doubtful: Vec<(usize, &AspectBeliefSnapshot)> =
+        known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
+    doubtful.sort_by(|a, b| a.1.p_truth.total_cmp(&b.1.p_truth));
+    let (wrong, unsure): (Vec<_>, Vec<_>) =
+        doubtful.into_iter().partition(|(_, held)| f64::from(held.p_truth) < FALSE_BELOW);
+    let told = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
+        let aspect = &kitchen.aspects[index];
+        let truth = kitchen.true_value(known.state, AspectId(index as u8));
+        let name = wording::location(&aspect.name);
+        let (believes, truth_label) = (&aspect.wordings[usize::from(held.believes)], &aspect.wordings[truth]);
+        match usize::from(held.believes) == truth {
+            true => format!("{name}: most probably {truth_label}, but with a probability of only {:.2}", held.p_truth),
+            false => {
+                format!("{name}: thinks {believes} (probability {:.2}), is {truth_label} ({:.2})", held.p, held.p_truth)
+            }
+        }
+    };
+    let doubted = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
+        format!("{} {:.2}", wording::location(&kitchen.aspects[index].name), held.p_truth)
+    };
+    let list = |told: Vec<String>| if told.is_empty() { "none".to_string() } else { told.join("; ") };
+    [
+        format!(
+            "false beliefs, by the estimate without the signal just sent: {}",
+            list(wrong.iter().take(4).map(told).collect())
+        ),
+        format!(
+            "right beliefs with a probability below {SURE}: {}",
+            list(unsure.iter().take(6).map(doubted).collect())
+        ),
+    ]
+}
+
+/// Contents of all locations that are not empty, in words.
+fn truly(kitchen: &Kitchen, state: State) -> String {
+    let location = |index: usize| {
+        let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);
+        let is_there = match location.kind {
+            LocationKind::Order => matches!(state.order(id), OrderContent::Dish(_)),
+            _ => state.content(id) != tomcom_core::kitchen::ContentId::EMPTY,
+        };
+        is_there.then(|| format!("{} {}", location.label(), kitchen.content_label(state, id)))
+    };
+    let there: Vec<String> = (0..kitchen.locations.len()).filter_map(location).collect();
+    if there.is_empty() { "all places are empty".to_string() } else { there.join(", ") }
+}
+
+fn seen(screen: Option<&WizardScreenContent>) -> String {
+    match screen {
+        Some(screen) => {
+            let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", with the dialog {dialog}"));
+            format!("{} ({}{dialog})", screen.panels.join(", "), screen.room)
+        }
+        None => "unknown, since no console was open".to_string(),
+    }
+}

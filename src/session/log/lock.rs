@@ -1,0 +1,236 @@
+//! Lock that lets only one program at a time write a recording.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::RecordingWriteError;
+use crate::files::file_error::open_regular;
+
+/// Name of the lock file in the folder of a recording that is being written. The lock file contains the writing
+/// program's process id and the network address for viewers.
+pub const LOCK_NAME: &str = "lock";
+/// Prefix of the lock file's name while raters' codes are written; the names of the raters follow the prefix.
+pub const CODES_LOCK: &str = "lock-codes-";
+/// Number of bytes of a lock file that are read; process id and address are shorter.
+const MAX_BYTES: u64 = 1 << 12;
+/// Number of attempts to take the lock again because the lock's holder removed the file meanwhile.
+const ATTEMPTS: usize = 8;
+
+/// The right to write a recording, until the value is dropped. The operating system holds the lock and releases it when
+/// the process ends, so a lock file that a killed program left behind blocks nobody, even if another process has the
+/// killed program's id now.
+#[derive(Debug)]
+pub struct RecordingLock {
+    file: File,
+    path: PathBuf,
+    /// Folder that was made for the lock alone; it goes with the lock if nothing was recorded in it.
+    made: Option<PathBuf>,
+}
+
+/// The program that writes a recording at present, as far as the lock file tells.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LockHolder {
+    /// Process id of the program that writes the recording.
+    pub pid: Option<u32>,
+    /// Network address at which viewers can watch the running session.
+    pub viewers: Option<String>,
+}
+
+impl LockHolder {
+    fn read(file: &mut File) -> LockHolder {
+        let mut text = String::new();
+        // A lock file that cannot be read still counts as held.
+        let _ = file.take(MAX_BYTES).read_to_string(&mut text);
+        let mut lines = text.lines();
+        let pid = lines.next().and_then(|line| line.trim().parse().ok());
+        LockHolder { pid, viewers: lines.next().map(str::to_string) }
+    }
+}
+
+impl RecordingLock {
+    /// Takes the lock of the recording in this folder.
+    ///
+    /// # Errors
+    /// Another program holds the lock, or the folder cannot be written to.
+    pub fn take(folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
+        RecordingLock::take_file(folder.join(LOCK_NAME), folder)
+    }
+
+    /// Takes the right to code the errors of the recording in this folder as these raters, whose codes are always
+    /// replaced as a whole.
+    ///
+    /// # Errors
+    /// Another program has that right, or the folder cannot be written to.
+    pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, RecordingWriteError> {
+        let mut raters = raters.to_vec();
+        raters.sort_unstable();
+        let path = folder.join(format!("{CODES_LOCK}{}", raters.join("-")));
+        RecordingLock::take_file(path, folder).map_err(|error| match error {
+            RecordingWriteError::InUse { folder, pid } => {
+                RecordingWriteError::Coded { folder, raters: raters.join(" and "), pid }
+            }
+            other => other,
+        })
+    }
+
+    /// Takes the right to record a participant of a study plan in this folder, from before the first question until the
+    /// last recording is closed. The folder is made if it does not exist.
+    ///
+    /// # Errors
+    /// Another program has that right, or the folder cannot be written to.
+    pub fn take_for_participant(folder: &Path, plan: &str, code: &str) -> Result<RecordingLock, RecordingWriteError> {
+        let made = (!folder.exists()).then(|| folder.to_path_buf());
+        fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
+        let path = folder.join(format!("{LOCK_NAME}-{plan}-{code}"));
+        let mut lock = RecordingLock::take_file(path, folder).map_err(|error| match error {
+            RecordingWriteError::InUse { folder, pid } => {
+                RecordingWriteError::Attended { folder, plan: plan.to_string(), code: code.to_string(), pid }
+            }
+            other => other,
+        })?;
+        lock.made = made;
+        Ok(lock)
+    }
+
+    fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
+        let failed = |reason| RecordingWriteError::unwritable(&path, reason);
+        // Taking the lock empties the lock file, which must therefore not be the target of a link; and opening a named
+        // pipe would block.
+        if fs::symlink_metadata(&path).is_ok_and(|data| !data.is_file()) {
+            return Err(failed(io::Error::new(
+                ErrorKind::InvalidInput,
+                "it is no regular file, but a link, pipe or folder",
+            )));
+        }
+        for _ in 0..ATTEMPTS {
+            let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+            let mut file = options.map_err(failed)?;
+            match file.try_lock() {
+                // On a file system without locks, recording without a lock is better than no recording.
+                Ok(()) | Err(TryLockError::Error(_)) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let pid = LockHolder::read(&mut file).pid;
+                    return Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid });
+                }
+            }
+            // If the lock's previous holder removed the file after it was opened here, a lock on the removed file has
+            // no effect.
+            if is_same(&file, &path) {
+                file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
+                return Ok(RecordingLock { file, path, made: None });
+            }
+        }
+        Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid: None })
+    }
+
+    /// The program that writes the recording in this folder; `None` if there is none.
+    pub fn holder(folder: &Path) -> Option<LockHolder> {
+        let mut file = open_regular(&folder.join(LOCK_NAME)).ok()?;
+        match file.try_lock_shared() {
+            Err(TryLockError::WouldBlock) => Some(LockHolder::read(&mut file)),
+            Ok(()) | Err(TryLockError::Error(_)) => None,
+        }
+    }
+
+    /// Writes the network address at which viewers can watch into the lock file.
+    ///
+    /// # Errors
+    /// The lock file cannot be written to.
+    pub fn announce(&mut self, viewers: &str) -> io::Result<()> {
+        writeln!(self.file, "{viewers}")
+    }
+}
+
+impl Drop for RecordingLock {
+    fn drop(&mut self) {
+        if is_same(&self.file, &self.path) {
+            // A lock file that cannot be removed does no harm.
+            let _ = fs::remove_file(&self.path);
+        }
+        if let Some(folder) = &self.made {
+            // A folder with recordings is not empty, and stays.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// Whether the file at this path is still the one that was opened.
+#[cfg(unix)]
+pub fn is_same(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |data: fs::Metadata| (data.dev(), data.ino());
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(opened), Ok(there)) => place(opened) == place(there),
+        _ => false,
+    }
+}
+
+/// Whether any file still exists at this path.
+#[cfg(not(unix))]
+pub fn is_same(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lock_tells_who_writes_and_where_viewers_look_on_until_it_is_dropped() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        assert_eq!(RecordingLock::holder(folder), None);
+        let mut lock = RecordingLock::take(folder).unwrap();
+        let pid = Some(std::process::id());
+        assert_eq!(RecordingLock::holder(folder), Some(LockHolder { pid, viewers: None }));
+        lock.announce("rerun+http://127.0.0.1:9876/proxy").unwrap();
+        let viewers = Some("rerun+http://127.0.0.1:9876/proxy".to_string());
+        assert_eq!(RecordingLock::holder(folder), Some(LockHolder { pid, viewers }));
+        drop(lock);
+        assert_eq!(RecordingLock::holder(folder), None);
+        fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
+        assert_eq!(RecordingLock::holder(folder), None, "what a killed program left behind is held by nobody");
+    }
+
+    #[test]
+    fn one_program_at_a_time_records_a_participant_of_a_plan() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let first = RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap();
+        let refusal = RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap_err().to_string();
+        let told = format!("another program (process {}) records P02 of the plan main-study", std::process::id());
+        assert!(refusal.contains(&told), "{refusal}");
+        let _others =
+            ["P01", "P03"].map(|code| RecordingLock::take_for_participant(folder, "main-study", code).unwrap());
+        let _rehearsal = RecordingLock::take_for_participant(folder, "rehearsal", "P02").unwrap();
+        drop(first);
+        drop(RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap());
+    }
+
+    #[test]
+    fn one_program_at_a_time_codes_as_one_rater() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let first = RecordingLock::take_for_codes(folder, &["R1"]).unwrap();
+        let refusal = RecordingLock::take_for_codes(folder, &["R1"]).unwrap_err().to_string();
+        assert!(refusal.contains("codes its errors as R1"), "{refusal}");
+        let _other = RecordingLock::take_for_codes(folder, &["R2"]).unwrap();
+        let _recording = RecordingLock::take(folder).unwrap();
+        drop(first);
+        drop(RecordingLock::take_for_codes(folder, &["R1"]).unwrap());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_a_link_leads_to_is_left_as_it_is() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let other = folder.join("notes.txt");
+        fs::write(&other, "of somebody else").unwrap();
+        std::os::unix::fs::symlink(&other, folder.join(LOCK_NAME)).unwrap();
+        let refusal = RecordingLock::take(folder).unwrap_err().to_string();
+        assert!(refusal.contains("a link"), "{refusal}");
+        assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
+    }
+}

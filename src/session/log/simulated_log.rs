@@ -1,0 +1,109 @@
+//! Logs of simulated sessions. The same header always gives the same recording, so a complete recording is kept and
+//! only read, and an incomplete recording is replaced. Several programs may simulate into one folder; each recording is
+//! written by one of them.
+
+use std::fs;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use super::lock::RecordingLock;
+use super::reader::{ends_in_header, first_line};
+use super::writer::is_written_settings;
+use super::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
+use crate::files::file_error::{open_regular, read_regular};
+use crate::{Event, LogHeader, TimestampedEvent};
+
+/// Upper limit of the length of a complete log's last line, in bytes.
+const LAST: u64 = 256;
+
+/// State of a simulated session's log before the simulation.
+#[derive(Debug)]
+pub enum SimulatedLogState {
+    /// The simulated session has no complete log yet: a new log has to be written.
+    Begun {
+        /// Writer of the new log.
+        log: Box<LogWriter>,
+        /// New path of an old log that ended before the end of its header and was moved out of the way.
+        moved: Option<PathBuf>,
+    },
+    /// The simulated recording exists and is complete.
+    Whole,
+}
+
+impl SimulatedLogState {
+    /// Starts the recording of a simulated session in this folder, unless the recording exists and is complete.
+    ///
+    /// # Errors
+    /// The errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
+    pub fn open(folder: &Path, header: &LogHeader) -> Result<SimulatedLogState, RecordingWriteError> {
+        // A complete recording is not locked, so that several programs can read it at once.
+        if is_whole(folder, header) {
+            return Ok(SimulatedLogState::Whole);
+        }
+        fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
+        let lock = RecordingLock::take(folder)?;
+        check_simulated(folder, header)?;
+        // The previous holder of the lock may have completed the recording.
+        if is_whole(folder, header) {
+            return Ok(SimulatedLogState::Whole);
+        }
+        let path = folder.join(LOG_NAME);
+        let moved = match is_without_header(&path) {
+            true => move_aside(&path).map_err(|reason| RecordingWriteError::unwritable(&path, reason))?,
+            false => None,
+        };
+        let log = LogWriter::begin(lock, folder.to_path_buf(), header, false)?;
+        Ok(SimulatedLogState::Begun { log: Box::new(log), moved })
+    }
+}
+
+/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header,
+/// and a log that ends before the end of its header.
+///
+/// # Errors
+/// The folder contains another recording.
+pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), RecordingWriteError> {
+    let path = folder.join(LOG_NAME);
+    if !path.exists() {
+        // A program that was killed before it wrote the log leaves a settings file behind.
+        let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
+        let what = "a session.toml that tomcom did not write".to_string();
+        return if is_foreign {
+            Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
+        } else {
+            Ok(())
+        };
+    }
+    if is_without_header(&path) {
+        return Ok(());
+    }
+    let what = match LogReader::open(folder).map(|log| log.header) {
+        Ok(there) if there == *header => return Ok(()),
+        Ok(there) if there.started.is_some() => "a live recording".to_string(),
+        Ok(_) => "the recording of another session".to_string(),
+        Err(error) => format!("a recording that cannot be read ({})", error.with_remedy()),
+    };
+    Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
+}
+
+/// Whether a log ends before the end of its header.
+fn is_without_header(path: &Path) -> bool {
+    let line = open_regular(path).and_then(|file| first_line(&mut BufReader::new(file)));
+    line.is_ok_and(|line| ends_in_header(&line))
+}
+
+/// Whether this folder contains the complete recording that has this header.
+fn is_whole(folder: &Path, header: &LogHeader) -> bool {
+    let ends = || -> io::Result<bool> {
+        let mut log = open_regular(&folder.join(LOG_NAME))?;
+        let length = log.seek(SeekFrom::End(0))?;
+        log.seek(SeekFrom::Start(length.saturating_sub(LAST)))?;
+        let mut end = Vec::new();
+        log.read_to_end(&mut end)?;
+        let last =
+            end.strip_suffix(b"\n").and_then(|lines| lines.trim_ascii_end().rsplit(|&byte| byte == b'\n').next());
+        let last = last.and_then(|line| serde_json::from_slice::<TimestampedEvent>(line).ok());
+        Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
+    };
+    ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)
+}

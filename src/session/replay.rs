@@ -1,0 +1,158 @@
+//! Replays a recording: applies its events with the same [`apply`](crate::apply()) as the live session.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::advice_moments::leads_to_advice;
+use crate::advisor::AdviceRequest;
+use crate::files::file_error::{FileError, FileResult};
+use crate::follower::SessionFollower;
+use crate::log::{LogLine, LogReader};
+use crate::watcher::follows_at_once;
+use crate::{Session, TimestampedEvent};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Kitchen, KitchenChange};
+
+/// A recording that is being replayed, with the session at the replay's present position.
+#[derive(Debug)]
+pub struct RecordingReplay {
+    log: LogReader,
+    /// The session up to the replay's present position, with what follows from its events: judged presses and the
+    /// estimate.
+    pub follower: SessionFollower,
+    /// A line that was read and is not applied yet.
+    held: Option<LogLine>,
+    /// The newest event after which the assistant is asked for advice: sequence number and time. The assistant is asked
+    /// once all immediate consequences of the event are applied.
+    to_ask: Option<(u64, SessionTime)>,
+}
+
+/// An event that a replay has just applied, with the change of the kitchen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReplayedEvent {
+    /// The event with its sequence number and time.
+    pub stamped: TimestampedEvent,
+    /// Change of the kitchen that the event caused.
+    pub change: KitchenChange,
+}
+
+impl RecordingReplay {
+    /// Opens a recording for replay, before its first event.
+    ///
+    /// # Errors
+    /// The errors of [`LogReader::open`].
+    pub fn open(recording: &Path) -> FileResult<RecordingReplay> {
+        let log = LogReader::open(recording)?;
+        let cost = CostToGo::new(log.kitchen.clone());
+        Ok(RecordingReplay::over(log, cost))
+    }
+
+    /// A replay of a log. The cost to go `cost` must be of the log's kitchen, and can come from another replay.
+    pub fn over(log: LogReader, cost: CostToGo) -> RecordingReplay {
+        let follower = SessionFollower::new(log.session(), cost);
+        RecordingReplay { log, follower, held: None, to_ask: None }
+    }
+
+    /// This replay without attribution of errors to causes, which takes long.
+    pub fn without_causes(self) -> RecordingReplay {
+        RecordingReplay { follower: self.follower.without_causes(), ..self }
+    }
+
+    /// Applies and returns the next event; `None` at the present end of the log.
+    ///
+    /// # Errors
+    /// A line is not an event, or the event is not possible in the session's present state.
+    pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
+        let Some(line) = self.next_line()? else { return Ok(None) };
+        self.apply(&line).map(Some)
+    }
+
+    fn next_line(&mut self) -> FileResult<Option<LogLine>> {
+        match self.held.take() {
+            Some(line) => Ok(Some(line)),
+            None => self.log.next_line(),
+        }
+    }
+
+    fn apply(&mut self, line: &LogLine) -> FileResult<ReplayedEvent> {
+        let applied = self.follower.apply(&line.stamped).map_err(|error| self.log.refused(line, error))?;
+        if leads_to_advice(self.session(), &line.stamped.event) {
+            self.to_ask = Some((line.stamped.seq, line.stamped.time));
+        }
+        Ok(ReplayedEvent { stamped: line.stamped.clone(), change: applied.change })
+    }
+
+    /// Applies all remaining events.
+    ///
+    /// # Errors
+    /// The errors of [`RecordingReplay::step`].
+    pub fn run(&mut self) -> FileResult<()> {
+        while self.step()?.is_some() {}
+        Ok(())
+    }
+
+    /// Replays up to the next request for advice, which is made after the same events, and with the same immediate
+    /// consequences applied, as in the running session; `None` at the present end of the log.
+    ///
+    /// # Errors
+    /// The errors of [`RecordingReplay::step`].
+    pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
+        loop {
+            let line = self.next_line()?;
+            let follows = |time: SessionTime| line.as_ref().is_some_and(|line| follows_at_once(&line.stamped, time));
+            if let Some((seq, time)) = self.to_ask.take_if(|(_, time)| !follows(*time))
+                && self.session().is_running()
+            {
+                self.held = line;
+                return Ok(Some(AdviceRequest::from_follower(&mut self.follower, seq, time)));
+            }
+            let Some(line) = line else { return Ok(None) };
+            self.apply(&line)?;
+        }
+    }
+
+    /// The session after the events that were replayed so far.
+    pub fn session(&self) -> &Session {
+        &self.follower.session
+    }
+
+    /// The log that is being replayed.
+    pub fn log(&self) -> &LogReader {
+        &self.log
+    }
+}
+
+/// Checks that all recordings are of one kitchen.
+#[derive(Debug, Default)]
+pub struct SameKitchenCheck {
+    first: Option<(PathBuf, Arc<Kitchen>)>,
+}
+
+impl SameKitchenCheck {
+    /// Adds the kitchen of a further recording to the check.
+    ///
+    /// # Errors
+    /// The recording's kitchen differs from that of the first recording.
+    pub fn admit(&mut self, recording: &Path, kitchen: &Arc<Kitchen>) -> FileResult<()> {
+        let (path, first) = self.first.get_or_insert_with(|| (recording.to_path_buf(), kitchen.clone()));
+        if first.aspects == kitchen.aspects && first.buttons == kitchen.buttons {
+            return Ok(());
+        }
+        let found = format!("a recording of the kitchen {}, beside {}", kitchen.name, path.display());
+        let remedy = format!("recordings of one kitchen, here of {}", first.name);
+        Err(FileError::from_finding(recording, found, remedy))
+    }
+
+    /// The kitchen that all recordings share.
+    ///
+    /// # Errors
+    /// No recording was added to the check.
+    pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
+        let none = || {
+            let remedy = "at least one recording".to_string();
+            FileError::from_finding(Path::new("."), "no recording".to_string(), remedy)
+        };
+        self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
+    }
+}

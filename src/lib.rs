@@ -4,16 +4,15 @@
 //! The human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an
 //! assistant, sends *signals* that show the human a recipe or a location. This crate is the program `tomcom` that runs
 //! such experiments. What it stands on are crates of their own: the model ([`tomcom_core`]), simulated people
-//! ([`tomcom_people`]) and the robot arms ([`tomcom_arm`]).
+//! ([`tomcom_people`]), the robot arms ([`tomcom_arm`]) and sessions with their recordings ([`tomcom_session`]).
 //!
-//! A **session** ([`session::Session`]) is its event log. [`session::apply()`] is the only way to change one. The
-//! **engine** ([`run::engine::SessionEngine`]) raises the events of robot, simulated participant and clock; its caller
+//! A **session** ([`tomcom_session::Session`]) is its event log. [`tomcom_session::apply()`] is the only way to change one. The
+//! **engine** ([`tomcom_session::engine::SessionEngine`]) raises the events of robot, simulated participant and clock; its caller
 //! passes the time.
 //!
 //! # The modules
 //!
-//! Imports go one way, from right to left: [`session`], [`history`], [`analysis`]; then, as Cargo features ask for them,
-//! `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each contains, and
+//! Imports go one way, from right to left: [`analysis`]; then, as Cargo features ask for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each contains, and
 //! what it must not depend on.
 //!
 //! # Features
@@ -28,7 +27,7 @@
 //! | `physics` | the simulated arm and its kinematics |
 //! | `rerun` | streams for Rerun's viewers |
 //!
-//! A build refuses what it leaves out, and names the missing feature: [`session::features`].
+//! A build refuses what it leaves out, and names the missing feature: [`tomcom_session::features`].
 
 #![warn(missing_docs)]
 #![deny(unsafe_code)]

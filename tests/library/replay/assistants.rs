@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::watch_desk::ComparisonThreadHandle;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;

@@ -19,8 +19,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::run::kept_cost::KeptCost;
-use tomcom::run::parallel::WorkerPool;
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::layout::LayoutSpec;
@@ -33,6 +31,8 @@ use tomcom_session::SessionSpec;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::headless;
 use tomcom_session::plan::Study;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::parallel::WorkerPool;
 
 /// The belief parameters that a search varies, with the least and the largest value that it tries.
 const PARAMETERS: [(&str, f64, f64); 5] = [

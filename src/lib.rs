@@ -32,7 +32,6 @@
 #![warn(missing_docs)]
 #![deny(unsafe_code)]
 
-pub mod analysis;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "console")]
@@ -43,5 +42,3 @@ pub mod edge;
 pub mod run;
 #[cfg(feature = "rerun")]
 pub mod scene;
-#[cfg(feature = "cli")]
-pub mod study;

@@ -16,7 +16,7 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::run::simulate::SimulationShard;
+use tomcom_session::shard::SimulationShard;
 use crate::run::sweep::ParameterSweepAxis;
 use tomcom_core::mind::fitting::HumanModelParameter;
 

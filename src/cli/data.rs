@@ -10,8 +10,8 @@ use super::failure::Failure;
 use super::list::{exists, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::edge::forget::{self, ParticipantData};
-use crate::run::code_exchange::{self, ImportableCodes};
-use crate::run::codes::{self, CodedRecording, InterRaterSummary};
+use tomcom_study::code_exchange::{self, ImportableCodes};
+use tomcom_study::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
 use tomcom_core::base::words::count;
 use tomcom_session::person_code;
@@ -50,7 +50,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     args.recordings.iter().try_for_each(|path| exists(path))?;
     let chosen = gathered(&args.recordings)?.paths;
     let bar = progress(chosen.len() as u64, "recordings");
-    let read = crate::run::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));
+    let read = tomcom_study::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));
     bar.finish_and_clear();
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {

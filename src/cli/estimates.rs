@@ -6,7 +6,7 @@ use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
-use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
+use tomcom_study::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
 use crate::run::accuracy::AccuracyStepCounts;
 use crate::run::{accuracy, check_beliefs, fit, steadiness};

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::edge::forget::ParticipantDeletionError;
-use crate::run::error::{LiveError, ReviewError, RunError};
+use crate::run::error::{LiveError, ReviewError};
+use tomcom_session::log::RecordingError;
 use tomcom_session::features::MissingFeature;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{DecisionError, RecordingWriteError};
@@ -55,11 +56,11 @@ impl From<ParticipantDeletionError> for Failure {
     }
 }
 
-impl From<RunError> for Failure {
-    fn from(error: RunError) -> Failure {
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Failure {
         match error {
-            RunError::File(error) => Failure::from(*error),
-            RunError::Recording(error) => Failure::from(error),
+            RecordingError::File(error) => Failure::from(*error),
+            RecordingError::Recording(error) => Failure::from(error),
         }
     }
 }

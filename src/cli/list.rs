@@ -8,10 +8,10 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::edge::{near_path, recordings};
-use crate::run::gathered::GatheredRecordings;
+use tomcom_study::gathered::GatheredRecordings;
 use crate::run::pick_recording;
 use crate::run::recording_list::{self, RecordingListDetail};
-use crate::study::planned_trial::copies_in_words;
+use tomcom_study::planned_trial::copies_in_words;
 use tomcom_core::base::words::count;
 use tomcom_session::log::LOG_NAME;
 

@@ -8,10 +8,10 @@ use super::data::two_raters;
 use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::run::simulate::SimulationShard;
-use crate::run::study::reading::AnalysisScope;
-use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError, shards};
-use crate::study::figures::StudySummary;
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::pass::reading::AnalysisScope;
+use tomcom_study::pass::{self, AnalysisRequest, NamedRecordings, StudyError, shards};
+use tomcom_study::figures::StudySummary;
 use tomcom_core::base::words::count;
 
 /// Analyses the recordings of a study: report and tables.

@@ -3,7 +3,6 @@
 mod arrival;
 pub mod ask;
 pub mod battery_file;
-pub mod bids_tree;
 pub mod clock;
 mod compared_clock;
 pub mod connection_table;
@@ -11,11 +10,9 @@ pub mod datagram_holder;
 #[cfg(feature = "display")]
 pub mod display;
 pub mod doctor;
-pub mod export;
 pub mod files;
 pub mod forget;
 mod frames;
-pub mod frozen_file;
 mod gaze_connection;
 pub mod gaze_file;
 mod gaze_gate;
@@ -29,17 +26,12 @@ mod host_name;
 pub mod key_file;
 pub mod list_cache;
 pub mod lsl;
-#[cfg(feature = "mcap")]
-pub mod mcap_file;
 pub mod near_path;
 mod outer_address;
 mod pairing;
 mod pairing_code;
 pub mod picture_file;
-pub mod pool_file;
-pub mod power_files;
 pub mod pupil;
-pub mod recordings;
 #[cfg(feature = "rerun")]
 pub mod rerun;
 #[cfg(feature = "rerun")]
@@ -48,12 +40,9 @@ mod sender_clock;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
-pub mod study_part_file;
 pub mod terminal;
 pub mod terminal_bytes;
 pub mod terminal_input;
 mod tracker_folder;
-pub mod training;
 #[cfg(feature = "rerun")]
 pub mod viewer;
-pub mod written_tables;

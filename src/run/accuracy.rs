@@ -1,10 +1,10 @@
 //! Command `tomcom replay RECORDING... --accuracy`: reads recordings and runs the planners for
-//! [`crate::analysis::planner_accuracy`].
+//! [`tomcom_study::analysis::planner_accuracy`].
 
-use super::gathered::GatheredRecordings;
-use super::parallel;
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
 use super::timing::monotonic_ns;
-use crate::analysis::planner_accuracy::{
+use tomcom_study::analysis::planner_accuracy::{
     ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests, ThreadPlanner,
 };
 use tomcom_session::files::file_error::FileResult;

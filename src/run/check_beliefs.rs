@@ -1,14 +1,14 @@
-//! Command `tomcom replay RECORDING... --check-beliefs`: replays recordings for [`crate::analysis::belief_check`].
+//! Command `tomcom replay RECORDING... --check-beliefs`: replays recordings for [`tomcom_study::analysis::belief_check`].
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::gathered::GatheredRecordings;
-use super::parallel;
-use crate::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
-use crate::analysis::probe_collector::ProbeCollector;
-use crate::analysis::probe_figures::ProbeSummary;
-use crate::analysis::probe_record::ProbedTrial;
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
+use tomcom_study::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
+use tomcom_study::analysis::probe_collector::ProbeCollector;
+use tomcom_study::analysis::probe_figures::ProbeSummary;
+use tomcom_study::analysis::probe_record::ProbedTrial;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::chosen_thresholds;

@@ -11,25 +11,6 @@ use tomcom_core::gaze::tags::TagError;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::RecordingWriteError;
 
-/// Error of a command: a file cannot be read, or a result cannot be written.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum RunError {
-    /// A file cannot be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
-    /// A recording cannot be written.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Recording(#[from] RecordingWriteError),
-}
-
-impl From<FileError> for RunError {
-    fn from(error: FileError) -> RunError {
-        RunError::File(Box::new(error))
-    }
-}
-
 /// Error of the terminal: there is none, it was closed, or the operating system lacks something that the console needs.
 #[derive(Debug, thiserror::Error)]
 #[error("the console cannot be opened: {0}")]

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::options::SessionStart;
-use crate::analysis::exclusion_status::ExclusionStatus;
-use crate::analysis::trial_summary::TrialSummary;
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::trial_summary::TrialSummary;
 use tomcom_core::base::words::count;
 use tomcom_session::Session;
 

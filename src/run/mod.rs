@@ -5,17 +5,9 @@ pub mod accuracy;
 #[cfg(feature = "cli")]
 mod advisor_desk;
 #[cfg(feature = "cli")]
-pub mod bids_export;
-#[cfg(feature = "cli")]
 pub mod check_beliefs;
 #[cfg(feature = "cli")]
-pub mod code_exchange;
-#[cfg(feature = "cli")]
-pub mod codes;
-#[cfg(feature = "cli")]
 mod coding_desk;
-#[cfg(feature = "cli")]
-mod consents;
 #[cfg(feature = "cli")]
 mod desk;
 #[cfg(feature = "cli")]
@@ -23,32 +15,17 @@ pub mod error;
 #[cfg(feature = "cli")]
 mod event_loop;
 #[cfg(feature = "cli")]
-pub mod fit;
-#[cfg(feature = "cli")]
-#[cfg(feature = "cli")]
-pub mod gathered;
-#[cfg(feature = "cli")]
-pub mod kept_cost;
-#[cfg(feature = "cli")]
 pub mod leaving;
 #[cfg(feature = "cli")]
 pub mod live;
-#[cfg(all(feature = "cli", feature = "mcap"))]
-pub mod mcap_export;
 #[cfg(all(feature = "cli", feature = "rerun"))]
 pub mod open_viewer;
 #[cfg(feature = "cli")]
 pub mod options;
 #[cfg(feature = "cli")]
-pub mod parallel;
-#[cfg(feature = "cli")]
 pub mod pick_recording;
 #[cfg(feature = "cli")]
 pub mod plan;
-#[cfg(feature = "cli")]
-pub mod pool;
-#[cfg(feature = "cli")]
-pub mod power_measurement;
 #[cfg(feature = "cli")]
 pub mod recording_list;
 #[cfg(feature = "cli")]
@@ -62,15 +39,9 @@ pub mod seekable_replay;
 #[cfg(feature = "cli")]
 pub mod series;
 #[cfg(feature = "cli")]
-pub mod similarity;
-#[cfg(feature = "cli")]
 pub mod simulate;
 #[cfg(feature = "cli")]
-pub mod standing;
-#[cfg(feature = "cli")]
 pub mod steadiness;
-#[cfg(feature = "cli")]
-pub mod study;
 #[cfg(feature = "cli")]
 pub mod sweep;
 #[cfg(feature = "cli")]

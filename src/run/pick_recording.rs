@@ -7,7 +7,7 @@ use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use super::recording_list::{self, RecordingListDetail};
-use crate::analysis::recording_table::RecordingList;
+use tomcom_study::analysis::recording_table::RecordingList;
 use crate::console::ConsoleMessage;
 use crate::console::click::ClickAction;
 use crate::console::recording_picker::{RecordingPicker, RecordingReply};

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{recordings_of, slot_name, stands};
-use crate::edge::frozen_file;
-use crate::study::frozen_plan::FrozenPlan;
+use tomcom_study::files::frozen_file;
+use tomcom_study::frozen_plan::FrozenPlan;
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_session::files::KitchenWithSources;

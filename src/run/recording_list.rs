@@ -3,12 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::kept_cost::KeptCost;
+use tomcom_study::kept_cost::KeptCost;
 use super::{parallel, standing};
-use crate::analysis::exclusion_status::ExclusionStatus;
-use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
-use crate::edge::recordings;
+use tomcom_study::files::recordings;
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_session::apply;
 use tomcom_session::files::file_error::{FileError, FileResult};

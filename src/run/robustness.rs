@@ -1,15 +1,15 @@
-//! Command `tomcom robustness`: simulates the cohorts of a battery in memory, for [`crate::analysis::cohort_table`].
+//! Command `tomcom robustness`: simulates the cohorts of a battery in memory, for [`tomcom_study::analysis::cohort_table`].
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use super::kept_cost::KeptCost;
-use super::parallel::WorkerPool;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
-use crate::analysis::belief_check::TrialBeliefCollector;
-use crate::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
-use crate::analysis::trial_summary::TrialSummary;
+use tomcom_study::analysis::belief_check::TrialBeliefCollector;
+use tomcom_study::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
+use tomcom_study::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::CohortBattery;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;

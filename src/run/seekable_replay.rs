@@ -7,8 +7,8 @@
 
 use std::path::Path;
 
-use super::standing::exclusion_status;
-use crate::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::standing::exclusion_status;
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};

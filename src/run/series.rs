@@ -11,7 +11,7 @@ use super::options::{SeriesRequest, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
 use crate::console::question::StartQuestion;
-use crate::edge::recordings;
+use tomcom_study::files::recordings;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};

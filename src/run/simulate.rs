@@ -6,21 +6,21 @@
 //! of simulated. A shard takes every n-th trial.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::error::RunError;
-use super::kept_cost::KeptCost;
+use tomcom_session::log::RecordingError;
+use tomcom_study::kept_cost::KeptCost;
 use super::leaving::ways_to_look;
 use super::options;
-use super::parallel::WorkerPool;
-use crate::analysis::kitchen_summary::plan_lengths;
-use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
+use tomcom_study::parallel::WorkerPool;
+use tomcom_study::analysis::kitchen_summary::plan_lengths;
+use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
 use tomcom_core::base::words::count;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
@@ -51,35 +51,6 @@ impl SimulationRequest {
     }
 }
 
-/// A shard of a simulation's trials, so that several computers can share the simulation: number `number` (from 1) of
-/// `of` disjoint parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SimulationShard {
-    /// Number of this shard, from 1.
-    pub number: u64,
-    /// Number of shards into which the simulation is divided.
-    pub of: u64,
-}
-
-impl SimulationShard {
-    /// The only shard of an undivided simulation, with all trials.
-    pub const WHOLE: SimulationShard = SimulationShard { number: 1, of: 1 };
-}
-
-impl FromStr for SimulationShard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<SimulationShard, String> {
-        let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
-        match parts {
-            Some((number, of)) if number >= 1 && number <= of && of <= MAX_SHARDS => Ok(SimulationShard { number, of }),
-            _ => Err("a part and how many there are, such as 1/8 to 8/8".to_string()),
-        }
-    }
-}
-
-/// Largest number of shards of a simulation.
-const MAX_SHARDS: u64 = 100_000;
 /// Period of polling a trial that another program is simulating.
 const LOOK: Duration = Duration::from_millis(50);
 /// Number of trials whose results are held in memory before they are summed up.
@@ -102,7 +73,7 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
 ///
 /// # Errors
 /// A recording cannot be written, its folder holds another recording, or an exclusion file is damaged.
-pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Result<SimulationSummary, RunError> {
+pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Result<SimulationSummary, RecordingError> {
     let mut sums = SimulationSums::default();
     let began = Instant::now();
     let plan_lengths = plan_lengths(
@@ -147,8 +118,8 @@ pub struct SimulatedTrial {
 pub fn each_trial(
     simulation: &SimulationRequest,
     done: impl Fn() + Sync,
-    mut take: impl FnMut(SimulatedTrial) -> Result<(), RunError>,
-) -> Result<(), RunError> {
+    mut take: impl FnMut(SimulatedTrial) -> Result<(), RecordingError>,
+) -> Result<(), RecordingError> {
     // Existing folders are checked before the first trial is simulated.
     for trial in simulation.own_trials() {
         let header = header_of_trial(simulation, trial);
@@ -170,8 +141,8 @@ pub fn each_trial(
             simulated
         };
         let mut simulated = workers.each(&block, one, || ());
-        let is_elsewhere = |one: &Result<SimulatedTrial, RunError>| {
-            matches!(one, Err(RunError::Recording(RecordingWriteError::InUse { .. })))
+        let is_elsewhere = |one: &Result<SimulatedTrial, RecordingError>| {
+            matches!(one, Err(RecordingError::Recording(RecordingWriteError::InUse { .. })))
         };
         let mut elsewhere: Vec<usize> = (0..block.len()).filter(|&index| is_elsewhere(&simulated[index])).collect();
         while !elsewhere.is_empty() {
@@ -199,7 +170,7 @@ fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
 ///
 /// # Errors
 /// The errors of [`simulate`].
-pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RunError> {
+pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RecordingError> {
     let mut files = options::session_or_default(None).map_err(Box::new)?;
     (files.spec.plan, files.spec.seed) = (None, seed);
     (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
@@ -245,7 +216,7 @@ fn simulate_trial(
     kitchen: &Arc<Kitchen>,
     trial: u64,
     kept: &mut KeptCost,
-) -> Result<SimulatedTrial, RunError> {
+) -> Result<SimulatedTrial, RecordingError> {
     let header = header_of_trial(simulation, trial);
     let folder = folder_of_trial(&simulation.out, &header.session);
     let opened = SimulatedLogState::open(&folder, &header)?;

@@ -1,10 +1,10 @@
-//! Command `tomcom replay RECORDING... --offers`: replays recordings for [`crate::analysis::offer_steadiness`].
+//! Command `tomcom replay RECORDING... --offers`: replays recordings for [`tomcom_study::analysis::offer_steadiness`].
 
 use std::path::Path;
 
-use super::gathered::GatheredRecordings;
-use super::parallel;
-use crate::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
+use tomcom_study::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::log::LogReader;
 use tomcom_session::{Session, apply};

@@ -8,11 +8,12 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::error::RunError;
-use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_trial};
-use crate::analysis::kitchen_summary::plan_lengths;
-use crate::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
-use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
+use tomcom_session::log::RecordingError;
+use super::simulate::{SimulationRequest, describe_moved, each_trial};
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::analysis::kitchen_summary::plan_lengths;
+use tomcom_study::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
+use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::decimal;
 use tomcom_core::communication::concept::ConceptName;
@@ -150,7 +151,7 @@ pub fn sweep(
     simulation: &SimulationRequest,
     axes: &[ParameterSweepAxis],
     done: impl Fn() + Sync,
-) -> Result<ParameterSweepSummary, RunError> {
+) -> Result<ParameterSweepSummary, RecordingError> {
     let cells = grid(axes)?;
     let table = simulation.out.join(table_name(simulation.shard));
     let unwritable = |reason| RecordingWriteError::Unwritable { path: table.clone(), reason, saved: None };
@@ -188,7 +189,7 @@ fn table_name(shard: SimulationShard) -> String {
 }
 
 /// All combinations of the swept settings' values; the values of the last setting vary fastest.
-fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RunError> {
+fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RecordingError> {
     let wrong = |found: String, remedy: String| {
         Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
     };
@@ -213,7 +214,7 @@ fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RunError> {
 }
 
 /// Refuses swept settings of a concept that the session does not use.
-fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), RunError> {
+fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), RecordingError> {
     let decides = match spec.trial.condition {
         Condition::Assistant => Some(spec.assistant.concept),
         Condition::Wizard | Condition::None => None,
@@ -233,7 +234,7 @@ fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), Run
     Ok(())
 }
 
-fn spec_of(spec: &SessionSpec, axes: &[ParameterSweepAxis], cell: &Cell) -> Result<SessionSpec, RunError> {
+fn spec_of(spec: &SessionSpec, axes: &[ParameterSweepAxis], cell: &Cell) -> Result<SessionSpec, RecordingError> {
     let mut spec = spec.clone();
     for (axis, (_, value)) in axes.iter().zip(cell) {
         axis.set(&mut spec, value);
@@ -256,7 +257,7 @@ fn folder_of(cell: &Cell) -> String {
 fn of_cell(
     simulation: &SimulationRequest,
     done: &(impl Fn() + Sync),
-) -> Result<(Vec<PressErrorCounts>, SimulationSummary), RunError> {
+) -> Result<(Vec<PressErrorCounts>, SimulationSummary), RecordingError> {
     let mut simulation = simulation.clone();
     // Recommendations for trials without signals are not computed, since they would only take time.
     simulation.files.spec.assistant.shadow = ShadowMode::Off;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use crate::analysis::timing_summary::{DurationPercentiles, TimingSummary};
+use tomcom_study::analysis::timing_summary::{DurationPercentiles, TimingSummary};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::advisor::{AdviceRequest, Advisor};

@@ -78,6 +78,7 @@ mod session_file;
 mod session_state;
 mod setting_checks;
 pub mod settings;
+pub mod shard;
 pub mod silence;
 pub mod stream_settings;
 pub mod study_arm;

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use tomcom::analysis::bids::{BidsLabelMap, LEVELS, session_label};
-use tomcom::run::bids_export::{BidsSummary, describe, export};
+use tomcom_study::analysis::bids::{BidsLabelMap, LEVELS, session_label};
+use tomcom_study::bids_export::{BidsSummary, describe, export};
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bids").join(name);

@@ -7,17 +7,18 @@ use miette::Diagnostic;
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
 use tomcom::edge::forget;
-use tomcom::edge::recordings;
-use tomcom::run::bids_export;
-use tomcom::run::gathered::GatheredRecordings;
-use tomcom::run::kept_cost::KeptCost;
 use tomcom::run::recording_list::{RecordingListDetail, list};
 use tomcom::run::series::recordings_of;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::run::study::reading::{self, AnalysisScope};
-use tomcom::run::study::{self, AnalysisRequest, NamedRecordings, describe};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct, rule};
 use tomcom_session::plan::{ParticipantProgress, Study};
+use tomcom_study::bids_export;
+use tomcom_study::files::recordings;
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::reading::{self, AnalysisScope};
+use tomcom_study::pass::{self, AnalysisRequest, NamedRecordings, describe};
 
 /// An empty folder for the test of this name.
 fn folder(name: &str) -> PathBuf {

@@ -6,7 +6,6 @@ use std::path::Path;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use tomcom::analysis::event_lines;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
@@ -19,6 +18,7 @@ use tomcom_session::files::parse::parse;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply};
+use tomcom_study::analysis::event_lines;
 
 use crate::kitchen;
 

@@ -3,14 +3,15 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::analysis::fitting::{FitSettings, choose, describe};
 use tomcom::edge::files::read_session;
-use tomcom::run::fit::{FitTrials, fit};
-use tomcom::run::gathered::GatheredRecordings;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::named_models::{PAPER_2021, PLAIN};
+use tomcom_study::analysis::fitting::{FitSettings, choose, describe};
+use tomcom_study::fit::{FitTrials, fit};
+use tomcom_study::gathered::GatheredRecordings;
 
 #[test]
 fn a_fit_has_the_parameters_that_its_model_uses() {

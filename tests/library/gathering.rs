@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
-use tomcom::edge::recordings;
-use tomcom::run::gathered::GatheredRecordings;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
-use tomcom::run::standing::left_out;
-use tomcom::run::study::NamedRecordings;
-use tomcom::study::planned_trial::copies_in_words;
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::log::{LOG_NAME, RecordingLock, correct, rule};
 use tomcom_session::plan::RecordingOutcome;
+use tomcom_study::files::recordings;
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::pass::NamedRecordings;
+use tomcom_study::planned_trial::copies_in_words;
+use tomcom_study::standing::left_out;
 
 /// An empty folder for the test of this name.
 fn folder(name: &str) -> PathBuf {

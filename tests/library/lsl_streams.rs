@@ -6,9 +6,6 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use tomcom::analysis::lsl::{
-    LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
-};
 use tomcom::edge::files::read_session;
 use tomcom::edge::lsl::{LslError, load};
 use tomcom_core::base::time::SessionTime;
@@ -24,6 +21,9 @@ use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_study::analysis::lsl::{
+    LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
+};
 
 /// Name of the recording.
 const RECORDING: &str = "2026-03-14-P07-1";

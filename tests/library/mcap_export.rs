@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use mcap::MessageStream;
 use serde_json::Value;
-use tomcom::analysis::foxglove::McapChannel;
-use tomcom::run::mcap_export::export;
 use tomcom_arm::kinematics::UR5;
 use tomcom_core::robot::moment::JOINT_NAMES;
+use tomcom_study::analysis::foxglove::McapChannel;
+use tomcom_study::mcap_export::export;
 
 /// A golden recording in a folder of its own.
 fn golden(name: &str, test: &str) -> PathBuf {

@@ -10,8 +10,8 @@ use csv::ByteRecord;
 use rustc_hash::FxHashMap;
 
 use super::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, file_name};
-use crate::edge::written_tables::{ListedTables, reader, records, table_named};
-use crate::study::column::CsvTable;
+use tomcom_study::files::written_tables::{ListedTables, reader, records, table_named};
+use tomcom_study::column::CsvTable;
 use tomcom_session::files::replace_file::replaced_name;
 use tomcom_session::log::rater_codes::EXPORT_COLUMNS;
 

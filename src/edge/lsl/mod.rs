@@ -15,7 +15,7 @@ mod outlet_thread;
 
 use std::path::absolute;
 
-use crate::analysis::lsl::SOURCE;
+use tomcom_study::analysis::lsl::SOURCE;
 use tomcom_session::settings::{LslGazeSpec, LslSpec};
 
 pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};

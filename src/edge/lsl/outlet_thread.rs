@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::gaze_inlet::compare;
 use super::library::{LslLibrary, LslOutletHandle};
 use super::lsl_error::LslError;
-use crate::analysis::lsl::{LslSampleValues, StreamDescription};
+use tomcom_study::analysis::lsl::{LslSampleValues, StreamDescription};
 use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use tomcom_session::settings::LslOutlet;
 

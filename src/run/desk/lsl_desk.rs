@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use crate::analysis::lsl::describe;
+use tomcom_study::analysis::lsl::describe;
 use crate::edge::lsl::{self, LslError, LslLibrary, LslStreams};
 use tomcom_session::{Session, SessionSpec};
 

@@ -3,7 +3,7 @@
 
 use std::rc::Rc;
 
-use crate::analysis::lsl::{LslSampleConverter, StreamSample};
+use tomcom_study::analysis::lsl::{LslSampleConverter, StreamSample};
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
 use crate::edge::lsl::{LslCounts, LslSample, LslStreams};

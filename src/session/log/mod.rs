@@ -20,6 +20,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::TimestampedEvent;
+use crate::files::file_error::FileError;
 pub use correcting::correct;
 pub use correction::CORRECTION_NAME;
 pub use correction::corrected_code;
@@ -171,4 +172,23 @@ fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
 /// The line of the log for an event, without its line end.
 pub fn event_line(stamped: &TimestampedEvent) -> String {
     serde_json::to_string(stamped).expect("events have no maps with other keys than strings")
+}
+
+/// Error of work on recordings: a file cannot be read, or a result cannot be written.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum RecordingError {
+    /// A file cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] Box<FileError>),
+    /// A recording cannot be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] RecordingWriteError),
+}
+
+impl From<FileError> for RecordingError {
+    fn from(error: FileError) -> RecordingError {
+        RecordingError::File(Box::new(error))
+    }
 }

@@ -4,12 +4,12 @@ use maud::{Markup, Render, html};
 
 use super::assistance;
 use super::elements::{Captions, PageColumn, number, p_value, scroll, section, with_interval};
-use crate::study::arm_analysis::{ArmAnalysis, ArmDeviation};
-use crate::study::arm_chart;
-use crate::study::arm_comparison::{NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts};
-use crate::study::effect::AssistanceEffect;
-use crate::study::figures::StudySummary;
-use crate::study::group_orders::GroupOrder;
+use crate::arm_analysis::{ArmAnalysis, ArmDeviation};
+use crate::arm_chart;
+use crate::arm_comparison::{NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts};
+use crate::effect::AssistanceEffect;
+use crate::figures::StudySummary;
+use crate::group_orders::GroupOrder;
 
 /// Section with the arms' rates, their contrasts, the non-inferiority of the assistant to the wizard, and the deviations
 /// from the planned arms.

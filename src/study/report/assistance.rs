@@ -6,12 +6,12 @@ use super::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
     with_interval,
 };
-use crate::study::arm_analysis::StudyConditionSummary;
-use crate::study::charts;
-use crate::study::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
-use crate::study::figures::StudySummary;
-use crate::study::statistics::FTest;
-use crate::study::trial_statistics::TrialStatistics;
+use crate::arm_analysis::StudyConditionSummary;
+use crate::charts;
+use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
+use crate::figures::StudySummary;
+use crate::statistics::FTest;
+use crate::trial_statistics::TrialStatistics;
 
 /// Section of the report on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {

@@ -7,8 +7,8 @@ use super::elements::{
 };
 use crate::analysis::probe_accuracy::{ProbeAccuracyGrouping, ProbeAnswerAccuracy};
 use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, RecordedBeliefComparison};
-use crate::study::charts;
-use crate::study::figures::StudySummary;
+use crate::charts;
+use crate::figures::StudySummary;
 use tomcom_core::base::words;
 use tomcom_core::measures::belief_detection::CALIBRATED;
 

@@ -3,10 +3,10 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
-use crate::study::charts::{self, MOST_SIGNALS};
-use crate::study::figures::StudySummary;
-use crate::study::live_arms::SignalSenderResults;
-use crate::study::roc::EQUAL_SIGNALS;
+use crate::charts::{self, MOST_SIGNALS};
+use crate::figures::StudySummary;
+use crate::live_arms::SignalSenderResults;
+use crate::roc::EQUAL_SIGNALS;
 use tomcom_core::base::words::count;
 use tomcom_core::measures::belief_basis::BeliefSource;
 

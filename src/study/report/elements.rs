@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::study::svg::minus;
+use crate::svg::minus;
 use tomcom_session::settings::ArmKind;
 
 /// Text in place of an unknown value: a dash.

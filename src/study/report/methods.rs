@@ -3,9 +3,9 @@
 use maud::{Markup, html};
 
 use super::elements::{arm, section};
-use crate::study::arm_group::RobotArmTotals;
-use crate::study::facts::RecordingFacts;
-use crate::study::figures::StudySummary;
+use crate::arm_group::RobotArmTotals;
+use crate::facts::RecordingFacts;
+use crate::figures::StudySummary;
 use tomcom_core::base::words;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_session::event::TrialEndReason;

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::elements::{Captions, UNKNOWN, cells, count, nothing, number, p_value, percent, scroll, section};
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
-use crate::study::figures::StudySummary;
+use crate::figures::StudySummary;
 use tomcom_core::base::words;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::measures::belief_basis::BeliefSource;

@@ -3,9 +3,9 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, arm, count, nothing, number, section};
-use crate::study::arm_group::RobotArmTotals;
-use crate::study::figures::StudySummary;
-use crate::study::robot_tally::ArmSafetySummary;
+use crate::arm_group::RobotArmTotals;
+use crate::figures::StudySummary;
+use crate::robot_tally::ArmSafetySummary;
 use tomcom_core::base::words;
 use tomcom_core::robot::AbortReason;
 

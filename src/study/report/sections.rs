@@ -3,12 +3,12 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
-use crate::study::column::CsvTable;
-use crate::study::definitions::DEFINITIONS;
-use crate::study::figures::{StudySummary, pairs_in_words};
-use crate::study::missing_trials::in_words;
-use crate::study::planned_trial::copies_in_words;
-use crate::study::trial_statistics::TrialStatistics;
+use crate::column::CsvTable;
+use crate::definitions::DEFINITIONS;
+use crate::figures::{StudySummary, pairs_in_words};
+use crate::missing_trials::in_words;
+use crate::planned_trial::copies_in_words;
+use crate::trial_statistics::TrialStatistics;
 use tomcom_core::base::words;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::RaterAgreement;

@@ -1,6 +1,6 @@
 //! Table of the presses of both agents, for the CSV file of actions.
 
-use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use tomcom_core::kitchen::{Agent, Kitchen, Press};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};

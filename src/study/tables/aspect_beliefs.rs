@@ -1,6 +1,6 @@
 //! Table of the beliefs about each state aspect before each human press.
 
-use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::mind::AspectBelief;
 use tomcom_core::mind::recorded_estimate::AspectEstimate;
 

@@ -1,6 +1,6 @@
 //! Table of communications that were sent, and of those that a concept would have sent.
 
-use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind};
 use tomcom_core::mind::recorded_estimate::rounded;

@@ -1,10 +1,10 @@
 //! Table of errors that communication concepts would have prevented.
 
-use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use crate::study::concept_totals::ConceptPreventionCounts;
-use crate::study::prevention::PreventionCounts;
-use crate::study::trial_details::TrialDetails;
-use crate::study::trial_statistics::TrialStatistics;
+use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::concept_totals::ConceptPreventionCounts;
+use crate::prevention::PreventionCounts;
+use crate::trial_details::TrialDetails;
+use crate::trial_statistics::TrialStatistics;
 use tomcom_core::communication::concept::ConceptName;
 
 /// Row of the table of concepts: a concept with one value of its parameter in an unassisted trial.

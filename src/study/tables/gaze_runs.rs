@@ -1,6 +1,6 @@
 //! Table of gaze runs: series of successive gaze samples on the same location.
 
-use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Kitchen, LocationId};
 use tomcom_core::mind::recorded_estimate::rounded;

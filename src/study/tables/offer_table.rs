@@ -1,7 +1,7 @@
 //! Table of the offers that a wizard could see in a trial.
 
 use crate::analysis::offer_summary::TimedOffer;
-use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
 use tomcom_core::mind::recorded_estimate::rounded;

@@ -1,10 +1,10 @@
 //! Table of participants, with the measures that are compared between their trials.
 
-use crate::study::column::{CsvColumn, CsvRow, CsvTable};
-use crate::study::effect::{StudyMeasure, TrialPair, pairs};
-use crate::study::recorded_consent::RecordedConsent;
-use crate::study::tables::trials::{HEADLINE, measures};
-use crate::study::trial_statistics::TrialStatistics;
+use crate::column::{CsvColumn, CsvRow, CsvTable};
+use crate::effect::{StudyMeasure, TrialPair, pairs};
+use crate::recorded_consent::RecordedConsent;
+use crate::tables::trials::{HEADLINE, measures};
+use crate::trial_statistics::TrialStatistics;
 
 /// A participant with the participant's trials (at least one), and the first consent, if a consent is recorded.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,10 @@
 //! Table of the questions of freeze probes.
 
 use crate::analysis::probe_record::{AspectAtFreeze, ProbeResponse, ProbedQuestion};
-use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use crate::study::effect::StudyMeasure;
-use crate::study::trial_details::TrialDetails;
-use crate::study::trial_statistics::TrialStatistics;
+use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::effect::StudyMeasure;
+use crate::trial_details::TrialDetails;
+use crate::trial_statistics::TrialStatistics;
 use tomcom_core::mind::WORTH_TELLING;
 use tomcom_core::mind::recorded_estimate::rounded;
 

@@ -1,7 +1,7 @@
 //! Table of answers to questionnaires.
 
-use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use crate::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
+use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 use tomcom_core::base::spreadsheet::GUARDED;
 use tomcom_session::answer_value::AnswerValue;
 

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::study::column::{CsvCell, CsvColumn, CsvRow};
-use crate::study::effect::StudyMeasure;
-use crate::study::trial_statistics::TrialStatistics;
+use crate::column::{CsvCell, CsvColumn, CsvRow};
+use crate::effect::StudyMeasure;
+use crate::trial_statistics::TrialStatistics;
 
 /// Declaration of a column in the table of trials.
 pub(super) enum TrialColumn {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::study::column::{CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::base::spreadsheet::GUARDED;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};

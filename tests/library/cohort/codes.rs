@@ -4,17 +4,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
-use tomcom::run::code_exchange::{self, export};
-use tomcom::run::codes::{CodedRecording, InterRaterSummary, describe};
-use tomcom::run::error::RunError;
-use tomcom::run::kept_cost::KeptCost;
-use tomcom::run::simulate::SimulationShard;
-use tomcom::run::study::reading::{self, AnalysisScope};
+use tomcom_session::log::RecordingError;
 use tomcom_core::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
 use tomcom_core::measures::rater_choice::RaterChoice;
 use tomcom_session::log::rater_codes::{read_all, write};
 use tomcom_session::log::{LOG_NAME, RecordingLock, consensus_file};
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::code_exchange::{self, export};
+use tomcom_study::codes::{CodedRecording, InterRaterSummary, describe};
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::reading::{self, AnalysisScope};
 
 use super::{folder, paper, run};
 
@@ -98,7 +98,7 @@ fn the_two_raters_who_coded_most_errors_are_taken_and_none_by_name() {
 }
 
 /// Imports a table whose new raters are meant.
-fn import(coded: &mut [CodedRecording], table: &Path) -> Result<u64, RunError> {
+fn import(coded: &mut [CodedRecording], table: &Path) -> Result<u64, RecordingError> {
     code_exchange::read(coded, table)?.import(coded)
 }
 

@@ -3,13 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::analysis::sweep_row::ParameterSweepRow;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard};
+use tomcom::run::simulate::{SimulationRequest};
+use tomcom_session::shard::SimulationShard;
 use tomcom::run::sweep::{ParameterSweepAxis, TABLE_NAME, sweep, trials};
 use tomcom_session::Event;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::settings::Condition;
 use tomcom_session::verify::verify;
+use tomcom_study::analysis::sweep_row::ParameterSweepRow;
 
 use super::{events, folder, paper, run};
 
@@ -65,8 +66,8 @@ fn a_folder_that_was_begun_is_gone_on_with() {
     let again = run(&files, 4, SimulationShard::WHOLE, &out);
     assert_eq!(again.found, 2, "what is whole is read");
     assert!(below(&out) == before, "and the rest is made as it would have been");
-    let bare = |figures: &tomcom::analysis::trial_summary::SimulationSummary| {
-        tomcom::analysis::trial_summary::SimulationSummary { wall_s: 0.0, found: 0, ..figures.clone() }
+    let bare = |figures: &tomcom_study::analysis::trial_summary::SimulationSummary| {
+        tomcom_study::analysis::trial_summary::SimulationSummary { wall_s: 0.0, found: 0, ..figures.clone() }
     };
     assert_eq!(bare(&first), bare(&again), "what is read counts as what is made");
 }

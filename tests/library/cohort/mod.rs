@@ -13,7 +13,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::TimestampedEvent;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::log::LogReader;
@@ -36,7 +37,7 @@ fn run(
     trials: u64,
     shard: SimulationShard,
     out: &Path,
-) -> tomcom::analysis::trial_summary::SimulationSummary {
+) -> tomcom_study::analysis::trial_summary::SimulationSummary {
     let simulation = SimulationRequest { files: files.clone(), trials, shard, out: out.to_path_buf() };
     simulate(&simulation, || ()).expect("the folder can be written")
 }

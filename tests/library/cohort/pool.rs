@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use tomcom::run::pool::{PoolRequest, simulate};
-use tomcom::run::simulate::SimulationShard;
-use tomcom::study::simulation_pool::{PoolTrialPair, SimulationPool};
 use tomcom_session::files::SessionSetup;
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_study::pool::{PoolRequest, simulate};
+use tomcom_study::simulation_pool::{PoolTrialPair, SimulationPool};
 
 use super::{folder, paper, run};
 

@@ -2,19 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::analysis::cohort_lines::{describe_end, describe_row, name_width};
-use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable};
 use tomcom::edge::battery_file::{CohortBattery, read_battery};
 use tomcom::edge::files::read_session;
 use tomcom::run::check_beliefs;
-use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::robustness::{RobustnessRequest, measure};
-use tomcom::run::simulate::SimulationShard;
-use tomcom::study::cohort_chart::robustness;
 use tomcom_core::measures::flags::ThresholdSource;
 use tomcom_people::participant::population::Population;
 use tomcom_session::battery::CohortSpec;
 use tomcom_session::settings::{ArmKind, Condition};
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::analysis::cohort_lines::{describe_end, describe_row, name_width};
+use tomcom_study::analysis::cohort_table::{CohortRow, RobustnessTable};
+use tomcom_study::cohort_chart::robustness;
+use tomcom_study::gathered::GatheredRecordings;
 
 use super::{folder, run};
 

@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::edge::files::read_session;
-use tomcom::run::kept_cost::KeptCost;
-use tomcom::run::simulate::SimulationShard;
-use tomcom::run::study::reading::{self, AnalysisScope};
-use tomcom::study::trial_statistics::TrialStatistics;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::settings::{ArmKind, Condition};
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::reading::{self, AnalysisScope};
+use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::{folder, run};
 

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tomcom::edge::files::read_session;
-use tomcom::run::simulate::SimulationShard;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{HighlightSet, Sender};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -13,6 +12,7 @@ use tomcom_people::wizard::settings::{OfferReading, WizardKind, WizardSpec};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 use tomcom_session::admit::hygiene;
 use tomcom_session::settings::Condition;
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::verify::verify;
 use tomcom_session::{Event, Session, TimestampedEvent};

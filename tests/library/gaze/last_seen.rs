@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::analysis::seen_contents::LastSeenContents;
 use tomcom::edge::files::read_session;
-use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::{Agent, KitchenChange, LocationId};
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin};
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
+use tomcom_study::analysis::seen_contents::LastSeenContents;
+use tomcom_study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 
 /// A session with what was last seen in it, event by event.
 struct Look {

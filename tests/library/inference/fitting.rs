@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use tomcom::analysis::fitting::{FitSettings, FitSummary, describe};
-use tomcom::run::fit::{FitTrials, fit};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::fitting::{FitObservations, HumanModelParameter};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::Observation;
+use tomcom_study::analysis::fitting::{FitSettings, FitSummary, describe};
+use tomcom_study::fit::{FitTrials, fit};
 
 use super::world::{Human, World, live};
 use crate::kitchen;

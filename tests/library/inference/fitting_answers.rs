@@ -1,8 +1,6 @@
 //! Answers to probes in a fit: their likelihood, and what they tell that presses do not.
 
 use rand::RngExt;
-use tomcom::analysis::fitting::{FitSettings, describe};
-use tomcom::run::fit::{FitTrials, fit};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -14,6 +12,8 @@ use tomcom_core::mind::fitting::{
 };
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_study::analysis::fitting::{FitSettings, describe};
+use tomcom_study::fit::{FitTrials, fit};
 
 use super::world::{Human, World, live};
 use crate::kitchen;

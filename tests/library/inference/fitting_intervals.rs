@@ -2,10 +2,10 @@
 //! exact value are known: people with beliefs about three facts choose among eight buttons, and beliefs are averaged over particles.
 
 use rand::RngExt;
-use tomcom::analysis::fitting::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
-use tomcom::analysis::fitting::surface_search::BoundReached;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::mind::fitting::HumanModelParameter;
+use tomcom_study::analysis::fitting::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
+use tomcom_study::analysis::fitting::surface_search::BoundReached;
 
 const BUTTONS: usize = 8;
 /// Combinations of three facts that are known or not.

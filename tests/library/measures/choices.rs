@@ -2,8 +2,6 @@
 
 use std::convert::Infallible;
 
-use tomcom::analysis::likelihood::PressLogLikelihood;
-use tomcom::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, OrderContent, WeightedWorlds, World};
 use tomcom_core::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
@@ -14,6 +12,8 @@ use tomcom_session::engine::SessionEngine;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_study::analysis::likelihood::PressLogLikelihood;
+use tomcom_study::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 
 use crate::kitchen;
 

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
-use tomcom::edge::recordings;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::engine::SessionEngine;
@@ -19,6 +18,7 @@ use tomcom_session::study_arm::StudyArm;
 use tomcom_session::verify::verify;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Event, LogHeader, TrialPhase};
+use tomcom_study::files::recordings;
 
 use super::{files, folder, study};
 

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom::run::watch_desk::ComparisonThreadHandle;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;

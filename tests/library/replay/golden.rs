@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_session::SessionSpec;
 use tomcom_session::header::VERSION;

@@ -16,7 +16,8 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{HighlightSet, Sender, signals};

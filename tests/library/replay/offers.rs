@@ -4,10 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tomcom::analysis::offer_summary::TimedOffer;
-use tomcom::run::gathered::GatheredRecordings;
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom::run::steadiness::measure;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferCloseReason;
@@ -19,6 +18,8 @@ use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
 use tomcom_session::verify::verify;
 use tomcom_session::{Event, LogHeader};
+use tomcom_study::analysis::offer_summary::TimedOffer;
+use tomcom_study::gathered::GatheredRecordings;
 
 use super::{folder, session};
 

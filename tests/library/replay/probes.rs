@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::shard::SimulationShard;
 use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;

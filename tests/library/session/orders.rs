@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use tomcom::analysis::order_work::{RegretSum, order_times};
 use tomcom::edge::files::read_session;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, State};
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
+use tomcom_study::analysis::order_work::{RegretSum, order_times};
 
 use super::{at, kitchen};
 

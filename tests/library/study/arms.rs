@@ -2,15 +2,15 @@
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
-use tomcom::study::arm_comparison::{compare_arms, holm};
-use tomcom::study::effect::LeftOutParticipant;
-use tomcom::study::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
-use tomcom::study::negative_binomial_model::{CountObservation, NegativeBinomialModel};
-use tomcom::study::trial_statistics::TrialStatistics;
 use tomcom_core::base::rng::stream;
 use tomcom_session::plan::StudyAims;
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_study::arm_comparison::{compare_arms, holm};
+use tomcom_study::effect::LeftOutParticipant;
+use tomcom_study::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
+use tomcom_study::negative_binomial_model::{CountObservation, NegativeBinomialModel};
+use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::trial;
 

@@ -1,16 +1,16 @@
 //! The effect of assistance, against values of other programs.
 
-use tomcom::run::study::describe;
-use tomcom::study::detail_totals::DetailTotals;
-use tomcom::study::effect::{effect, left_out_in_words, pairs};
-use tomcom::study::facts::RecordingFacts;
-use tomcom::study::figures::StudySummary;
-use tomcom::study::report;
-use tomcom::study::statistics::{hodges_lehmann, permutation_p};
-use tomcom::study::tables::trials::HEADLINE;
-use tomcom::study::trial_statistics::{TrialStatistics, arrange};
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_study::detail_totals::DetailTotals;
+use tomcom_study::effect::{effect, left_out_in_words, pairs};
+use tomcom_study::facts::RecordingFacts;
+use tomcom_study::figures::StudySummary;
+use tomcom_study::pass::describe;
+use tomcom_study::report;
+use tomcom_study::statistics::{hodges_lehmann, permutation_p};
+use tomcom_study::tables::trials::HEADLINE;
+use tomcom_study::trial_statistics::{TrialStatistics, arrange};
 
 use super::{near, trial, trials};
 

@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::edge::files::read_session;
-use tomcom::edge::frozen_file::{freeze, read_frozen};
-use tomcom::study::column::CsvTable;
-use tomcom::study::detail_totals::DetailTotals;
-use tomcom::study::facts::RecordingFacts;
-use tomcom::study::figures::StudySummary;
-use tomcom::study::frozen_plan::{FrozenDefinition, FrozenPlan};
-use tomcom::study::preregistration::{PreregistrationCheck, RecordedPlan};
-use tomcom::study::report;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_study::column::CsvTable;
+use tomcom_study::detail_totals::DetailTotals;
+use tomcom_study::facts::RecordingFacts;
+use tomcom_study::figures::StudySummary;
+use tomcom_study::files::frozen_file::{freeze, read_frozen};
+use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan};
+use tomcom_study::preregistration::{PreregistrationCheck, RecordedPlan};
+use tomcom_study::report;
 
 use super::trials;
 

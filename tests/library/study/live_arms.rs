@@ -1,9 +1,9 @@
 //! Concepts that acted by themselves on the same seeds.
 
-use tomcom::study::acting_arm::SignalSenderWithParameter;
-use tomcom::study::live_arms::live_arms;
-use tomcom::study::trial_statistics::TrialStatistics;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_study::acting_arm::SignalSenderWithParameter;
+use tomcom_study::live_arms::live_arms;
+use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::{near, trial};
 

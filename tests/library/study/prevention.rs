@@ -1,12 +1,12 @@
 //! Errors that communications would have prevented, useless signals, and concepts compared.
 
-use tomcom::study::concept_totals::{ConceptPreventionCounts, ConceptTotals};
-use tomcom::study::prevention::{
-    FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
-};
-use tomcom::study::roc::compare;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::AspectId;
+use tomcom_study::concept_totals::{ConceptPreventionCounts, ConceptTotals};
+use tomcom_study::prevention::{
+    FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
+};
+use tomcom_study::roc::compare;
 
 use super::{at, near};
 

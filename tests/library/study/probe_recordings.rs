@@ -2,9 +2,6 @@
 
 use std::convert::Infallible;
 
-use tomcom::analysis::probe_collector::ProbeCollector;
-use tomcom::analysis::probe_figures::ProbeSummary;
-use tomcom::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectKind, LocationId};
 use tomcom_core::mind::RecordedBelief;
@@ -13,6 +10,9 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
+use tomcom_study::analysis::probe_collector::ProbeCollector;
+use tomcom_study::analysis::probe_figures::ProbeSummary;
+use tomcom_study::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
 
 use super::near;
 use crate::kitchen;

@@ -4,25 +4,25 @@ use std::collections::BTreeMap;
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
-use tomcom::analysis::probe_accuracy::ProbeAccuracyGrouping;
-use tomcom::analysis::probe_detection::{ProbeDetection, WeightedProbeBelief};
-use tomcom::analysis::probe_figures::ProbeSummary;
-use tomcom::analysis::probe_record::{
-    AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
-};
-use tomcom::study::column::CsvRow;
-use tomcom::study::detail_totals::DetailTotals;
-use tomcom::study::facts::RecordingFacts;
-use tomcom::study::figures::StudySummary;
-use tomcom::study::report;
-use tomcom::study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
-use tomcom::study::trial_details::TrialDetails;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_study::analysis::probe_accuracy::ProbeAccuracyGrouping;
+use tomcom_study::analysis::probe_detection::{ProbeDetection, WeightedProbeBelief};
+use tomcom_study::analysis::probe_figures::ProbeSummary;
+use tomcom_study::analysis::probe_record::{
+    AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
+};
+use tomcom_study::column::CsvRow;
+use tomcom_study::detail_totals::DetailTotals;
+use tomcom_study::facts::RecordingFacts;
+use tomcom_study::figures::StudySummary;
+use tomcom_study::report;
+use tomcom_study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
+use tomcom_study::trial_details::TrialDetails;
 
 use super::{near, trial};
 

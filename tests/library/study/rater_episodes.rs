@@ -2,10 +2,6 @@
 
 use std::sync::Arc;
 
-use tomcom::study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
-use tomcom::study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
-use tomcom::study::prevention::TrialGroundTruth;
-use tomcom::study::rater_episodes::rater_episodes;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, State};
@@ -14,6 +10,10 @@ use tomcom_core::measures::attribution::FalseBeliefTarget;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::errors::PressJudge;
+use tomcom_study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
+use tomcom_study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
+use tomcom_study::prevention::TrialGroundTruth;
+use tomcom_study::rater_episodes::rater_episodes;
 
 use super::at;
 use crate::kitchen;
@@ -272,7 +272,7 @@ fn errors_prevented_follow_from_the_episodes_and_harmless_ones_are_not_known() {
     let known = KnownFalseBeliefs::coded(BeliefSource::Raters, &kitchen, &mut log.cost, &log.trace, &judged, &codes);
     let truth = TrialGroundTruth::new(&kitchen, &judged, &known);
     let pot = AspectId::of_location(kitchen.location_named("cooking_pot").expect("a pot"));
-    let sent = tomcom::study::prevention::HypotheticalSignal { time: at(4.5), press: 0, aspects: vec![pot] };
+    let sent = tomcom_study::prevention::HypotheticalSignal { time: at(4.5), press: 0, aspects: vec![pot] };
     let count = truth.count_signals(&[sent]);
     assert_eq!((count.related, count.prevented, count.useless, count.harmless), (2, 2, 0, None));
 }

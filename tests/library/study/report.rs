@@ -3,21 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::analysis::offer_summary::TimedOffer;
-use tomcom::run::codes::CodedRecording;
-use tomcom::run::kept_cost::KeptCost;
-use tomcom::run::study::describe;
-use tomcom::run::study::reading::{self, AnalysisScope};
-use tomcom::study::column::{CsvCell, CsvRow, CsvTable};
-use tomcom::study::concept_totals::ConceptPreventionCounts;
-use tomcom::study::detail_totals::DetailTotals;
-use tomcom::study::facts::RecordingFacts;
-use tomcom::study::figures::StudySummary;
-use tomcom::study::prevention::PreventionCounts;
-use tomcom::study::report::{self, page_head};
-use tomcom::study::robot_tally::{ArmSafetySummary, RobotEventTally};
-use tomcom::study::trial_details::TrialDetails;
-use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::{
@@ -35,6 +20,21 @@ use tomcom_session::event::TrialEndReason;
 use tomcom_session::log::{consensus_file, rater_codes};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom_study::analysis::offer_summary::TimedOffer;
+use tomcom_study::codes::CodedRecording;
+use tomcom_study::column::{CsvCell, CsvRow, CsvTable};
+use tomcom_study::concept_totals::ConceptPreventionCounts;
+use tomcom_study::detail_totals::DetailTotals;
+use tomcom_study::facts::RecordingFacts;
+use tomcom_study::figures::StudySummary;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::describe;
+use tomcom_study::pass::reading::{self, AnalysisScope};
+use tomcom_study::prevention::PreventionCounts;
+use tomcom_study::report::{self, page_head};
+use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
+use tomcom_study::trial_details::TrialDetails;
+use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::{at, near, trial, trials};
 

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use tomcom::edge::files::read_session;
-use tomcom::study::column::{CsvCell, CsvRow};
-use tomcom::study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
-use tomcom::study::tutorial_summary::TutorialSummary;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::plan::WantedRecording;
 use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_session::{Event, SessionSpec, TimestampedEvent};
+use tomcom_study::column::{CsvCell, CsvRow};
+use tomcom_study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
+use tomcom_study::tutorial_summary::TutorialSummary;
 
 /// The settings of the first recording of a participant of the study, in which the tutorial is.
 fn settings(kind: ParticipantKind) -> SessionSpec {

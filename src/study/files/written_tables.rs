@@ -8,8 +8,8 @@ use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use crate::study::column::CsvTable;
-use crate::study::dictionary::columns;
+use crate::column::CsvTable;
+use crate::dictionary::columns;
 
 /// Tables that the data dictionary in a folder lists, with their columns.
 #[derive(Debug, Default)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::study::figures::IdenticalCodes;
+use crate::figures::IdenticalCodes;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
 use tomcom_core::measures::consensus::{RaterConsensus, unsettled};

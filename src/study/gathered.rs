@@ -9,9 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{parallel, standing};
-use crate::edge::recordings;
-use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
-use crate::study::preregistration::RecordedPlan;
+use crate::files::recordings;
+use crate::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
+use crate::preregistration::RecordedPlan;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
 use tomcom_session::{LogHeader, person_code};

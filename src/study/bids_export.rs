@@ -12,8 +12,8 @@ use crate::analysis::bids::{
     BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, LongTable, LongTableFacts, PressOutcome,
     QuestionnairePhenotypes, RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
-use crate::edge::bids_tree::BidsTree;
-use crate::study::planned_trial::{RecordingCopy, copies_in_words};
+use crate::files::bids_tree::BidsTree;
+use crate::planned_trial::{RecordingCopy, copies_in_words};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::KitchenChange;

@@ -1,4 +1,4 @@
-//! Analysis of a study: from single trials to summary, tables and report. The module reads and writes no files.
+//! Analysis of a study: from single trials to summary, tables and report. Files are read and written in [`files`] alone.
 //!
 //! A `TrialStatistics` holds the counts, medians, sequences and answers of one recording, and `TrialDetails` what is too
 //! large to be kept in memory for every trial; everything else is computed from both. Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of
@@ -23,9 +23,17 @@
 //!   table of participants and its line in the report are generated.
 //! - [`report`] builds the page of the report, with [`charts`] and [`arm_chart`]; [`power_chart`] and [`cohort_chart`]
 //!   are pictures of their own.
+//!
+//! Commands over recordings: [`pass`] reads each once for a study; [`fit`], [`similarity`], [`codes`] with
+//! [`code_exchange`], [`bids_export`] and `mcap_export`; [`pool`] and [`power_measurement`] simulate. [`analysis`] has
+//! computation over events, [`files`] what is read and written.
+
+#![warn(missing_docs)]
+#![deny(unsafe_code)]
 
 pub mod acceptance;
 pub mod acting_arm;
+pub mod analysis;
 pub mod arm_analysis;
 pub mod arm_chart;
 pub mod arm_comparison;
@@ -33,10 +41,14 @@ pub mod arm_design;
 pub mod arm_group;
 pub mod arm_table;
 pub mod belief_trace;
+pub mod bids_export;
 pub mod charts;
+pub mod code_exchange;
+pub mod codes;
 pub mod cohort_chart;
 pub mod column;
 pub mod concept_totals;
+pub mod consents;
 pub mod definitions;
 pub mod detail_totals;
 pub mod dictionary;
@@ -44,18 +56,26 @@ pub mod drawn_study;
 pub mod effect;
 pub mod facts;
 pub mod figures;
+pub mod files;
+pub mod fit;
 pub mod frozen_plan;
+pub mod gathered;
 pub mod group_orders;
+pub mod kept_cost;
 pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;
 pub mod missing_trials;
 pub mod negative_binomial_model;
 pub mod pairwise_differences;
+pub mod parallel;
+pub mod pass;
 pub mod planned_trial;
+pub mod pool;
 pub mod power;
 pub mod power_answer;
 pub mod power_chart;
+pub mod power_measurement;
 pub mod preregistration;
 pub mod prevention;
 pub mod rater_episodes;
@@ -63,7 +83,9 @@ pub mod recorded_consent;
 pub mod report;
 pub mod robot_tally;
 pub mod roc;
+pub mod similarity;
 pub mod simulation_pool;
+pub mod standing;
 pub mod statistics;
 pub mod study_part;
 pub mod svg;
@@ -72,3 +94,5 @@ pub mod trial_details;
 pub mod trial_statistics;
 pub mod trial_totals;
 pub mod tutorial_summary;
+#[cfg(feature = "mcap")]
+pub mod mcap_export;

@@ -1,4 +1,4 @@
-//! Simulates the participants of a pool in memory ([`crate::study::simulation_pool`]): every trial of the plan, and its
+//! Simulates the participants of a pool in memory ([`crate::simulation_pool`]): every trial of the plan, and its
 //! unassisted twin (the same trial without signals). The commands `tomcom power` and `tomcom arms` use the pool.
 
 use std::convert::Infallible;
@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use super::kept_cost::KeptCost;
 use super::parallel;
-use super::simulate::SimulationShard;
+use tomcom_session::shard::SimulationShard;
 use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
+use crate::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::engine::SessionEngine;

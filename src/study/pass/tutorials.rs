@@ -1,7 +1,7 @@
 //! Reads the answers to the comprehension questions of tutorials, including those in practice recordings, which are not
 //! analysed as trials.
 
-use crate::study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
+use crate::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::log::LogReader;
 

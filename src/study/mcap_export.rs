@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::analysis::foxglove::McapMessageConverter;
-use crate::edge::mcap_file::McapFile;
+use crate::files::mcap_file::McapFile;
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::cost_to_go::CostToGo;

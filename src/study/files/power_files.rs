@@ -3,8 +3,8 @@
 use std::io;
 use std::path::Path;
 
-use crate::study::drawn_study::SignificanceTestMethod;
-use crate::study::power_answer::{PowerSummary, SampleSizePower, TestPower};
+use crate::drawn_study::SignificanceTestMethod;
+use crate::power_answer::{PowerSummary, SampleSizePower, TestPower};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::overwrite;
 

@@ -1,16 +1,16 @@
-//! Collects the rows of the CSV tables of events while a recording is replayed. The module [`crate::study::tables`]
+//! Collects the rows of the CSV tables of events while a recording is replayed. The module [`crate::tables`]
 //! declares the tables' columns.
 
 use super::coded_errors::CodedErrors;
 use crate::analysis::offer_summary::TimedOffer;
-use crate::edge::export::TableRows;
-use crate::study::column::{CsvRow, CsvTable};
-use crate::study::known_beliefs::KnownFalseBeliefs;
-use crate::study::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
-use crate::study::tables::aspect_beliefs::BeliefRow;
-use crate::study::tables::communications::CommunicationRow;
-use crate::study::tables::gaze_runs::{GazeRow, GazeRun};
-use crate::study::tables::offer_table::OfferRow;
+use crate::files::export::TableRows;
+use crate::column::{CsvRow, CsvTable};
+use crate::known_beliefs::KnownFalseBeliefs;
+use crate::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
+use crate::tables::aspect_beliefs::BeliefRow;
+use crate::tables::communications::CommunicationRow;
+use crate::tables::gaze_runs::{GazeRow, GazeRun};
+use crate::tables::offer_table::OfferRow;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::{MIN_CONFIDENCE, nearest_location};
 use tomcom_core::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};

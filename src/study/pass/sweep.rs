@@ -2,9 +2,9 @@
 //! parameters in one replay. The planner runs once per decision; all costs of communication are then applied to the
 //! same benefits. A benefit has to be known only where it can exceed a cost at which its signal may be sent.
 
-use crate::study::concept_totals::ConceptPreventionCounts;
-use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
-use crate::study::roc::{CONCEPTS, LEAST_COST, parameters};
+use crate::concept_totals::ConceptPreventionCounts;
+use crate::prevention::{HypotheticalSignal, TrialGroundTruth};
+use crate::roc::{CONCEPTS, LEAST_COST, parameters};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{Concept, ConceptName};

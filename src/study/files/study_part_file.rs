@@ -1,4 +1,4 @@
-//! Files with the parts of a study: JSON Lines ([`crate::study::study_part`]). They are written and read recording by
+//! Files with the parts of a study: JSON Lines ([`crate::study_part`]). They are written and read recording by
 //! recording, so that memory use does not grow with the number of recordings.
 
 use std::borrow::Cow;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::study::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartKitchen};
+use crate::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartKitchen};
 use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;

@@ -1,13 +1,13 @@
 //! Text summary of a study for the terminal.
 
 use crate::analysis::probe_lines;
-use crate::study::arm_comparison::StudyArmComparison;
-use crate::study::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
-use crate::study::figures::{StudySummary, pairs_in_words};
-use crate::study::live_arms::SignalSenderResults;
-use crate::study::missing_trials::in_words;
-use crate::study::planned_trial::copies_in_words;
-use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
+use crate::arm_comparison::StudyArmComparison;
+use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
+use crate::figures::{StudySummary, pairs_in_words};
+use crate::live_arms::SignalSenderResults;
+use crate::missing_trials::in_words;
+use crate::planned_trial::copies_in_words;
+use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use tomcom_core::base::words::count;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::matching::{MatchShares, Similarity};

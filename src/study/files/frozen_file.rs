@@ -7,7 +7,7 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use crate::study::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
+use crate::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 use tomcom_session::files::file_error::{FileError, FileResult, read_text};
 use tomcom_session::files::replace_file;
 

@@ -1,6 +1,6 @@
 //! Answers to a questionnaire in the form that the tables need, and the questionnaire's score.
 
-use crate::study::trial_statistics::QuestionnaireAnswer;
+use crate::trial_statistics::QuestionnaireAnswer;
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
 use tomcom_session::protocol::StudyProtocolState;
 use tomcom_session::{Session, TrialPhase};

@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::parallel;
-use crate::study::drawn_study::{DrawnEffect, PowerTest, StudySampler, tests};
-use crate::study::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, count, ratios};
-use crate::study::power_answer::{PowerSummary, SampleSizeRejections};
-use crate::study::simulation_pool::SimulationPool;
+use crate::drawn_study::{DrawnEffect, PowerTest, StudySampler, tests};
+use crate::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, count, ratios};
+use crate::power_answer::{PowerSummary, SampleSizeRejections};
+use crate::simulation_pool::SimulationPool;
 use tomcom_session::files::file_error::{FileError, FileResult};
 
 /// Number of studies that a thread draws in one block.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::study::recorded_consent::RecordedConsent;
+use crate::recorded_consent::RecordedConsent;
 use tomcom_session::Event;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::log::LogReader;

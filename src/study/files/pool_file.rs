@@ -1,5 +1,5 @@
 //! Files of pools (simulated participants for power analyses) in the format JSON Lines
-//! ([`crate::study::simulation_pool`]).
+//! ([`crate::simulation_pool`]).
 
 use std::io;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
+use crate::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
 use tomcom_session::files::overwrite;
 

@@ -8,10 +8,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::written_tables::{ListedTables, reader};
-use crate::study::column::{CsvCell, CsvRow, CsvTable};
-use crate::study::dictionary::columns;
-use crate::study::report::page_head;
-use crate::study::study_part::AnalysedRecording;
+use crate::column::{CsvCell, CsvRow, CsvTable};
+use crate::dictionary::columns;
+use crate::report::page_head;
+use crate::study_part::AnalysedRecording;
 use tomcom_core::base::spreadsheet::without_formula;
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::{self, Replacement};

@@ -1,5 +1,5 @@
 //! A study in parts: a shard of its recordings is analysed into one file, and the files are joined
-//! ([`crate::study::study_part`]).
+//! ([`crate::study_part`]).
 //!
 //! The shard to which a recording belongs follows from the recording's header alone, by the rule of `tomcom simulate
 //! --shard`. So a job that simulated shard 3 of 8 also analyses shard 3 of 8, whether the job has a folder of its own
@@ -11,15 +11,15 @@ use std::sync::Arc;
 
 use super::reading::AnalysisScope;
 use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
-use crate::edge::export::AnalysisFolder;
-use crate::edge::study_part_file::{PartReader, PartWriter};
-use crate::run::kept_cost::KeptCost;
-use crate::run::parallel::{self, WorkerPool};
-use crate::run::simulate::SimulationShard;
-use crate::study::figures::StudySummary;
-use crate::study::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
-use crate::study::preregistration::RecordedPlan;
-use crate::study::study_part::{
+use crate::files::export::AnalysisFolder;
+use crate::files::study_part_file::{PartReader, PartWriter};
+use crate::kept_cost::KeptCost;
+use crate::parallel::{self, WorkerPool};
+use tomcom_session::shard::SimulationShard;
+use crate::figures::StudySummary;
+use crate::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
+use crate::preregistration::RecordedPlan;
+use crate::study_part::{
     AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index,
 };
 use tomcom_session::files::compile_kitchen;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::codes::CodedRecording;
-use super::error::RunError;
+use tomcom_session::log::RecordingError;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
 use tomcom_session::files::file_error::FileResult;
@@ -114,7 +114,7 @@ impl ImportableCodes {
     /// # Errors
     /// A consensus is of raters who have not coded, or contradicts a code that both raters gave; another program codes
     /// as one of the raters; or a folder is not writable.
-    pub fn import(&self, recordings: &mut [CodedRecording]) -> Result<u64, RunError> {
+    pub fn import(&self, recordings: &mut [CodedRecording]) -> Result<u64, RecordingError> {
         let authors: BTreeSet<(usize, &RowAuthor)> =
             self.rows.iter().map(|(index, author, _)| (*index, author)).collect();
         let locked = |(index, author): &(usize, &RowAuthor)| author.lock(&recordings[*index].folder);
@@ -199,7 +199,7 @@ impl CodedRecording {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunError> {
+pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RecordingError> {
     let mut rows = Vec::new();
     for one in recordings {
         let settled = one.consensus.as_ref().map(|consensus| (consensus.name(), one.current(consensus)));

@@ -39,20 +39,21 @@ use miette::MietteHandlerOpts;
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
 use self::output::{OutputFormat, print, put, put_error};
-use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
-use tomcom_study::analysis::recording_summary::RecordingSummary;
-use tomcom_study::analysis::{event_lines, timing_summary};
 use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
-use crate::run::{options, standing, timing};
+use crate::run::{options, timing};
 use tomcom_core::base::printable::printable;
 use tomcom_session::log::{self, LogEnding};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;
+use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
+use tomcom_study::analysis::recording_summary::RecordingSummary;
+use tomcom_study::analysis::{event_lines, timing_summary};
+use tomcom_study::standing;
 
 /// Exit code of a command that failed.
 const FAILED: u8 = 1;

@@ -4,7 +4,8 @@
 //! The human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an
 //! assistant, sends *signals* that show the human a recipe or a location. This crate is the program `tomcom` that runs
 //! such experiments. What it stands on are crates of their own: the model ([`tomcom_core`]), simulated people
-//! ([`tomcom_people`]), the robot arms ([`tomcom_arm`]) and sessions with their recordings ([`tomcom_session`]).
+//! ([`tomcom_people`]), the robot arms ([`tomcom_arm`]), sessions with their recordings ([`tomcom_session`]) and studies
+//! ([`tomcom_study`]).
 //!
 //! A **session** ([`tomcom_session::Session`]) is its event log. [`tomcom_session::apply()`] is the only way to change one. The
 //! **engine** ([`tomcom_session::engine::SessionEngine`]) raises the events of robot, simulated participant and clock; its caller
@@ -12,8 +13,8 @@
 //!
 //! # The modules
 //!
-//! Imports go one way, from right to left: [`analysis`]; then, as Cargo features ask for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each contains, and
-//! what it must not depend on.
+//! Imports go one way, from right to left: `display`, `console`, `scene`, `edge`, `run`, `cli`. ARCHITECTURE.md says what
+//! each contains, and what it must not depend on.
 //!
 //! # Features
 //!

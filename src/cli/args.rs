@@ -16,9 +16,9 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use tomcom_session::shard::SimulationShard;
 use crate::run::sweep::ParameterSweepAxis;
 use tomcom_core::mind::fitting::HumanModelParameter;
+use tomcom_session::shard::SimulationShard;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]

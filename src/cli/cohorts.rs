@@ -7,14 +7,14 @@ use clap::Args;
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put, put_aside};
-use tomcom_study::analysis::cohort_lines::{describe_end, describe_row, heading, name_width};
-use tomcom_study::analysis::cohort_table::CohortRow;
 use crate::edge::battery_file::read_battery;
 use crate::edge::picture_file::{check_picture, write_picture};
 use crate::run::robustness::{self, RobustnessRequest};
-use tomcom_study::cohort_chart;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::settings::ArmKind;
+use tomcom_study::analysis::cohort_lines::{describe_end, describe_row, heading, name_width};
+use tomcom_study::analysis::cohort_table::CohortRow;
+use tomcom_study::cohort_chart;
 
 /// Measures estimate and assistant with cohorts of simulated people.
 ///

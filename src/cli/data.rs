@@ -10,12 +10,12 @@ use super::failure::Failure;
 use super::list::{exists, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::edge::forget::{self, ParticipantData};
-use tomcom_study::code_exchange::{self, ImportableCodes};
-use tomcom_study::codes::{self, CodedRecording, InterRaterSummary};
 use crate::run::review_console;
 use tomcom_core::base::words::count;
 use tomcom_session::person_code;
 use tomcom_session::settings::is_code;
+use tomcom_study::code_exchange::{self, ImportableCodes};
+use tomcom_study::codes::{self, CodedRecording, InterRaterSummary};
 
 /// Longest answer to a question, in bytes; no code of a participant is as long.
 const MAX_ANSWER: u64 = 1 << 12;

@@ -6,10 +6,11 @@ use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
-use tomcom_study::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
 use crate::run::accuracy::AccuracyStepCounts;
-use crate::run::{accuracy, check_beliefs, fit, steadiness};
+use crate::run::{accuracy, check_beliefs, steadiness};
+use tomcom_study::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
+use tomcom_study::fit;
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {

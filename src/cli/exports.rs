@@ -9,8 +9,8 @@ use super::failure::Failure;
 use super::list::exists;
 use super::mcap_exports::{self, ExportedMcap};
 use super::output::{OutputFormat, print, progress};
-use tomcom_study::files::recordings;
 use tomcom_study::bids_export::{self, BidsSummary};
+use tomcom_study::files::recordings;
 
 /// Exports recordings for other programs.
 ///

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use crate::edge::forget::ParticipantDeletionError;
 use crate::run::error::{LiveError, ReviewError};
-use tomcom_session::log::RecordingError;
 use tomcom_session::features::MissingFeature;
 use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::RecordingError;
 use tomcom_session::log::{DecisionError, RecordingWriteError};
 use tomcom_session::settings::SettingError;
 

@@ -7,13 +7,14 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::edge::{near_path, recordings};
-use tomcom_study::gathered::GatheredRecordings;
+use crate::edge::near_path;
 use crate::run::pick_recording;
 use crate::run::recording_list::{self, RecordingListDetail};
-use tomcom_study::planned_trial::copies_in_words;
 use tomcom_core::base::words::count;
 use tomcom_session::log::LOG_NAME;
+use tomcom_study::files::recordings;
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::planned_trial::copies_in_words;
 
 /// Largest number of recordings that a message names.
 const MOST_NAMED: usize = 12;

@@ -9,18 +9,18 @@ use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::edge::files::read_session;
 use crate::edge::picture_file::{check_picture, write_picture};
-use crate::edge::{pool_file, power_files};
-use tomcom_study::pool::{self, PoolRequest};
-use tomcom_study::power_measurement::{self, PowerRequest};
-use tomcom_session::shard::SimulationShard;
-use tomcom_study::pass::describe_arms;
-use tomcom_study::drawn_study::DrawnEffect;
-use tomcom_study::simulation_pool::SimulationPool;
-use tomcom_study::{arm_table, power_answer, power_chart};
 use tomcom_core::base::words::count;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::settings::ArmKind;
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::drawn_study::DrawnEffect;
+use tomcom_study::files::{pool_file, power_files};
+use tomcom_study::pass::describe_arms;
+use tomcom_study::pool::{self, PoolRequest};
+use tomcom_study::power_measurement::{self, PowerRequest};
+use tomcom_study::simulation_pool::SimulationPool;
+use tomcom_study::{arm_table, power_answer, power_chart};
 
 /// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";

@@ -8,11 +8,11 @@ use super::data::two_raters;
 use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
+use tomcom_core::base::words::count;
 use tomcom_session::shard::SimulationShard;
+use tomcom_study::figures::StudySummary;
 use tomcom_study::pass::reading::AnalysisScope;
 use tomcom_study::pass::{self, AnalysisRequest, NamedRecordings, StudyError, shards};
-use tomcom_study::figures::StudySummary;
-use tomcom_core::base::words::count;
 
 /// Analyses the recordings of a study: report and tables.
 ///
@@ -102,12 +102,12 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
         put_aside(&format!("part {part} of {of} of the study was analysed: {number}{others}\n"));
         return Ok(());
     }
-    let (figures, report) = study::study(&request, &recordings, || bar.inc(1))?;
+    let (figures, report) = pass::study(&request, &recordings, || bar.inc(1))?;
     bar.finish_and_clear();
     told(args.format, &figures, &report)
 }
 
 /// Prints the summary of the study's analysis.
 fn told(format: OutputFormat, figures: &StudySummary, report: &Path) -> Result<(), Failure> {
-    print(format, figures, || format!("{}report: {}\n", study::describe(figures), report.display()))
+    print(format, figures, || format!("{}report: {}\n", pass::describe(figures), report.display()))
 }

@@ -9,11 +9,7 @@ use super::failure::Failure;
 use super::list::{chosen, each_chosen, exists, gathered};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
-use tomcom_study::analysis::comparison_summary::{self, ComparisonSummary};
-use tomcom_study::analysis::lesson_report::{self, WizardTrainingSummary};
 use crate::console::playback::SPEEDS;
-use tomcom_study::files::training;
-use tomcom_study::similarity;
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
 use tomcom_core::communication::concept::ConceptName;
@@ -21,6 +17,10 @@ use tomcom_core::measures::matching::WINDOW;
 use tomcom_core::measures::wizard_performance::TrainingCriterion;
 use tomcom_session::person_code;
 use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_study::analysis::comparison_summary::{self, ComparisonSummary};
+use tomcom_study::analysis::lesson_report::{self, WizardTrainingSummary};
+use tomcom_study::files::training;
+use tomcom_study::similarity;
 
 /// Compares a wizard's signals with those that assistants would have sent.
 ///

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use super::key_file::check_keys;
-use tomcom_study::analysis::fitting::FITTED;
 use tomcom_core::kitchen::layout::LayoutSpec;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::files::parse::parse;
 use tomcom_session::files::{self, KitchenWithSources, SessionSetup, overwrite};
 use tomcom_session::header::RecordedFile;
+use tomcom_study::analysis::fitting::FITTED;
 
 /// Reads a session file, the layout and the key file that it names, and the recipes that the layout names.
 pub fn read_session(path: &Path) -> FileResult<SessionSetup> {

@@ -1,14 +1,14 @@
 //! Command `tomcom replay RECORDING... --accuracy`: reads recordings and runs the planners for
 //! [`tomcom_study::analysis::planner_accuracy`].
 
-use tomcom_study::gathered::GatheredRecordings;
-use tomcom_study::parallel;
 use super::timing::monotonic_ns;
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 use tomcom_study::analysis::planner_accuracy::{
     ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests, ThreadPlanner,
 };
-use tomcom_session::files::file_error::FileResult;
-use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
 
 /// Numbers of steps at which the planner's accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use tomcom_study::gathered::GatheredRecordings;
-use tomcom_study::parallel;
-use tomcom_study::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
-use tomcom_study::analysis::probe_collector::ProbeCollector;
-use tomcom_study::analysis::probe_figures::ProbeSummary;
-use tomcom_study::analysis::probe_record::ProbedTrial;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::chosen_thresholds;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 use tomcom_session::settings::ParticipantKind;
+use tomcom_study::analysis::belief_check::{BeliefCheck, TrialBeliefCollector};
+use tomcom_study::analysis::probe_collector::ProbeCollector;
+use tomcom_study::analysis::probe_figures::ProbeSummary;
+use tomcom_study::analysis::probe_record::ProbedTrial;
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
 
 /// Checks the belief estimates of recordings in one kitchen. The thresholds for flagging false beliefs are chosen on
 /// the recordings `choose_on`, which are not checked, or by cross-fitting if there are none. `done` is called after

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::options::SessionStart;
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
-use tomcom_study::analysis::trial_summary::TrialSummary;
 use tomcom_core::base::words::count;
 use tomcom_session::Session;
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,6 @@ use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use super::recording_list::{self, RecordingListDetail};
-use tomcom_study::analysis::recording_table::RecordingList;
 use crate::console::ConsoleMessage;
 use crate::console::click::ClickAction;
 use crate::console::recording_picker::{RecordingPicker, RecordingReply};
@@ -15,6 +14,7 @@ use crate::console::view::recordings_page::recording_targets;
 use crate::console::view::theme::Theme;
 use crate::edge::terminal::TerminalScreen;
 use tomcom_session::settings::ConsoleSpec;
+use tomcom_study::analysis::recording_table::RecordingList;
 
 /// Period of redrawing the list of recordings, in case the terminal's size changed.
 const REDRAW: Duration = Duration::from_millis(100);

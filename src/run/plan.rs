@@ -7,13 +7,13 @@ use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{recordings_of, slot_name, stands};
-use tomcom_study::files::frozen_file;
-use tomcom_study::frozen_plan::FrozenPlan;
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_session::files::KitchenWithSources;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
+use tomcom_study::files::frozen_file;
+use tomcom_study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,16 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom_study::kept_cost::KeptCost;
-use super::{parallel, standing};
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
-use tomcom_study::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
-use tomcom_study::files::recordings;
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_session::apply;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogEnding, LogReader};
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
+use tomcom_study::files::recordings;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::{parallel, standing};
 
 /// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

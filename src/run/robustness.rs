@@ -4,12 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use tomcom_study::kept_cost::KeptCost;
-use tomcom_study::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
-use tomcom_study::analysis::belief_check::TrialBeliefCollector;
-use tomcom_study::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
-use tomcom_study::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::CohortBattery;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -20,6 +15,11 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
 use tomcom_session::settings::{Condition, SessionSpec};
 use tomcom_session::{Event, Session, TimestampedEvent};
+use tomcom_study::analysis::belief_check::TrialBeliefCollector;
+use tomcom_study::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
+use tomcom_study::analysis::trial_summary::TrialSummary;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::parallel::WorkerPool;
 
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]

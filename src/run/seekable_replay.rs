@@ -7,8 +7,6 @@
 
 use std::path::Path;
 
-use tomcom_study::standing::exclusion_status;
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
@@ -17,6 +15,8 @@ use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::standing::exclusion_status;
 
 /// Largest number of events in a chunk.
 const CHUNK: usize = 4096;

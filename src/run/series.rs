@@ -11,13 +11,13 @@ use super::options::{SeriesRequest, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
 use crate::console::question::StartQuestion;
-use tomcom_study::files::recordings;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
 use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, Study};
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_study::files::recordings;
 
 /// Result of one session, or of a participant's series of sessions.
 #[derive(Clone, Debug)]

@@ -9,26 +9,26 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tomcom_session::log::RecordingError;
-use tomcom_study::kept_cost::KeptCost;
 use super::leaving::ways_to_look;
 use super::options;
-use tomcom_study::parallel::WorkerPool;
-use tomcom_study::analysis::kitchen_summary::plan_lengths;
-use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
 use tomcom_core::base::words::count;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
+use tomcom_session::log::RecordingError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated, ruling};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{Condition, ParticipantSpec, SessionSpec};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{LogHeader, TimestampedEvent};
+use tomcom_study::analysis::kitchen_summary::plan_lengths;
+use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::parallel::WorkerPool;
 
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]

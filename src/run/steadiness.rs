@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use tomcom_study::gathered::GatheredRecordings;
-use tomcom_study::parallel;
-use tomcom_study::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::log::LogReader;
 use tomcom_session::{Session, apply};
+use tomcom_study::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
 
 /// Measures how steady the offers of recordings are. `done` is called after each recording.
 ///

@@ -8,12 +8,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use tomcom_session::log::RecordingError;
 use super::simulate::{SimulationRequest, describe_moved, each_trial};
-use tomcom_session::shard::SimulationShard;
-use tomcom_study::analysis::kitchen_summary::plan_lengths;
-use tomcom_study::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
-use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::decimal;
 use tomcom_core::communication::concept::ConceptName;
@@ -23,8 +18,13 @@ use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::SessionSpec;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::files::overwrite;
+use tomcom_session::log::RecordingError;
 use tomcom_session::log::RecordingWriteError;
 use tomcom_session::settings::{Condition, GazeSource};
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::analysis::kitchen_summary::plan_lengths;
+use tomcom_study::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
+use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 
 /// Name of the results table's file in the folder of the recordings; shards have file names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";

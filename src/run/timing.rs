@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use tomcom_study::analysis::timing_summary::{DurationPercentiles, TimingSummary};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::advisor::{AdviceRequest, Advisor};
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::follower::InferenceTiming;
 use tomcom_session::replay::RecordingReplay;
+use tomcom_study::analysis::timing_summary::{DurationPercentiles, TimingSummary};
 
 /// Nanoseconds on the monotonic clock since this function was first called.
 pub(super) fn monotonic_ns() -> u64 {

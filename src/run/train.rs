@@ -11,14 +11,14 @@ use super::event_loop;
 use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use super::training_shell::TrainingShell;
-use tomcom_study::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
 use crate::console::playback::SPEEDS;
-use tomcom_study::files::training;
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::wall_time::WallTime;
 use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::wizard_log::false_belief_periods;
+use tomcom_study::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
+use tomcom_study::files::training;
 
 /// Request of `tomcom train`.
 #[derive(Clone, Debug)]

@@ -8,8 +8,6 @@ use super::error::{ReviewError, TerminalError};
 use super::event_loop::{ConsoleShell, LoopEvent, ShellView};
 use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
-use tomcom_study::analysis::lesson_report;
-use tomcom_study::analysis::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 use crate::console::console_model::Dialog;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
 use crate::console::notice::NoticeLevel;
@@ -28,6 +26,10 @@ use tomcom_core::mind::RecordedBelief;
 use tomcom_session::event::SignalEndReason;
 use tomcom_session::history::wording;
 use tomcom_session::{Event, TimestampedEvent, apply};
+use tomcom_study::analysis::lesson_report;
+use tomcom_study::analysis::training_record::{
+    HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord,
+};
 
 /// The training console for one recording.
 pub(super) struct TrainingShell {

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::codes::CodedRecording;
-use tomcom_session::log::RecordingError;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
 use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::RecordingError;
 use tomcom_session::log::rater_codes::{self, RaterCodeRow};
 use tomcom_session::log::{RecordingLock, RecordingWriteError, consensus_file};
 use tomcom_session::person_code;

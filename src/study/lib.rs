@@ -65,6 +65,8 @@ pub mod kept_cost;
 pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;
+#[cfg(feature = "mcap")]
+pub mod mcap_export;
 pub mod missing_trials;
 pub mod negative_binomial_model;
 pub mod pairwise_differences;
@@ -94,5 +96,3 @@ pub mod trial_details;
 pub mod trial_statistics;
 pub mod trial_totals;
 pub mod tutorial_summary;
-#[cfg(feature = "mcap")]
-pub mod mcap_export;

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use super::kept_cost::KeptCost;
 use super::parallel;
-use tomcom_session::shard::SimulationShard;
 use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
@@ -18,6 +17,7 @@ use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::plan::{Participants, Study};
 use tomcom_session::settings::Condition;
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{SessionSpec, TimestampedEvent};
 

@@ -10,9 +10,9 @@ use tomcom::edge::forget;
 use tomcom::run::recording_list::{RecordingListDetail, list};
 use tomcom::run::series::recordings_of;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::log::{CORRECTION_NAME, LOG_NAME, LogReader, correct, rule};
 use tomcom_session::plan::{ParticipantProgress, Study};
+use tomcom_session::shard::SimulationShard;
 use tomcom_study::bids_export;
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;
@@ -101,7 +101,7 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     let request =
         AnalysisRequest { paths: vec![out.clone()], out: folder("results"), extent, raters: None, frozen: None };
     let (figures, report) =
-        study::study(&request, &NamedRecordings::find(&request.paths).expect("recordings"), || ()).expect("analysed");
+        pass::study(&request, &NamedRecordings::find(&request.paths).expect("recordings"), || ()).expect("analysed");
     let words = "code of the participant corrected: P02-1: P02 is P03 (the code of the day before; ";
     assert!(describe(&figures).contains(words), "{}", describe(&figures));
     assert!(describe(&figures).contains("2 trials of the plan have no recording: P02 trial 1; P03 trial 2"));

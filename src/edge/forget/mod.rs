@@ -18,10 +18,7 @@ use std::path::{Path, PathBuf};
 pub use self::deletion::{ParticipantDeletionError, delete};
 use self::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, RecordingOwner, file_name};
 use self::tables::{FolderTables, TableMatch};
-use tomcom_study::analysis::training_record::WizardTrainingRecord;
-use tomcom_study::files::bids_tree;
 use crate::edge::stream_head;
-use tomcom_study::report::page_head;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::replace_file::replaced_name;
 use tomcom_session::files::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
@@ -31,6 +28,9 @@ use tomcom_session::log::{
     CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
     is_damaged_log,
 };
+use tomcom_study::analysis::training_record::WizardTrainingRecord;
+use tomcom_study::files::bids_tree;
+use tomcom_study::report::page_head;
 
 /// Largest size of a report or a training record that is read, in bytes.
 const MAX_BYTES: u64 = 64 << 20;

@@ -15,8 +15,8 @@ mod outlet_thread;
 
 use std::path::absolute;
 
-use tomcom_study::analysis::lsl::SOURCE;
 use tomcom_session::settings::{LslGazeSpec, LslSpec};
+use tomcom_study::analysis::lsl::SOURCE;
 
 pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
 pub use library::{DiscoveredLslStream, LslLibrary};

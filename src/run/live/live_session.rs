@@ -7,8 +7,6 @@ use super::display::ParticipantDisplay;
 use super::gaze_events::GazeInput;
 use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
-use tomcom_study::analysis::trial_summary::TrialSummary;
 use crate::console::compared::SenderComparisonView;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
@@ -36,6 +34,8 @@ use tomcom_session::tracker::{TrackerEvent, TrackerRecording};
 use tomcom_session::watcher::SenderComparisonFollower;
 use tomcom_session::wizard_screen::WizardScreenContent;
 use tomcom_session::{Event, LogHeader, Session};
+use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// Period of redrawing clocks and ages on the console while the trial is running.
 const RUNNING: Duration = Duration::from_millis(100);

@@ -3,7 +3,6 @@
 
 use std::rc::Rc;
 
-use tomcom_study::analysis::lsl::{LslSampleConverter, StreamSample};
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
 use crate::edge::lsl::{LslCounts, LslSample, LslStreams};
@@ -12,6 +11,7 @@ use tomcom_core::base::words::count;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::{Session, TimestampedEvent};
+use tomcom_study::analysis::lsl::{LslSampleConverter, StreamSample};
 
 /// Sends a session's samples to its LSL streams.
 pub(super) struct LslStreaming {

@@ -180,7 +180,7 @@ fn read_row(rows: &mut impl BufRead) -> io::Result<Option<(SessionTime, Vec<u8>)
 }
 
 /// Codes of the participants in a BIDS data set that this program wrote; `None` for every other folder.
-pub(super) fn codes(root: &Path) -> Option<Vec<String>> {
+pub fn codes(root: &Path) -> Option<Vec<String>> {
     let description = read_regular(&root.join(DESCRIPTION_NAME)).ok()?;
     let description: serde_json::Value = serde_json::from_str(&description).ok()?;
     let is_ours = description["GeneratedBy"].as_array()?.iter().any(|by| by["Name"] == PROGRAM_NAME);

@@ -3,8 +3,8 @@
 
 use super::coded_errors::CodedErrors;
 use crate::analysis::offer_summary::TimedOffer;
-use crate::files::export::TableRows;
 use crate::column::{CsvRow, CsvTable};
+use crate::files::export::TableRows;
 use crate::known_beliefs::KnownFalseBeliefs;
 use crate::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
 use crate::tables::aspect_beliefs::BeliefRow;

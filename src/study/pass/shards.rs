@@ -11,21 +11,19 @@ use std::sync::Arc;
 
 use super::reading::AnalysisScope;
 use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
+use crate::figures::StudySummary;
 use crate::files::export::AnalysisFolder;
 use crate::files::study_part_file::{PartReader, PartWriter};
 use crate::kept_cost::KeptCost;
 use crate::parallel::{self, WorkerPool};
-use tomcom_session::shard::SimulationShard;
-use crate::figures::StudySummary;
 use crate::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
 use crate::preregistration::RecordedPlan;
-use crate::study_part::{
-    AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index,
-};
+use crate::study_part::{AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogReader, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
+use tomcom_session::shard::SimulationShard;
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;

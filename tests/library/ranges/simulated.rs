@@ -6,7 +6,6 @@ use std::path::Path;
 
 use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom_core::base::number_range::NumberRange;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::layout_ranges;
@@ -15,6 +14,7 @@ use tomcom_session::apply::apply;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::log::LogReader;
 use tomcom_session::settings::{ArmKind, Condition, SessionSpec};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::{Event, ranges};
 
 use super::{every_setting, folder, set};

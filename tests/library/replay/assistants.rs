@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom::run::watch_desk::ComparisonThreadHandle;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
@@ -28,6 +27,7 @@ use tomcom_session::history::comparison::CommunicationContext;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::verify::verify;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};

@@ -7,12 +7,12 @@ use std::path::Path;
 
 use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_session::SessionSpec;
 use tomcom_session::header::VERSION;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource};
+use tomcom_session::shard::SimulationShard;
 
 use super::{by_hand, folder};
 

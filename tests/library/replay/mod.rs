@@ -17,7 +17,6 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{HighlightSet, Sender, signals};
@@ -29,6 +28,7 @@ use tomcom_session::event::{SignalEndReason, TrialEndReason};
 use tomcom_session::files::SessionSetup;
 use tomcom_session::log::{LOG_NAME, LogWriter};
 use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::{Event, LogHeader};
 
 /// One session for each kitchen.

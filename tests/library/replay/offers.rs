@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use tomcom::run::resume::resume;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom::run::steadiness::measure;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferCloseReason;
@@ -16,6 +15,7 @@ use tomcom_session::engine::SessionEngine;
 use tomcom_session::log::{LOG_NAME, LogWriter};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::verify::verify;
 use tomcom_session::{Event, LogHeader};
 use tomcom_study::analysis::offer_summary::TimedOffer;

@@ -4,7 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::shard::SimulationShard;
 use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
@@ -13,6 +12,7 @@ use tomcom_session::history::probe_wording;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::ArmKind;
+use tomcom_session::shard::SimulationShard;
 use tomcom_session::{Event, TimestampedEvent};
 
 use super::{folder, session, simulated};

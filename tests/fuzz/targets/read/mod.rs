@@ -12,7 +12,7 @@ use tomcom::edge::key_file::key_map;
 use tomcom::edge::pupil::message as pupil_message;
 use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
 use tomcom::edge::terminal_bytes::TerminalParser;
-use tomcom::edge::{gaze_file, gaze_line, stream_head, training, written_tables};
+use tomcom::edge::{gaze_file, gaze_line, stream_head};
 use tomcom_core::gaze::surface::SurfaceHomography;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::cause_codes::CodableErrors;
@@ -27,6 +27,7 @@ use tomcom_session::header::RecordedFile;
 use tomcom_session::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, ruling};
 use tomcom_session::plan::{Questionnaire, Study};
 use tomcom_session::tracker::TrackerSpec;
+use tomcom_study::files::{training, written_tables};
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");

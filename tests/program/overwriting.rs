@@ -28,7 +28,7 @@ fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
     let (codes, fitted) = (format!("{root}/codes"), format!("{root}/fitted"));
     let commands: [(&[&str], &str); 6] = [
         (&["codes", &recording, "--export", &codes], "codes"),
-        (&["fit", &recording, "--parameters", "lapse", "--tries", "10", "--out", &fitted], "fitted"),
+        (&["fit", &recording, "--parameters", "tau", "--tries", "10", "--out", &fitted], "fitted"),
         (&["review", &recording, &other, &save], "stream"),
         (&["study", &root, "--skip", "concepts", "--out", &study], "results/participants.csv"),
         (&["study", &root, "--skip", "concepts", "--out", &study], "results/report.html"),
@@ -109,7 +109,7 @@ fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
     let lab = RecordingsFolder::of_two_people("full-disk");
     let recording = lab.at("seed1-P01-1").display().to_string();
     let path = |name: &str| lab.at(name).display().to_string();
-    let fit = ["fit", &recording, "--parameters", "lapse", "--tries", "10", "--out", &path("fitted.toml")];
+    let fit = ["fit", &recording, "--parameters", "tau", "--tries", "10", "--out", &path("fitted.toml")];
     assert_eq!(lab.run(&fit).0, Some(0));
     let before = lab.files();
     assert!(before["fitted.toml"].len() > 512);

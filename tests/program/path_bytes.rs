@@ -54,7 +54,7 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
         (&["export"], &[word("--mcap"), word("--bids"), at("bids")]),
         (
             &["fit"],
-            &[word("--parameters"), word("lapse"), word("--tries"), word("10"), word("--out"), at("fitted.toml")],
+            &[word("--parameters"), word("tau"), word("--tries"), word("10"), word("--out"), at("fitted.toml")],
         ),
         (&["exclude"], &[word("--reason"), word("noise")]),
     ];

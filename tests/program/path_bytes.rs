@@ -52,10 +52,7 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
         (&["compare"], &[word("--with"), word("tom-com")]),
         (&["codes"], &[word("--export"), at("codes.csv")]),
         (&["export"], &[word("--mcap"), word("--bids"), at("bids")]),
-        (
-            &["fit"],
-            &[word("--parameters"), word("tau"), word("--tries"), word("10"), word("--out"), at("fitted.toml")],
-        ),
+        (&["fit"], &[word("--parameters"), word("tau"), word("--tries"), word("10"), word("--out"), at("fitted.toml")]),
         (&["exclude"], &[word("--reason"), word("noise")]),
     ];
     for (command, options) in of_recording {

@@ -40,6 +40,7 @@ pub mod console;
 pub mod display;
 #[cfg(feature = "cli")]
 pub mod edge;
+#[cfg(feature = "cli")]
 pub mod run;
 #[cfg(feature = "rerun")]
 pub mod scene;

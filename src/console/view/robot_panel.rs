@@ -150,10 +150,12 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let whole_s = until.secs_since(since).max(1e-3);
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
-    let by = match () {
-        () if session.robot.driven_to.is_some() => " by wizard",
-        () if session.robot.initiative => " alone: nobody presses",
-        () => "",
+    let by = if session.robot.driven_to.is_some() {
+        " by wizard"
+    } else if session.robot.initiative {
+        " alone: nobody presses"
+    } else {
+        ""
     };
     if session.robot.arm.mode == SafetyMode::Safeguard {
         // The time that is left is unknown until the hand is gone.

@@ -5,7 +5,7 @@
 //! it is in a hand, and nothing useless is taken or made. No shorter way is lost: every hand has a trash button, and an
 //! emptier kitchen is never worse. `tests/core/cost_to_go.rs` holds proven values against an exact search.
 
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
@@ -44,42 +44,17 @@ pub struct ProvenCost {
     pub is_proven: bool,
 }
 
-/// An open state of the search.
+/// An open state of the search. States are expanded in the order of the fields: smallest bound first, then most presses
+/// so far, then latest discovery. `met` differs for all, so no later field decides.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Open {
     /// Number of presses so far plus lower bound of the remaining presses.
-    bound: u32,
+    bound: Reverse<u32>,
     presses: u32,
     /// Number of the state in the search's order of discovery.
     met: u32,
     slot: usize,
     state: CompactState,
-}
-
-impl Open {
-    /// Order in which states are expanded: smallest bound first, then most presses so far, then latest discovery.
-    fn rank(&self) -> (Reverse<u32>, u32, u32) {
-        (Reverse(self.bound), self.presses, self.met)
-    }
-}
-
-impl PartialEq for Open {
-    fn eq(&self, other: &Open) -> bool {
-        self.rank() == other.rank()
-    }
-}
-
-impl Eq for Open {}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Open) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Open {
-    fn cmp(&self, other: &Open) -> Ordering {
-        self.rank().cmp(&other.rank())
-    }
 }
 
 /// A search for the least number of presses, which ends with a proof or with the budget.
@@ -142,7 +117,7 @@ impl ProofSearch<'_> {
         budget: &mut ProofBudget,
     ) -> ProvenCost {
         self.meet(slot, goal, start, 0);
-        while let Some(next) = self.open.pop().filter(|next| next.bound < self.best) {
+        while let Some(next) = self.open.pop().filter(|next| next.bound.0 < self.best) {
             let Some(goal) = self.costs.goals[next.slot].clone() else { continue };
             let key = self.costs.key(next.slot, &goal, &next.state);
             if self.seen.get(&key).is_some_and(|&least| least < next.presses) {
@@ -201,6 +176,6 @@ impl ProofSearch<'_> {
         }
         self.seen.insert(key, presses);
         self.met += 1;
-        self.open.push(Open { bound, presses, met: self.met, slot, state: *state });
+        self.open.push(Open { bound: Reverse(bound), presses, met: self.met, slot, state: *state });
     }
 }

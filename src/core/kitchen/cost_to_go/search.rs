@@ -4,7 +4,7 @@
 //! [`Fidelity::Searched`]. Simulations and recommendations ask for millions of values and use it; what people are judged by
 //! is proven (`proof`).
 
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
@@ -42,44 +42,19 @@ const UNSEEN: u32 = u32::MAX;
 /// Ranks a state of the search behind all states with the same bound whose plans are known.
 const LAST: u32 = UNSEEN - 1;
 
-/// An open state (node) of the best-first search.
+/// An open state (node) of the best-first search. States are expanded in the order of the fields: smallest bound first,
+/// then smallest gap of the plan, then latest discovery. `met` differs for all, so no later field decides.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Open {
     /// Number of presses so far plus lower bound of the remaining presses.
-    bound: u32,
+    bound: Reverse<u32>,
     /// Number of presses by which the state's plan exceeds the lower bound, or [`UNSEEN`].
-    gap: u32,
+    gap: Reverse<u32>,
     /// Number of the state in the search's order of discovery.
     met: usize,
     /// Number of presses from the search's start state to this state.
     presses: u32,
     state: CompactState,
-}
-
-impl Open {
-    /// Order in which states are expanded: smallest bound first, then smallest gap of the plan, then latest discovery.
-    fn rank(&self) -> (Reverse<u32>, Reverse<u32>, usize) {
-        (Reverse(self.bound), Reverse(self.gap), self.met)
-    }
-}
-
-impl PartialEq for Open {
-    fn eq(&self, other: &Open) -> bool {
-        self.rank() == other.rank()
-    }
-}
-
-impl Eq for Open {}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Open) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Open {
-    fn cmp(&self, other: &Open) -> Ordering {
-        self.rank().cmp(&other.rank())
-    }
 }
 
 /// One best-first search over single presses.
@@ -146,12 +121,12 @@ impl<'a> BestFirstSearch<'a> {
         self.keep(lower, LAST, 0, start);
         let mut expansions = 0;
         while let Some(next) = self.open.pop() {
-            if next.bound >= self.best || expansions >= self.reach.expansions && self.best < BLOCKED {
+            if next.bound.0 >= self.best || expansions >= self.reach.expansions && self.best < BLOCKED {
                 break;
             }
-            if next.gap == UNSEEN {
+            if next.gap.0 == UNSEEN {
                 let rating = RankedAssignments::new(&self.costs.ground, self.goal, &next.state);
-                self.rate_plan(&next.state, rating, next.presses, next.bound);
+                self.rate_plan(&next.state, rating, next.presses, next.bound.0);
                 continue;
             }
             expansions += 1;
@@ -162,7 +137,7 @@ impl<'a> BestFirstSearch<'a> {
 
     fn keep(&mut self, bound: u32, gap: u32, presses: u32, state: &CompactState) {
         self.met += 1;
-        self.open.push(Open { bound, gap, met: self.met, presses, state: *state });
+        self.open.push(Open { bound: Reverse(bound), gap: Reverse(gap), met: self.met, presses, state: *state });
     }
 
     fn expand(&mut self, open: &Open) {
@@ -172,7 +147,7 @@ impl<'a> BestFirstSearch<'a> {
             for choice in rating.choices() {
                 let plan = PressPlan::new(&self.costs.ground, goal, &open.state, choice);
                 if let Some((presses, next)) = plan.begin(choice.order[0]) {
-                    self.meet(&next, open.presses + presses, open.bound);
+                    self.meet(&next, open.presses + presses, open.bound.0);
                 }
             }
         }
@@ -180,10 +155,10 @@ impl<'a> BestFirstSearch<'a> {
         let mut nexts = Vec::with_capacity(32);
         successors(&self.costs.ground, goal, &open.state, wanted, |next| nexts.push(next));
         for next in &nexts {
-            if self.best <= open.bound {
+            if self.best <= open.bound.0 {
                 break;
             }
-            self.meet(next, open.presses + 1, open.bound);
+            self.meet(next, open.presses + 1, open.bound.0);
         }
     }
 

@@ -4,8 +4,8 @@
 //! The human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an
 //! assistant, sends *signals* that show the human a recipe or a location. This crate is the program `tomcom` that runs
 //! such experiments. What it stands on are crates of their own: the model ([`tomcom_core`]), simulated people
-//! ([`tomcom_people`]), the robot arms ([`tomcom_arm`]), sessions with their recordings ([`tomcom_session`]) and studies
-//! ([`tomcom_study`]).
+//! ([`tomcom_people`]), the robot arms ([`tomcom_arm`]), sessions with their recordings ([`tomcom_session`]), their devices
+//! ([`tomcom_devices`]) and studies ([`tomcom_study`]).
 //!
 //! A **session** ([`tomcom_session::Session`]) is its event log. [`tomcom_session::apply()`] is the only way to change one. The
 //! **engine** ([`tomcom_session::engine::SessionEngine`]) raises the events of robot, simulated participant and clock; its caller
@@ -13,7 +13,7 @@
 //!
 //! # The modules
 //!
-//! Imports go one way, from right to left: `display`, `console`, `scene`, `edge`, `run`, `cli`. ARCHITECTURE.md says what
+//! Imports go one way, from right to left: `console`, `edge`, `run`, `cli`. ARCHITECTURE.md says what
 //! each contains, and what it must not depend on.
 //!
 //! # Features
@@ -22,9 +22,8 @@
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `cli` | the program: commands, files, recordings, eye trackers, studies |
-//! | `console` | the wizard's console in the terminal |
 //! | `display` | the server of the participant's display |
+//! | `mcap` | recordings as MCAP |
 //! | `physics` | the simulated arm and its kinematics |
 //! | `rerun` | streams for Rerun's viewers |
 //!
@@ -33,14 +32,7 @@
 #![warn(missing_docs)]
 #![deny(unsafe_code)]
 
-#[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "console")]
 pub mod console;
-pub mod display;
-#[cfg(feature = "cli")]
 pub mod edge;
-#[cfg(feature = "cli")]
 pub mod run;
-#[cfg(feature = "rerun")]
-pub mod scene;

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 /// The rooms of the crates that have several, from the ground up; a room imports only from rooms before it.
 const ROOMS: [(&str, &[&str]); 2] = [
     ("src/core", &["base", "kitchen", "gaze", "robot", "mind", "measures", "communication"]),
-    ("src", &["display", "console", "scene", "edge", "run", "cli"]),
+    ("src", &["console", "edge", "run", "cli"]),
 ];
 /// What decides nothing by the outside, by time or by chance: the crates below the program, and its rooms below the edge.
-const PURE: [&str; 8] = ["core", "people", "arm", "session", "study", "display", "console", "scene"];
+const PURE: [&str; 8] = ["core", "people", "arm", "session", "study", "devices/sight", "devices/scene", "console"];
 /// What reads and writes files among these.
 const OF_FILES: [&str; 4] = ["src/session/files", "src/session/log", "src/study/files", "src/study/mcap_export.rs"];
 /// Names of the outside, of time and chance that no seed decides, and of orders that are not fixed.

@@ -222,10 +222,10 @@ fn left_out() -> impl Iterator<Item = PreflightCheck> {
 /// recordings.
 #[cfg(feature = "rerun")]
 fn viewer() -> PreflightCheck {
-    use super::viewer::{REMEDY, ViewerAvailability};
+    use tomcom_devices::viewer::{REMEDY, ViewerAvailability};
     let (verdict, found, remedy) = match ViewerAvailability::find() {
         ViewerAvailability::Ready(path) => {
-            (PreflightVerdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), "")
+            (PreflightVerdict::Ok, format!("{} {}", path.display(), tomcom_devices::rerun::VERSION), "")
         }
         ViewerAvailability::NoScreen => (
             PreflightVerdict::Ok,

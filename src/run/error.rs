@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use super::resume::ResumeError;
 use crate::console::key_action::KeyError;
-use crate::edge::lsl::LslError;
 use tomcom_core::gaze::tags::TagError;
+use tomcom_devices::lsl::LslError;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::RecordingWriteError;
 

@@ -13,9 +13,9 @@ use crate::console::question::StartQuestion;
 use crate::console::recording_picker::RecordingPicker;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
-use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::terminal::TerminalScreen;
 use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::Session;
 
 /// Least time between two frames of the console (30 frames per second).

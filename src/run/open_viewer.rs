@@ -8,16 +8,16 @@ use std::time::Duration;
 
 use tempfile::TempPath;
 
-use crate::edge::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
-use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
-use crate::edge::stream::{PORTS, is_free};
-use crate::edge::stream_head;
 use crate::edge::terminal::asked_to_end;
-use crate::edge::viewer::{self, ViewerAvailability};
-use crate::scene::entity_content::slug;
-use crate::scene::{SceneInputs, SessionScene};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_devices::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
+use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
+use tomcom_devices::scene::entity_content::slug;
+use tomcom_devices::scene::{SceneInputs, SessionScene};
+use tomcom_devices::stream::{PORTS, is_free};
+use tomcom_devices::stream_head;
+use tomcom_devices::viewer::{self, ViewerAvailability};
 use tomcom_session::TimestampedEvent;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::overwrite;

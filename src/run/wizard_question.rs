@@ -9,8 +9,8 @@ use crate::console::ConsoleMessage;
 use crate::console::pasting::refusal_of_paste;
 use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
-use crate::display::ConsentHold;
 use tomcom_core::base::time::SessionTime;
+use tomcom_devices::sight::ConsentHold;
 use tomcom_session::wall_display::AnswerDevice;
 
 /// Period of redrawing a question on the screen.

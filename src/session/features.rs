@@ -5,8 +5,6 @@ use std::fmt;
 /// An optional part of the crate; each is a Cargo feature of this name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
-    /// The wizard's console in the terminal.
-    Console,
     /// The server of the participant's display.
     Display,
     /// Export of recordings as MCAP files.
@@ -19,12 +17,11 @@ pub enum Feature {
 
 impl Feature {
     /// All optional parts of the crate.
-    pub const ALL: [Feature; 5] = [Feature::Console, Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
+    pub const ALL: [Feature; 4] = [Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
 
     /// Whether this build of the program contains the optional part.
     pub const fn is_built(self) -> bool {
         match self {
-            Feature::Console => cfg!(feature = "console"),
             Feature::Display => cfg!(feature = "display"),
             Feature::Mcap => cfg!(feature = "mcap"),
             Feature::Physics => cfg!(feature = "physics"),
@@ -35,7 +32,6 @@ impl Feature {
     /// The name of the optional part's Cargo feature.
     pub const fn key(self) -> &'static str {
         match self {
-            Feature::Console => "console",
             Feature::Display => "display",
             Feature::Mcap => "mcap",
             Feature::Physics => "physics",
@@ -46,7 +42,6 @@ impl Feature {
     /// What a build without this optional part cannot do, in words.
     pub const fn lacks(self) -> &'static str {
         match self {
-            Feature::Console => "no session can be run or looked at in the terminal",
             Feature::Display => "the participant's display cannot be served",
             Feature::Mcap => "no recording is exported as MCAP",
             Feature::Physics => "the arm cannot be simulated, and nothing checks that it reaches its buttons",
@@ -66,7 +61,6 @@ impl Feature {
 impl fmt::Display for Feature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
-            Feature::Console => "the console",
             Feature::Display => "the participant's display",
             Feature::Mcap => "MCAP",
             Feature::Physics => "physics",

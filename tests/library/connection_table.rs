@@ -4,7 +4,7 @@ use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tomcom::edge::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
+use tomcom_devices::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
 
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 10,

@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::Value;
-use tomcom::display::page_language::DisplayWords;
-use tomcom::display::{DisplayStage, scene, sight};
 use tomcom::edge::files::read_session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_devices::sight::page_language::DisplayWords;
+use tomcom_devices::sight::{DisplayStage, scene, sight};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::files::SessionSetup;
@@ -338,7 +338,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
 
 #[test]
 fn every_shape_is_drawn() {
-    let art = include_str!("../../src/edge/display/page/art.js");
+    let art = include_str!("../../src/devices/display/page/art.js");
     for shape in tomcom_core::kitchen::look::SHAPES {
         assert!(art.contains(&format!("    {shape}(")) || art.contains(&format!("    {shape}: (")), "{shape}");
     }
@@ -347,8 +347,8 @@ fn every_shape_is_drawn() {
 #[test]
 fn german_has_every_word_of_the_page_and_of_both_kitchens() {
     let read = |text: &str| parse::<LanguageFile>(Path::new("words"), text).expect("words").0;
-    let english = read(include_str!("../../src/display/languages/en.toml"));
-    let german = read(include_str!("../../src/display/languages/de.toml"));
+    let english = read(include_str!("../../src/devices/sight/languages/en.toml"));
+    let german = read(include_str!("../../src/devices/sight/languages/de.toml"));
     for key in english.keys() {
         assert!(german.contains_key(key), "{key}");
     }

@@ -1,7 +1,7 @@
 //! The trial's clock and the number of served orders on the participant's display.
 
-use tomcom::display::{TrialClockState, scene, sight, time_left};
 use tomcom_core::base::time::SessionTime;
+use tomcom_devices::sight::{TrialClockState, scene, sight, time_left};
 use tomcom_session::Event;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::event::TrialEndReason;

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use serde_json::Value;
-use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen};
+use tomcom_devices::sight::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
 use tomcom_session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;

@@ -5,8 +5,8 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
-use tomcom::display::page_language::DisplayWords;
-use tomcom::edge::display::DisplayServer;
+use tomcom_devices::display::DisplayServer;
+use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_session::wall_display::DisplaySpec;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.

@@ -1,10 +1,10 @@
 //! The words of the participant's display: contents as the kitchen's files word them, and why a press has no effect.
 
 use serde_json::Value;
-use tomcom::display::page_language::DisplayWords;
-use tomcom::display::{scene, sight};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Agent;
+use tomcom_devices::sight::page_language::DisplayWords;
+use tomcom_devices::sight::{scene, sight};
 use tomcom_session::Event;
 use tomcom_session::settings::{ArmKind, ParticipantKind};
 use tomcom_session::wall_display::DisplaySpec;

@@ -7,9 +7,12 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use tomcom::edge::files::read_session;
-use tomcom::edge::lsl::{LslError, load};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_devices::lsl::{LslError, load};
+use tomcom_devices::lsl::{
+    LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
+};
 use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::BeliefSnapshot;
@@ -21,9 +24,6 @@ use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
-use tomcom_study::analysis::lsl::{
-    LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
-};
 
 /// Name of the recording.
 const RECORDING: &str = "2026-03-14-P07-1";

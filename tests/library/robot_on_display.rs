@@ -1,10 +1,10 @@
 //! The robot's hand on the participant's display: where it is told to be, and that nothing of what comes is told.
 
 use serde_json::json;
-use tomcom::display::{RobotHand, RobotHandPose, scene};
 use tomcom::edge::files::read_session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
+use tomcom_devices::sight::{RobotHand, RobotHandPose, scene};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::settings::ArmKind;
 use tomcom_session::wall_display::RobotDepiction;

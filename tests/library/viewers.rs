@@ -10,13 +10,13 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use tomcom::edge::files::read_session;
-use tomcom::edge::rerun::StreamIdentity;
-use tomcom::edge::rrd;
-use tomcom::edge::stream::RerunStream;
-use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_devices::rerun::StreamIdentity;
+use tomcom_devices::rrd;
+use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
+use tomcom_devices::stream::RerunStream;
 use tomcom_session::Event;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::settings::Condition;

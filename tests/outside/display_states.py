@@ -14,7 +14,7 @@ from console import Console
 from page import Page
 
 PORT = 20341
-PAGE = Path("src/edge/display/page")
+PAGE = Path("src/devices/display/page")
 KITCHENS = ("sushi", "burger")
 # Nothing moves while it is measured; what is shown for a moment only stays.
 STILL = "*, *::before, *::after { animation: none !important; transition: none !important; } .why.says { opacity: 1 !important; visibility: visible !important; }"
@@ -31,7 +31,7 @@ def longer(words):
 def long_language(folder, scene, kitchen):
     """A file with the page's words and the kitchen's names in that language; `scene` is the English one."""
     recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())
-    english = tomllib.loads(Path("src/display/languages/en.toml").read_text())
+    english = tomllib.loads(Path("src/devices/sight/languages/en.toml").read_text())
     named = {place["name"].replace("_", " "): place["label"] for place in scene["locations"]}
     named |= {name: known["label"] for kind in ("items", "dishes") for name, known in scene[kind].items()}
     named |= {shelf["name"]: shelf["name"] for shelf in recipes["ingredient"]}
@@ -126,7 +126,7 @@ def probe_pages(scene, kitchen, dishes):
 
     `touched`: choices that are touched; where the page asks how sure the participant is, it does so then.
     """
-    english, words = (tomllib.loads(Path(f"src/display/languages/{language}.toml").read_text()) for language in ("en", scene["language"]))
+    english, words = (tomllib.loads(Path(f"src/devices/sight/languages/{language}.toml").read_text()) for language in ("en", scene["language"]))
     stretch = longer if scene["language"] == "en" and scene["words"]["back"] != english["page back"] else str
     said = lambda name, what="": stretch({**english, **words}[name]).replace("#", what)
     recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())

@@ -15,7 +15,7 @@ use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::probe_entry::ProbeEntry;
 use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
 use crate::console::text_columns::width;
-use crate::display::{ProbeWording, probe_left, probe_wording};
+use tomcom_devices::sight::{ProbeWording, probe_left, probe_wording};
 use tomcom_session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::{Session, TrialPhase};

@@ -4,11 +4,11 @@
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
-use crate::edge::lsl::{self, DiscoveredLslStream};
-use crate::edge::{gaze_file, pupil};
 use tomcom_core::base::printable::printable;
 use tomcom_core::gaze::tags::TagError;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_devices::lsl::{self, DiscoveredLslStream};
+use tomcom_devices::{gaze_file, pupil};
 use tomcom_session::SessionSpec;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub use self::deletion::{ParticipantDeletionError, delete};
 use self::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, RecordingOwner, file_name};
 use self::tables::{FolderTables, TableMatch};
-use crate::edge::stream_head;
+use tomcom_devices::stream_head;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::replace_file::replaced_name;
 use tomcom_session::files::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};

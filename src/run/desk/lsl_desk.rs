@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use crate::edge::lsl::{self, LslError, LslLibrary, LslStreams};
+use tomcom_devices::lsl::describe;
+use tomcom_devices::lsl::{self, LslError, LslLibrary, LslStreams};
 use tomcom_session::{Session, SessionSpec};
-use tomcom_study::analysis::lsl::describe;
 
 /// The LSL library, if the session uses LSL, and the streams that are sent. A participant's streams stay open from one
 /// recording to the next, so that a recorder can continue.

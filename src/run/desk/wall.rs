@@ -1,11 +1,11 @@
 //! The participant's display at the operator's desk.
 
-use crate::display::page_language::DisplayWords;
-use crate::display::{ConsentHold, consent_sight, scene};
-pub(in crate::run) use crate::edge::display::PageInput;
-use crate::edge::display::{DisplayServer, ParticipantResponse};
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
+pub(in crate::run) use tomcom_devices::display::PageInput;
+use tomcom_devices::display::{DisplayServer, ParticipantResponse};
+use tomcom_devices::sight::page_language::DisplayWords;
+use tomcom_devices::sight::{ConsentHold, consent_sight, scene};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{Session, SessionSpec};
 

@@ -1,8 +1,8 @@
 //! Stand-in for the participant's display at the operator's desk, in a build without the feature `display`.
 
-use crate::display::ConsentHold;
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
+use tomcom_devices::sight::ConsentHold;
 use tomcom_session::{Session, SessionSpec};
 
 /// Input of a participant's page, which never occurs in this build; so the type has no values.

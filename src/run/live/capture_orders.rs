@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use tokio::sync::mpsc::Sender;
 
-use crate::edge::pupil::CaptureRequest;
 use crate::run::desk::GazeTracker;
+use tomcom_devices::pupil::CaptureRequest;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::{Event, Session, TrialPhase};
 

@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
-use crate::display::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
-use crate::edge::display::{DisplayHandle, DisplayServer, ParticipantResponse};
 use crate::run::desk::{OperatorDesk, PageInput};
 use tomcom_core::base::printable::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
+use tomcom_devices::display::{DisplayHandle, DisplayServer, ParticipantResponse};
+use tomcom_devices::sight::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
 use tomcom_session::admit::admit;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::protocol::ProtocolEvent;

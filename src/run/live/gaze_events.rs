@@ -3,13 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::edge::gaze_file::GazeFile;
-use crate::edge::gaze_input::{TrackerMessage, TrackerTime};
 use crate::run::desk::GazeTracker;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
 use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_devices::gaze_file::GazeFile;
+use tomcom_devices::gaze_input::{TrackerMessage, TrackerTime};
 use tomcom_session::tracker::{MissingConfidence, TrackerEvent};
 use tomcom_session::{Event, Session, TrialPhase};
 

@@ -5,13 +5,13 @@ use std::rc::Rc;
 
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
-use crate::edge::lsl::{LslCounts, LslSample, LslStreams};
 use crate::run::desk::OperatorDesk;
 use tomcom_core::base::words::count;
+use tomcom_devices::lsl::{LslCounts, LslSample, LslStreams};
+use tomcom_devices::lsl::{LslSampleConverter, StreamSample};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::{Session, TimestampedEvent};
-use tomcom_study::analysis::lsl::{LslSampleConverter, StreamSample};
 
 /// Sends a session's samples to its LSL streams.
 pub(super) struct LslStreaming {

@@ -4,11 +4,11 @@
 use std::net::SocketAddr;
 
 use crate::console::console_model::RerunStreamStatus;
-use crate::edge::rerun::{StreamIdentity, uri};
-use crate::edge::rrd::{self, RRD_NAME};
-use crate::edge::stream::RerunStream;
-use crate::scene::{SceneInputs, SessionScene};
 use tomcom_core::base::time::SessionTime;
+use tomcom_devices::rerun::{StreamIdentity, uri};
+use tomcom_devices::rrd::{self, RRD_NAME};
+use tomcom_devices::scene::{SceneInputs, SessionScene};
+use tomcom_devices::stream::RerunStream;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::log::{LOG_NAME, LogWriter};
 use tomcom_session::{LogHeader, Session, TimestampedEvent};

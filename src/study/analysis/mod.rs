@@ -16,7 +16,6 @@ pub mod kitchen_summary;
 pub mod lesson_report;
 pub mod likelihood;
 pub mod looks;
-pub mod lsl;
 pub mod offer_steadiness;
 pub mod offer_summary;
 pub mod order_work;

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::display::{DisplayStage, ShownContent, sight};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::run::leaving::TutorialProgress;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_devices::sight::{DisplayStage, ShownContent, sight};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::log::{LOG_NAME, LogWriter};
 use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};

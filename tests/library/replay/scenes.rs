@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::Agent;
+use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_session::history::probe_wording;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::replay::RecordingReplay;

@@ -1,9 +1,9 @@
 //! DEV as a live arm: an error gets one proposal on the display, until it is out of date.
 
-use tomcom::display::sight;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::Agent;
+use tomcom_devices::sight::sight;
 use tomcom_session::Event;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::event::SignalEndReason;

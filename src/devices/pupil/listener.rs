@@ -11,8 +11,8 @@ use tokio::time::timeout;
 use super::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use super::message::{self, CaptureNotification, PupilBlink, PupilFixation, PupilMessage};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
-use crate::edge::compared_clock::ClockOffsetEstimator;
-use crate::edge::gaze_input::{TrackerFixation, TrackerMessage, TrackerTime};
+use crate::compared_clock::ClockOffsetEstimator;
+use crate::gaze_input::{TrackerFixation, TrackerMessage, TrackerTime};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::surface::SurfaceHomography;
 

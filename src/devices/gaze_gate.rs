@@ -116,7 +116,7 @@ impl GazeAccessCheck {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edge::gaze_input::TrackerMessage;
+    use crate::gaze_input::TrackerMessage;
     use tokio::sync::mpsc::{Receiver, channel};
 
     /// Least time between two notices about rejected senders.

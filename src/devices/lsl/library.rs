@@ -9,7 +9,7 @@ use std::path::Path;
 use libloading::Library;
 
 use super::lsl_error::LslError;
-use tomcom_study::analysis::lsl::{MetadataNode, StreamDescription};
+use crate::lsl::{MetadataNode, StreamDescription};
 
 /// Pointer to an object of liblsl, or to an element of its metadata.
 type Pointer = *mut c_void;

@@ -5,7 +5,7 @@
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
 
-use crate::edge::gaze_input::MAX_SECONDS;
+use crate::gaze_input::MAX_SECONDS;
 
 /// Largest nesting depth of a Capture message.
 const MAX_DEPTH: usize = 16;

@@ -3,7 +3,7 @@
 
 use axum::http::{HeaderMap, HeaderName, Uri, header};
 
-use crate::edge::host_name::is_local;
+use crate::host_name::is_local;
 
 /// Whether an HTTP request is addressed to this server. Without a pairing code, the host must be a loopback address or
 /// `localhost`: any other name that resolves to this machine, such as `127.evil.example`, belongs to a foreign website

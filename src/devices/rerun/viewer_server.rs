@@ -35,7 +35,7 @@ use tonic_web::GrpcWebLayer;
 use tower_layer::Layer;
 
 use super::kept_messages::KeptMessages;
-use crate::edge::host_name::is_local;
+use crate::host_name::is_local;
 
 /// Largest number of viewers' connections at a time; further connections are closed at once.
 const MOST_CONNECTIONS: usize = 32;

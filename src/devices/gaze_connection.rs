@@ -283,7 +283,7 @@ mod tests {
     use std::net::Ipv4Addr;
 
     use super::*;
-    use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
+    use crate::connection_table::{ConnectionLimits, ConnectionTable};
     use tokio::net::TcpListener;
     use tokio::sync::mpsc::{Receiver, channel};
     use tomcom_core::gaze::GazeSample;

@@ -25,7 +25,7 @@ use super::host_check::{has_own_host, has_own_origin};
 use super::message::MAX_BYTES;
 use super::server_state::ServerState;
 use super::status::count;
-use crate::edge::connection_table::ConnectionHandle;
+use crate::connection_table::ConnectionHandle;
 
 /// Content security policy of the page: it loads nothing from other servers and must not be framed.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";

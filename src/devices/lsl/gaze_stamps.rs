@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use crate::edge::compared_clock::ClockOffsetEstimator;
-use crate::edge::gaze_input::TrackerMessage;
-use crate::edge::sender_clock::SenderClock;
+use crate::compared_clock::ClockOffsetEstimator;
+use crate::gaze_input::TrackerMessage;
+use crate::sender_clock::SenderClock;
 
 /// Largest age of the first sample, in seconds, at which its time stamp still counts as one of LSL's clock.
 const OLDEST_S: f64 = 2.0;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::page_input::ParticipantResponse;
-use crate::display::{DisplayContent, DisplayScene, RobotHandPose};
+use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 use tomcom_session::answer_value::AnswerValue;
 
 /// Longest message of a participant page, in bytes.

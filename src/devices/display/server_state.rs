@@ -10,8 +10,8 @@ use tokio::sync::watch;
 
 use super::page_input::PageInput;
 use super::status::DisplayStatus;
-use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
-use crate::edge::pairing::{PairingCodeCheck, PairingVerdict};
+use crate::connection_table::{ConnectionLimits, ConnectionTable};
+use crate::pairing::{PairingCodeCheck, PairingVerdict};
 
 /// Limits for connections to the display's server. Far fewer connections are admitted as watching pages than can be
 /// open, so that a new page always has room for its handshake. The page that takes part is reserved and not counted.

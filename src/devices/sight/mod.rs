@@ -8,6 +8,7 @@
 #[cfg(feature = "physics")]
 mod arm_tip;
 mod consent;
+mod content;
 mod display_place;
 mod displayed_item;
 pub mod page_language;
@@ -16,13 +17,13 @@ mod robot_hand;
 mod robot_pose;
 mod scene;
 mod shown_clock;
-mod sight;
+
 mod tutorial_page;
 
 pub use consent::{ConsentHold, consent_sight};
+pub use content::{DisplayContent, DisplayStage, ShownContent, sight};
 pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
 pub use robot_hand::RobotHand;
 pub use robot_pose::RobotHandPose;
 pub use scene::{DisplayScene, scene};
 pub use shown_clock::{TrialClockState, time_left};
-pub use sight::{DisplayContent, DisplayStage, ShownContent, sight};

@@ -28,10 +28,10 @@ use self::server::serve;
 use self::server_state::{PageFeed, ServerState};
 use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
-use crate::display::page_language::DisplayWords;
-use crate::display::{DisplayContent, DisplayScene, RobotHandPose};
-use crate::edge::outer_address::reachable;
-use crate::edge::pairing_code::pairing_code;
+use crate::outer_address::reachable;
+use crate::pairing_code::pairing_code;
+use crate::sight::page_language::DisplayWords;
+use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 
 /// Largest number of page inputs that wait for the session.
 const WAITING: usize = 1024;

@@ -1,8 +1,8 @@
 //! Consent on the participant's display: what the display shows, and whether the consent button was held long enough.
 
+use super::content::{DisplayContent, DisplayStage, sight};
 use super::displayed_item::{DisplayedAnswerForm, DisplayedQuestionnaireItem};
 use super::page_language::DisplayWords;
-use super::sight::{DisplayContent, DisplayStage, sight};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Session;
 

@@ -15,8 +15,8 @@ use super::page_input::PageInput;
 use super::page_life::PageLife;
 use super::server_state::{PageFeed, ServerState};
 use super::status::{ActivePage, count};
-use crate::edge::connection_table::ConnectionHandle;
-use crate::edge::pairing::PairingVerdict;
+use crate::connection_table::ConnectionHandle;
+use crate::pairing::PairingVerdict;
 
 /// Time limit for the first message of a participant page.
 const HELLO: Duration = Duration::from_secs(5);

@@ -14,8 +14,8 @@ use tokio::sync::mpsc::{Receiver, Sender, channel};
 use super::gaze_stamps::StreamStamps;
 use super::library::{DiscoveredLslStream, LslInletHandle, LslLibrary, LslStreamWatch};
 use super::{described, gaze_streams, predicate};
-use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
-use crate::edge::gaze_input::{TrackerMessage, WAITING};
+use crate::compared_clock::{ANSWERS, ClockOffsetEstimator};
+use crate::gaze_input::{TrackerMessage, WAITING};
 use tomcom_core::gaze::GazeSample;
 use tomcom_session::settings::LslGazeSpec;
 

@@ -9,8 +9,8 @@
 
 #[cfg(feature = "physics")]
 use super::arm_tip::ArmTip;
+use super::content::button_place;
 use super::robot_pose::RobotHandPose;
-use super::sight::button_place;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
 use tomcom_session::wall_display::RobotDepiction;

@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 use super::gaze_inlet::compare;
 use super::library::{LslLibrary, LslOutletHandle};
 use super::lsl_error::LslError;
-use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
+use crate::compared_clock::{ANSWERS, ClockOffsetEstimator};
+use crate::lsl::{LslSampleValues, StreamDescription};
 use tomcom_session::settings::LslOutlet;
-use tomcom_study::analysis::lsl::{LslSampleValues, StreamDescription};
 
 /// Number of packets of samples that may wait to be sent: the packets of 20 seconds at 200 gaze samples per second.
 const WAITING: usize = 4096;

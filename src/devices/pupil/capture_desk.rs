@@ -12,8 +12,8 @@ use tokio::time::{interval, sleep_until, timeout_at};
 use super::message::{self, ANNOTATION, CaptureNotification};
 use super::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
-use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator, DeviceClockStep};
-use crate::edge::gaze_input::TrackerMessage;
+use crate::compared_clock::{ANSWERS, ClockOffsetEstimator, DeviceClockStep};
+use crate::gaze_input::TrackerMessage;
 
 /// Period of time requests to Pupil Capture; a step of Capture's clock is noticed within this time.
 const ASK_TIME: Duration = Duration::from_millis(250);

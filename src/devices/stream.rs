@@ -169,7 +169,7 @@ mod tests {
     use std::net::Ipv4Addr;
 
     use super::*;
-    use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
+    use crate::rrd::{self, RRD_NAME, RerunFileState};
     use crate::scene::EntityData;
     use tomcom_core::base::time::SessionTime;
 

@@ -1,0 +1,43 @@
+//! What a session has around it: eye trackers ([`pupil`], [`gaze_json`], [`lsl`], [`gaze_file`]), the participant's display
+//! ([`sight`]: what the page may see; `display`: the server with its page), and Rerun (`scene`: a session as entities;
+//! `rerun`, `stream`, `rrd`: viewers and files).
+//!
+//! The crate knows nothing of the console and of studies.
+
+#![deny(unsafe_code)]
+
+mod arrival;
+mod compared_clock;
+pub mod connection_table;
+pub mod datagram_holder;
+#[cfg(feature = "display")]
+pub mod display;
+mod gaze_connection;
+pub mod gaze_file;
+mod gaze_gate;
+pub mod gaze_input;
+pub mod gaze_json;
+pub mod gaze_line;
+mod gaze_rejections;
+mod gaze_table;
+#[cfg(any(feature = "display", feature = "rerun"))]
+mod host_name;
+pub mod lsl;
+mod outer_address;
+mod pairing;
+mod pairing_code;
+pub mod pupil;
+#[cfg(feature = "rerun")]
+pub mod rerun;
+#[cfg(feature = "rerun")]
+pub mod rrd;
+#[cfg(feature = "rerun")]
+pub mod scene;
+mod sender_clock;
+pub mod sight;
+#[cfg(feature = "rerun")]
+pub mod stream;
+pub mod stream_head;
+mod tracker_folder;
+#[cfg(feature = "rerun")]
+pub mod viewer;

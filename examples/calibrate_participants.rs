@@ -2,7 +2,7 @@
 //! that agree with it. docs/simulated-participants.md has the steps, the seeds and what came of them.
 //!
 //! ```sh
-//! run="cargo run --release --example calibrate_participants --"
+//! run="cargo run --example calibrate_participants --"
 //! $run figures sessions/paper.toml 3001,3002          # the session's population
 //! $run planning sessions/paper.toml 3001,3002         # the same people, who know everything and do not slip
 //! $run search sessions/paper.toml 3001,3002 200 > found.toml  # vectors of belief parameters that agree with the paper

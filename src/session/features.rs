@@ -77,6 +77,6 @@ pub struct MissingFeature(pub Feature);
 impl MissingFeature {
     /// How to get a build that contains the missing part, in words.
     pub fn remedy(self) -> String {
-        format!("cargo build --release --features {}, or a build with the default features", self.0.key())
+        format!("cargo build --features {}, or a build with the default features", self.0.key())
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Exact search takes up to seconds a state, so its results are kept in `tests/oracle/`: a line a state, with the least
 //! presses for the first order and for all orders. Some of them are searched again in every run; all of them by
-//! `cargo test --release -p tomcom-core --test core cost_to_go -- --ignored`.
+//! `cargo test -p tomcom-core --test core cost_to_go -- --ignored`.
 
 use std::path::Path;
 use std::sync::Arc;

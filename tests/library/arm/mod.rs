@@ -1,6 +1,6 @@
 //! The arm in the physics: it presses every button, stops for people, and what it does when something is wrong.
 //!
-//! The full experiments (`cargo test --release --test library arm:: -- --ignored --nocapture`) do what the short ones do, more often.
+//! The full experiments (`cargo test --test library arm:: -- --ignored --nocapture`) do what the short ones do, more often.
 
 mod contacts;
 mod hand;

@@ -130,7 +130,7 @@ fn people() -> (HumanModel, HumanModel) {
     (truth, start)
 }
 
-/// By hand: `cargo test --release --test inference fitting -- --ignored --nocapture`.
+/// By hand: `cargo test --test inference fitting -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes, in release"]
 fn fitting_recovers_how_a_human_decides_and_looks() {

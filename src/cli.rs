@@ -43,16 +43,16 @@ use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
+use crate::run::options;
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
-use crate::run::{options, timing};
 use tomcom_core::base::printable::printable;
 use tomcom_session::log::{self, LogEnding};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;
+use tomcom_study::analysis::event_lines;
 use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
 use tomcom_study::analysis::recording_summary::RecordingSummary;
-use tomcom_study::analysis::{event_lines, timing_summary};
 use tomcom_study::standing;
 
 /// Exit code of a command that failed.
@@ -136,24 +136,14 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if args.check_beliefs {
         return estimates::check_beliefs(args);
     }
-    if args.accuracy {
-        return estimates::accuracy(args);
-    }
-    if args.offers {
-        return estimates::offers(args);
-    }
     let [recording] = &args.recordings[..] else {
-        let help = "one recording to replay, or several with --check-beliefs, --accuracy or --offers";
+        let help = "one recording to replay, or several with --check-beliefs";
         return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
     };
     if args.verify {
         let found = verify::verify(recording)?;
         print(args.format, &found, || verify::describe(&found))?;
         return if found.verified { Ok(()) } else { Err(Failure::No) };
-    }
-    if args.timing {
-        let figures = timing::measure(recording)?;
-        return print(args.format, &figures, || timing_summary::describe(&figures));
     }
     if let Some(rater) = &args.rater {
         return data::rate(recording, rater);

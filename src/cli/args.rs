@@ -67,8 +67,8 @@ pub(super) enum CliCommand {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a
-    /// folder of recordings, one is chosen from a list.
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs. Of a folder of
+    /// recordings, one is chosen from a list.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and inputs; every line must be identical.
@@ -83,34 +83,17 @@ pub(super) struct ReplayArgs {
     /// other half.
     #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
     pub(super) choose_on: Vec<PathBuf>,
-    /// Measure computing times of inference and planning.
-    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
-    pub(super) timing: bool,
-    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference planner.
-    /// Takes long.
-    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing"])]
-    pub(super) accuracy: bool,
-    /// With --accuracy: largest number of steps, spread evenly over the recordings.
-    #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    pub(super) steps: u64,
-    /// With --accuracy: largest number of steps for the plain reference planner; 0 for none.
-    #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
-    pub(super) reference_steps: u64,
-    /// Measure how steady offers are: how long they stand, and whether a simulated hand that reads an offer sends what
-    /// it has read.
-    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy"])]
-    pub(super) offers: bool,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
     /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in
     /// view: letters code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first
     /// error without a code. Codes are saved beside the log at once.
-    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
+    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "format"])]
     pub(super) rater: Option<String>,
     /// Settle as two raters together what they coded differently: goes through these errors with both codes in view,
     /// and saves the consensus beside the log.
-    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
+    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "format"])]
     pub(super) settle: Option<Vec<String>>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]

@@ -7,9 +7,8 @@ use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
 use crate::edge::files;
-use crate::run::accuracy::AccuracyStepCounts;
-use crate::run::{accuracy, check_beliefs, steadiness};
-use tomcom_study::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
+use crate::run::check_beliefs;
+use tomcom_study::analysis::{belief_check, fitting};
 use tomcom_study::fit;
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
@@ -19,28 +18,6 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
     let found = check_beliefs::check(&recordings, &choose_on, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || belief_check::describe(&found))
-}
-
-/// Runs the command `tomcom replay RECORDING... --accuracy`.
-pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
-    let extent = AccuracyStepCounts {
-        steps: args.steps as usize,
-        reference_steps: args.reference_steps.min(args.steps) as usize,
-    };
-    // Each step is planned twice: with the budget of a session, and with the larger one.
-    let bar = progress(2 * args.steps + args.reference_steps, "answers of the planner at most");
-    let found = accuracy::measure(&gathered(&args.recordings)?, extent, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || planner_accuracy::describe(&found))
-}
-
-/// Runs the command `tomcom replay RECORDING... --offers`.
-pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
-    let recordings = gathered(&args.recordings)?;
-    let bar = progress(recordings.paths.len() as u64, "recordings");
-    let found = steadiness::measure(&recordings, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || offer_steadiness::describe(&found))
 }
 
 /// Runs the command `tomcom fit RECORDING...`.

@@ -1,6 +1,5 @@
 //! Shells that run sessions: they combine session, robot, participant, files and clock, which no other module combines.
 
-pub mod accuracy;
 mod advisor_desk;
 pub mod check_beliefs;
 mod coding_desk;
@@ -21,9 +20,7 @@ pub mod robustness;
 pub mod seekable_replay;
 pub mod series;
 pub mod simulate;
-pub mod steadiness;
 pub mod sweep;
-pub mod timing;
 pub mod train;
 mod training_shell;
 mod unfinished_recording;

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use super::simulate::settings_of_trial;
 use crate::edge::battery_file::CohortBattery;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -18,6 +17,7 @@ use tomcom_session::{Event, Session, TimestampedEvent};
 use tomcom_study::analysis::belief_check::TrialBeliefCollector;
 use tomcom_study::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
 use tomcom_study::analysis::trial_summary::TrialSummary;
+use tomcom_study::files::simulated_trials::settings_of_trial;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::parallel::WorkerPool;
 

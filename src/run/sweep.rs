@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::simulate::{SimulationRequest, describe_moved, each_trial};
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::decimal;
 use tomcom_core::communication::concept::ConceptName;
@@ -25,6 +24,7 @@ use tomcom_session::shard::SimulationShard;
 use tomcom_study::analysis::kitchen_summary::plan_lengths;
 use tomcom_study::analysis::sweep_row::{ParameterSweepRow, PressErrorCounts};
 use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
+use tomcom_study::files::simulated_trials::{SimulationRequest, describe_moved, each_trial};
 
 /// Name of the results table's file in the folder of the recordings; shards have file names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";

@@ -6,7 +6,6 @@ mod gaze;
 mod inference;
 mod kitchen;
 mod measures;
-mod missed_signals;
 mod oracle;
 mod robot;
 mod scenarios;

@@ -7,12 +7,12 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::reference::ReferenceFilter;
 use tomcom_core::mind::signal_model::SignalModel;
+use tomcom_research::reference::ReferenceFilter;
 
 use super::observed::recorded;
 use super::world::distance;
-use crate::kitchen;
+use crate::files::kitchen;
 
 fn means(belief: &DirichletBelief) -> Vec<Vec<f64>> {
     belief.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect()

@@ -1,14 +1,15 @@
-//! Steadiness of offers: for how long offers stand, and whether a wizard who reads an offer and then presses `enter`
+//! Command `tomcom-research offers`: for how long offers stand, and whether a wizard who reads an offer and then presses `enter`
 //! sends the signal that was read.
 //!
 //! A simulated hand reads the screen at random moments of the trial's running time and presses `enter` 0.6 to 1.2 s
 //! later. [`offers::meant`] tells which signal the key would send; nothing is sent, so offers are measured also in
 //! recordings in which nobody could send signals.
 
+use std::path::Path;
+
 use rand::RngExt;
 use serde::Serialize;
 
-use super::offer_summary::{OfferSummary, TimedOffer};
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::{count, percent};
@@ -16,7 +17,12 @@ use tomcom_core::communication::offer::{Offer, OfferCloseReason};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::measures::median;
-use tomcom_session::{Session, offers};
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::log::LogReader;
+use tomcom_session::{Session, apply, offers};
+use tomcom_study::analysis::offer_summary::{OfferSummary, TimedOffer};
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
 
 /// Mean time between two readings of the screen by the scripted hand, in seconds.
 const BETWEEN_READINGS_S: f64 = 0.5;
@@ -38,7 +44,7 @@ pub struct OfferReadingCounts {
     pub nothing: u64,
 }
 
-/// Steadiness of offers: the output of `tomcom replay RECORDING... --offers`.
+/// Steadiness of offers: the output of `tomcom-research offers`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferSteadinessSummary {
     /// Number of recordings in which offers were measured.
@@ -234,6 +240,33 @@ fn reopenings(offers: &[TimedOffer]) -> [u64; 2] {
         reopened += u64::from(soon.any(|later| later.offer.advice.what == one.offer.advice.what));
     }
     [could_reopen, reopened]
+}
+
+/// Measures how steady the offers of recordings are. `done` is called after each recording.
+///
+/// # Errors
+/// A recording cannot be read or replayed.
+pub fn measure(recordings: &GatheredRecordings, done: impl Fn() + Sync) -> FileResult<OfferSteadinessSummary> {
+    let mut sums = OfferSteadinessSums::default();
+    for one in parallel::each(&recordings.paths, |recording| tally(recording), done) {
+        let (tally, session) = one?;
+        sums.add(tally, &session);
+    }
+    Ok(sums.summary())
+}
+
+/// Measures the steadiness of offers in one recording. Since offers depend on the session's state only, no belief
+/// estimate is computed.
+fn tally(recording: &Path) -> FileResult<(OfferSteadinessTally, Session)> {
+    let mut log = LogReader::open(recording)?;
+    let mut session = log.session();
+    let mut tally = OfferSteadinessTally::new(&session);
+    while let Some(line) = log.next_line()? {
+        tally.before(&session, line.stamped.time);
+        apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?;
+        tally.after(&session);
+    }
+    Ok((tally, session))
 }
 
 /// The steadiness of offers as text for the terminal.

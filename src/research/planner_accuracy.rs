@@ -1,4 +1,4 @@
-//! Accuracy of the planner with its limited budget of rollouts, and its speed compared with the plain reference
+//! Command `tomcom-research planner`: accuracy of the planner with its limited budget of rollouts, and its speed compared with the plain reference
 //! planner.
 //!
 //! The planner answers requests for advice after every press, as in a session. At steps spread evenly over the
@@ -6,17 +6,22 @@
 //! plain reference planner answers at a few of these steps, at default fidelity.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use serde::Serialize;
-
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
-use tomcom_core::communication::reference::{ReferenceBenefit, ReferencePlanner};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::Session;
 use tomcom_session::advisor::{AdviceRequest, Advisor};
+use tomcom_session::files::file_error::FileResult;
+use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
+use tomcom_study::gathered::GatheredRecordings;
+use tomcom_study::parallel;
+
+use crate::reference::planner::{ReferenceBenefit, ReferencePlanner};
 
 /// Factor by which the converged answer uses more rollouts than the planner in a session.
 const CONVERGED: usize = 64;
@@ -27,7 +32,7 @@ const LEAD: f64 = 0.2;
 /// The planner's error is computed only over benefits larger than this, in presses.
 const MATTERS: f64 = 0.3;
 
-/// Accuracy of the planner: the output of `tomcom replay --accuracy`. A value is null where no step contributes to it.
+/// Accuracy of the planner: the output of `tomcom-research planner`. A value is null where no step contributes to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PlannerAccuracySummary {
     /// Number of steps at which the planner was compared with its converged answer.
@@ -65,7 +70,7 @@ pub struct PlannerAccuracySummary {
 
 /// Requests for advice that the assistant gets in a recording, one request after each press.
 #[derive(Debug)]
-pub struct RecordedAdviceRequests {
+struct RecordedAdviceRequests {
     /// The recorded session before its first event.
     pub session: Session,
     /// The requests for advice, one after each press.
@@ -74,7 +79,7 @@ pub struct RecordedAdviceRequests {
 
 /// A step of a recording: one request for advice, with the benefits of signals that each planner computed for it.
 #[derive(Clone, Debug, Default)]
-pub struct ComparedAdviceRequest {
+struct ComparedAdviceRequest {
     recording: usize,
     question: usize,
     took_s: f64,
@@ -85,19 +90,12 @@ pub struct ComparedAdviceRequest {
 
 /// Compares planners on the requests for advice in recordings of one kitchen.
 #[derive(Debug)]
-pub struct PlannerComparison {
+struct PlannerComparison {
     kitchen: Arc<Kitchen>,
     asked: Vec<RecordedAdviceRequests>,
-    /// A monotonic clock of the caller, in nanoseconds.
-    clock_ns: fn() -> u64,
 }
 
 impl PlannerComparison {
-    /// A comparison on the advice requests of these recordings; `clock_ns` is a monotonic clock in nanoseconds.
-    pub fn new(kitchen: Arc<Kitchen>, asked: Vec<RecordedAdviceRequests>, clock_ns: fn() -> u64) -> PlannerComparison {
-        PlannerComparison { kitchen, asked, clock_ns }
-    }
-
     /// At most `most` steps that no planner has answered yet, spread evenly over all requests for advice.
     pub fn spread(&self, most: usize) -> Vec<ComparedAdviceRequest> {
         let all = self.asked.iter().enumerate().flat_map(|(recording, asked)| {
@@ -124,9 +122,9 @@ impl PlannerComparison {
                 benefits(advisor, question);
             }
             *answered = step.question + 1;
-            let began = (self.clock_ns)();
+            let began = Instant::now();
             step.ours = benefits(advisor, self.question(step));
-            step.took_s = self.seconds_since(began);
+            step.took_s = began.elapsed().as_secs_f64();
             done();
             if every.is_some_and(|every| index % every == 0) {
                 step.plain = Some(self.plain(step));
@@ -159,13 +157,9 @@ impl PlannerComparison {
         let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
         let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, session.seed());
         let (question, mut cost) = (self.question(step), CostToGo::new(self.kitchen.clone()));
-        let began = (self.clock_ns)();
+        let began = Instant::now();
         let worth = plain.advise(&mut cost, &question.moment());
-        (self.seconds_since(began), worth)
-    }
-
-    fn seconds_since(&self, began_ns: u64) -> f64 {
-        (self.clock_ns)().saturating_sub(began_ns) as f64 / 1e9
+        (began.elapsed().as_secs_f64(), worth)
     }
 }
 
@@ -176,7 +170,7 @@ fn benefits(advisor: &mut Advisor, question: &AdviceRequest) -> Vec<(Signal, f64
 
 /// The planner of one thread, made for the recording of the step that it answers.
 #[derive(Debug, Default)]
-pub struct ThreadPlanner {
+struct ThreadPlanner {
     /// Index of the recording, its planner, and the number of the recording's requests that the planner has answered.
     advisor: Option<(usize, Advisor, usize)>,
 }
@@ -276,6 +270,48 @@ fn figures(steps: &[ComparedAdviceRequest], prices: &[f64]) -> PlannerAccuracySu
         plan_ms: each(ours_s),
         reference_ms: each(plain_s),
     }
+}
+
+/// Numbers of steps at which the planner's accuracy is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AccuracyStepCounts {
+    /// Number of steps answered by the converged planner.
+    pub steps: usize,
+    /// Number of steps answered by the plain reference planner, a subset of `steps`.
+    pub reference_steps: usize,
+}
+
+/// Compares the planner's answers with more precise ones. `done` is called after each step that a planner has answered.
+///
+/// # Errors
+/// A recording cannot be read or replayed, or the recordings are of different kitchens.
+pub fn measure(
+    recordings: &GatheredRecordings,
+    extent: AccuracyStepCounts,
+    done: impl Fn() + Sync,
+) -> FileResult<PlannerAccuracySummary> {
+    let (mut one_kitchen, mut asked) = (SameKitchenCheck::default(), Vec::new());
+    for recording in &recordings.paths {
+        let mut replay = RecordingReplay::open(recording)?;
+        one_kitchen.admit(recording, &replay.session().kitchen)?;
+        asked.push(ask(&mut replay)?);
+    }
+    let bench = PlannerComparison { kitchen: one_kitchen.kitchen()?, asked };
+    let mut steps = bench.spread(extent.steps);
+    bench.answer(&mut steps, extent.reference_steps, &done);
+    let converge = |planner: &mut ThreadPlanner, step: &ComparedAdviceRequest| bench.converge(planner, step);
+    let steps = parallel::each_with(&steps, ThreadPlanner::default, converge, done);
+    Ok(bench.summary(&steps))
+}
+
+/// The requests for advice that the assistant gets in a recording.
+fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
+    let session = replay.log().session();
+    let mut questions = Vec::new();
+    while let Some(question) = replay.next_question()? {
+        questions.push(question);
+    }
+    Ok(RecordedAdviceRequests { session, questions })
 }
 
 /// The accuracy of the planner as text for the terminal.

@@ -11,7 +11,7 @@ use tomcom_study::analysis::fitting::{FitSettings, FitSummary, describe};
 use tomcom_study::fit::{FitTrials, fit};
 
 use super::world::{Human, World, live};
-use crate::kitchen;
+use crate::files::kitchen;
 
 /// How an experiment is done.
 struct Experiment {

@@ -14,9 +14,9 @@ use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::reference::belief_set::ParticleSet;
-use tomcom_core::mind::reference::person::Particle;
-use tomcom_core::mind::reference::reading_effect::LookTracker;
+use tomcom_research::reference::belief_set::ParticleSet;
+use tomcom_research::reference::looks::LookTracker;
+use tomcom_research::reference::person::Particle;
 
 use super::looks_at_nothing;
 

@@ -11,9 +11,9 @@ use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::reference::belief_set::ParticleSet;
-use tomcom_core::mind::reference::person::pick;
 use tomcom_core::robot::policy;
+use tomcom_research::reference::belief_set::ParticleSet;
+use tomcom_research::reference::person::pick;
 
 /// From one press to the next of each agent, and from one fixation to the next, in seconds.
 const PRESS_S: [f64; 2] = [1.2, 2.8];

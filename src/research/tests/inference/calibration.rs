@@ -9,7 +9,7 @@ use tomcom_core::kitchen::{AspectId, Kitchen, State};
 use tomcom_core::measures::detection::Calibration;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::reference::person::{draw, pick};
+use tomcom_research::reference::person::{draw, pick};
 
 use super::particles::ParticleFilter;
 use super::tiny_model;

@@ -9,7 +9,7 @@ use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::reference::belief_set::ParticleSet;
+use tomcom_research::reference::belief_set::ParticleSet;
 
 pub struct ParticleFilter {
     pub people: ParticleSet,

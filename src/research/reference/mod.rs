@@ -1,5 +1,5 @@
 //! The reference filter: inference of the human's belief implemented directly from the equations, without optimisation,
-//! for tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's
+//! for tests and benchmarks. It shares with [`tomcom_core::mind::filter`] only the parameters, the kitchen's rules, the robot's
 //! policy, the cost to go, and the accounting of known and unknown gaze time.
 //!
 //! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every
@@ -9,10 +9,9 @@
 //! linearly.
 
 pub mod belief_set;
+pub mod looks;
 pub mod person;
-pub mod plausible_looks;
-pub mod reading_effect;
-pub mod signal_reading;
+pub mod planner;
 
 use std::sync::Arc;
 
@@ -20,12 +19,12 @@ use rand::RngExt;
 
 use self::belief_set::ParticleSet;
 use self::person::Particle;
-use super::dirichlet::DirichletBelief;
-use super::model::HumanModel;
-use super::observation::{Observation, ObservedEvidence};
-use crate::base::rng::{Stream, stream};
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 
 /// The reference estimator of the human's belief without optimisations, to check the optimised filter.
 #[derive(Clone, Debug)]

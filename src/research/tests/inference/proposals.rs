@@ -6,7 +6,7 @@ use tomcom_core::kitchen::{Agent, AspectId, OrderContent};
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::{HumanModel, LookingModel};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
-use tomcom_core::mind::reference::ReferenceFilter;
+use tomcom_research::reference::ReferenceFilter;
 
 use crate::files::kitchen;
 

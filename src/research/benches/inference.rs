@@ -6,14 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tomcom::edge::files::read_kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::reference::ReferenceFilter;
+use tomcom_research::reference::ReferenceFilter;
+use tomcom_session::files::read_kitchen;
 
-#[path = "../tests/library/inference/observed.rs"]
+#[path = "../tests/inference/observed.rs"]
 mod observed;
 
 /// Recorded trials a kitchen, and presses of both agents in each.
@@ -69,7 +69,8 @@ fn observe(filter: &mut BeliefFilter, observation: &Observation, cost: &mut Cost
 
 fn main() {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
-        let kitchen = Arc::new(read_kitchen(Path::new(layout)).expect("the layout loads").kitchen);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(layout);
+        let kitchen = Arc::new(read_kitchen(&path).expect("the layout loads").kitchen);
         let (mut fast, mut same, mut plain) = (Times::default(), Times::default(), Times::default());
         for seed in 0..TRIALS {
             let observations = observed::recorded(&kitchen, 31 + seed, PRESSES);

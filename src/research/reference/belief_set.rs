@@ -5,21 +5,19 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
+use super::looks::{self, LookNeedProbabilities, LookTracker, ReferenceSignalHistory};
 use super::person::Particle;
-use super::plausible_looks::{self, LookNeedProbabilities};
-use super::reading_effect::LookTracker;
-use super::signal_reading::ReferenceSignalHistory;
-use crate::base::rng::Stream;
-use crate::base::time::SessionTime;
-use crate::gaze::GazeSample;
-use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{
+use tomcom_core::base::rng::Stream;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::GazeSample;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{
     Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
 };
-use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
-use crate::mind::gaze_presence::UnknownGazeTimer;
-use crate::mind::model::HumanModel;
-use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 /// A set of explicit beliefs (particles), with the model and state that all of them share.
 #[derive(Clone, Debug)]
@@ -138,7 +136,7 @@ impl ParticleSet {
         let looks = self.model.looking.marginalised && self.presence.display_in_view;
         if self.forgot.is_some() && looks {
             let seen = self.model.looking.capture * self.presence.unknown_share(now);
-            plausible_looks::see_changes(&self.kitchen, &self.model, &mut self.of, [self.shown, after], seen, random);
+            looks::see_changes(&self.kitchen, &self.model, &mut self.of, [self.shown, after], seen, random);
         }
     }
 
@@ -238,7 +236,7 @@ impl ParticleSet {
         self.signals.postpone(by);
         if teaches > 0.0 {
             self.unseen = None;
-            plausible_looks::asked(&self.kitchen, &self.model, &mut self.of, (asked, self.shown), teaches, random);
+            looks::asked(&self.kitchen, &self.model, &mut self.of, (asked, self.shown), teaches, random);
         }
     }
 

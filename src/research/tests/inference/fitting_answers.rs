@@ -16,7 +16,7 @@ use tomcom_study::analysis::fitting::{FitSettings, describe};
 use tomcom_study::fit::{FitTrials, fit};
 
 use super::world::{Human, World, live};
-use crate::kitchen;
+use crate::files::kitchen;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)

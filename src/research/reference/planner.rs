@@ -1,5 +1,5 @@
 //! The reference planner: planning of communication implemented directly from the equations (paper, section "Planning
-//! communication"), for tests and benchmarks. The reference planner shares with [`super::planner`] only the cost to go,
+//! communication"), for tests and benchmarks. The reference planner shares with [`tomcom_core::communication::planner`] only the cost to go,
 //! the kitchen's rules, the robot's policy and the parameters.
 //!
 //! Every rollout has an explicit belief whose components are gamma variates, updated by the human model ([`Particle`]).
@@ -10,17 +10,17 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::concept::DecisionPoint;
-use super::recommendation::aspects_told;
-use super::settings::AssistantSpec;
-use super::signal::{Signal, unavailable};
-use super::situation::RobotIntent;
-use crate::base::rng::{Stream, stream};
-use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
-use crate::mind::model::HumanModel;
-use crate::mind::reference::person::{Particle, pick, press_chances};
-use crate::robot::policy;
+use super::person::{Particle, pick, press_chances};
+use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::communication::concept::DecisionPoint;
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::communication::settings::AssistantSpec;
+use tomcom_core::communication::situation::RobotIntent;
+use tomcom_core::communication::{Signal, unavailable};
+use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
+use tomcom_core::mind::model::HumanModel;
+use tomcom_core::robot::policy;
 
 /// Estimated benefit of one signal by the reference planner.
 #[derive(Clone, Debug, PartialEq)]

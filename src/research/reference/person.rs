@@ -7,14 +7,14 @@
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
-use super::reading_effect::LocationReading;
-use crate::base::rng::Stream;
-use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
-use crate::kitchen::{OrderContent, Recipes, State};
-use crate::mind::choice_parameters::ChoiceParameters;
-use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
-use crate::robot::policy;
+use super::looks::LocationReading;
+use tomcom_core::base::rng::Stream;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
+use tomcom_core::kitchen::{OrderContent, Recipes, State};
+use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
+use tomcom_core::robot::policy;
 
 /// Share of the fallback distribution in every belief, so that an observation with probability 0 still leaves a proper
 /// distribution.

@@ -2,7 +2,6 @@
 
 mod args;
 mod choices;
-mod cohorts;
 mod command_hint;
 mod data;
 mod estimates;
@@ -81,7 +80,6 @@ pub fn main() -> ExitCode {
         CliCommand::Replay(args) => replay(&args),
         CliCommand::Review(args) => review::review(&args),
         CliCommand::List(args) => list::list(&args),
-        CliCommand::Robustness(args) => cohorts::robustness(&args),
         CliCommand::Power(args) => pools::power(&args),
         CliCommand::Arms(args) => pools::arms(&args),
         CliCommand::Simulate(args) => simulation::simulate(&args),
@@ -132,14 +130,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
-    let args = &ReplayArgs { recordings: list::each_chosen(&args.recordings)?, ..args.clone() };
-    if args.check_beliefs {
-        return estimates::check_beliefs(args);
-    }
-    let [recording] = &args.recordings[..] else {
-        let help = "one recording to replay, or several with --check-beliefs";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
-    };
+    let recording = &list::chosen(&args.recording)?;
     if args.verify {
         let found = verify::verify(recording)?;
         print(args.format, &found, || verify::describe(&found))?;

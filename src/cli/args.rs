@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
-use super::cohorts::RobustnessArgs;
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::list::ListArgs;
@@ -43,7 +42,6 @@ pub(super) enum CliCommand {
     Review(ReviewArgs),
     List(ListArgs),
     Simulate(SimulateArgs),
-    Robustness(RobustnessArgs),
     Power(PowerArgs),
     Arms(ArmsArgs),
     Study(StudyArgs),
@@ -67,33 +65,22 @@ pub(super) enum CliCommand {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs. Of a folder of
-    /// recordings, one is chosen from a list.
-    #[arg(required = true, value_name = "RECORDING")]
-    pub(super) recordings: Vec<PathBuf>,
+    /// The folder of a recording, or its events.jsonl; of a folder of recordings, one is chosen from a list.
+    pub(super) recording: PathBuf,
     /// Run the session again from the recording's header and inputs; every line must be identical.
     #[arg(long, conflicts_with = "follow")]
     pub(super) verify: bool,
-    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the
-    /// presses.
-    #[arg(long, conflicts_with_all = ["verify", "follow"])]
-    pub(super) check_beliefs: bool,
-    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, of another participant
-    /// (several: repeat the option). Without it, each half of the participants is judged with the thresholds of the
-    /// other half.
-    #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
-    pub(super) choose_on: Vec<PathBuf>,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
     /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in
     /// view: letters code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first
     /// error without a code. Codes are saved beside the log at once.
-    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "format"])]
+    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "format"])]
     pub(super) rater: Option<String>,
     /// Settle as two raters together what they coded differently: goes through these errors with both codes in view,
     /// and saves the consensus beside the log.
-    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "format"])]
+    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "format"])]
     pub(super) settle: Option<Vec<String>>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]

@@ -1,24 +1,14 @@
-//! Commands that check estimates: beliefs, net benefits of signals, parameters of the human model.
+//! The command `tomcom fit`.
 
 use std::path::Path;
 
-use super::args::{FitArgs, ReplayArgs};
+use super::args::FitArgs;
 use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
 use crate::edge::files;
-use crate::run::check_beliefs;
-use tomcom_study::analysis::{belief_check, fitting};
+use tomcom_study::analysis::fitting;
 use tomcom_study::fit;
-
-/// Runs the command `tomcom replay RECORDING... --check-beliefs`.
-pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
-    let (recordings, choose_on) = (gathered(&args.recordings)?, gathered(&args.choose_on)?);
-    let bar = progress((recordings.paths.len() + choose_on.paths.len()) as u64, "recordings");
-    let found = check_beliefs::check(&recordings, &choose_on, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || belief_check::describe(&found))
-}
 
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {

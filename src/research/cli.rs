@@ -1,7 +1,7 @@
 //! The command line of the program `tomcom-research`.
 
 use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -10,11 +10,17 @@ use miette::{MietteHandlerOpts, Report};
 use serde::Serialize;
 use tomcom_core::base::printable::printable_lines;
 use tomcom_session::files::file_error::FileError;
+use tomcom_session::files::overwrite;
+use tomcom_session::settings::ArmKind;
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::planned_trial::copies_in_words;
 
 use crate::planner_accuracy::AccuracyStepCounts;
-use crate::{offers, planner_accuracy, speed};
+use crate::robustness::battery::read_battery;
+use crate::robustness::report::{chart, describe_end, describe_row, heading, name_width};
+use crate::robustness::table::CohortRow;
+use crate::robustness::{self, RobustnessRequest};
+use crate::{beliefs, offers, planner_accuracy, speed};
 
 /// Measurements for the development of tomcom: simulations, checks of the belief estimate, accuracy and speed.
 #[derive(Debug, Parser)]
@@ -30,9 +36,83 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Robustness(RobustnessArgs),
+    Beliefs(BeliefsArgs),
     Planner(PlannerArgs),
     Speed(SpeedArgs),
     Offers(OffersArgs),
+}
+
+/// Measures estimate and assistant with cohorts of simulated people.
+///
+/// Each cohort differs from the default population. Its trials are simulated without signals and with the assistant
+/// acting by itself. Nothing is recorded. The row of a cohort is printed when it is finished; with --format json on
+/// standard error.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tomcom-research robustness sessions/people/robustness.toml --seed 9101 --choose-seed 9001 --arm timed\nMore: docs/study.md"
+)]
+struct RobustnessArgs {
+    /// Battery file, which names a session file and describes the cohorts.
+    battery: PathBuf,
+    /// Number of judged trials of each cohort, and of trials on which the thresholds of its flags are chosen; at least
+    /// 2, since intervals draw trials anew.
+    #[arg(long, default_value_t = 160, value_parser = clap::value_parser!(u64).range(2..=100_000))]
+    trials: u64,
+    /// Seed of the judged trials; by default that of the session file.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Seed of the trials on which the thresholds for flagging false beliefs are chosen; by default the seed of the
+    /// judged trials plus 1.
+    #[arg(long)]
+    choose_seed: Option<u64>,
+    /// Simulate only this cohort (several: repeat the option).
+    #[arg(long, value_name = "NAME")]
+    cohort: Vec<String>,
+    /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
+    #[arg(long, value_enum)]
+    arm: Option<ArmArg>,
+    /// Write a picture to this file (SVG).
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value = "text")]
+    format: OutputFormat,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ArmArg {
+    /// A simulated UR5 that presses the buttons, slows near the hand, and stops when it touches the hand.
+    Physics,
+    /// A timed arm: every press takes a random duration.
+    Timed,
+}
+
+impl From<ArmArg> for ArmKind {
+    fn from(arm: ArmArg) -> ArmKind {
+        match arm {
+            ArmArg::Physics => ArmKind::Physics,
+            ArmArg::Timed => ArmKind::Timed,
+        }
+    }
+}
+
+/// Compares the estimates before each press with recorded beliefs, and with the presses.
+///
+/// Beliefs are recorded of simulated participants; of people, answers to freeze probes take their place.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom-research beliefs recordings/*\nMore: docs/human-model.md")]
+struct BeliefsArgs {
+    /// Recordings of one kitchen, or folders of recordings.
+    #[arg(required = true, value_name = "RECORDING")]
+    recordings: Vec<PathBuf>,
+    /// Choose the thresholds for flagging false beliefs on this recording, of another participant (several: repeat the
+    /// option). Without it, each half of the participants is judged with the thresholds of the other half.
+    #[arg(long, value_name = "RECORDING")]
+    choose_on: Vec<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value = "text")]
+    format: OutputFormat,
 }
 
 /// Compares the planner's answers with those from 64 times as many rollouts, and with the plain reference planner.
@@ -116,6 +196,8 @@ pub fn main() -> ExitCode {
     // Lines of messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let done = match Cli::parse().command {
+        Command::Robustness(args) => robustness(&args),
+        Command::Beliefs(args) => beliefs(&args),
         Command::Planner(args) => planner(&args),
         Command::Speed(args) => speed(&args),
         Command::Offers(args) => offers(&args),
@@ -127,6 +209,61 @@ pub fn main() -> ExitCode {
     };
     eprintln!("{report:?}");
     ExitCode::from(code)
+}
+
+fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
+    if let Some(file) = &args.picture {
+        overwrite::check(file, "a picture of robustness", |head| head.starts_with(b"<svg "))
+            .map_err(|reason| FileError::unwritable(file, reason))?;
+    }
+    let mut battery = read_battery(&args.battery)?;
+    let names: Vec<String> = battery.cohorts.iter().map(|cohort| cohort.name.get_ref().clone()).collect();
+    if let Some(unknown) = args.cohort.iter().find(|name| !names.contains(name)) {
+        let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        let remedy = format!("one of the cohorts in the file: {}", quoted.join(", "));
+        return Err(wrong_argument(&args.battery, format!("--cohort \"{unknown}\""), &remedy));
+    }
+    battery.cohorts.retain(|cohort| args.cohort.is_empty() || args.cohort.contains(cohort.name.get_ref()));
+    let spec = &mut battery.session.spec;
+    spec.robot.arm = args.arm.map_or(spec.robot.arm, ArmKind::from);
+    spec.require_built().map_err(|missing| FileError::not_built(&args.battery, missing))?;
+    let seed = args.seed.unwrap_or(spec.seed);
+    let choose_seed = args.choose_seed.unwrap_or(seed.wrapping_add(1));
+    if seed == choose_seed {
+        let found = format!("--choose-seed {choose_seed}, which is also the seed of the trials that are judged");
+        return Err(wrong_argument(&args.battery, found, "another seed than --seed"));
+    }
+    let width = name_width(battery.cohorts.iter().map(|cohort| cohort.name.get_ref().as_str()));
+    let request = RobustnessRequest { battery, trials: args.trials, seed, choose_seed };
+    let bar = progress(request.all_trials(), "trials");
+    let tell = |text: &str| match args.format {
+        OutputFormat::Text => put(text),
+        OutputFormat::Json => {
+            eprint!("{}", printable_lines(text));
+            Ok(())
+        }
+    };
+    let mut told = tell(&heading(width));
+    let finished = |row: &CohortRow| {
+        if told.is_ok() {
+            told = bar.suspend(|| tell(&describe_row(row, width)));
+        }
+    };
+    let table = robustness::measure(&request, || bar.inc(1), finished);
+    bar.finish_and_clear();
+    told?;
+    if let Some(file) = &args.picture {
+        overwrite::write(file, chart(&table).as_bytes()).map_err(|reason| FileError::unwritable(file, reason))?;
+    }
+    print(args.format, &table, || describe_end(&table))
+}
+
+fn beliefs(args: &BeliefsArgs) -> Result<(), Failure> {
+    let (recordings, choose_on) = (gathered(&args.recordings)?, gathered(&args.choose_on)?);
+    let bar = progress((recordings.paths.len() + choose_on.paths.len()) as u64, "recordings");
+    let found = beliefs::check(&recordings, &choose_on, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &found, || beliefs::describe(&found))
 }
 
 fn planner(args: &PlannerArgs) -> Result<(), Failure> {
@@ -153,6 +290,11 @@ fn offers(args: &OffersArgs) -> Result<(), Failure> {
     let found = offers::measure(&recordings, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || offers::describe(&found))
+}
+
+/// The failure of a command because an argument is invalid for this file.
+fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
+    Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }
 
 /// Gathers the recordings at these paths, each trial once, and tells which are copies.

@@ -5,8 +5,10 @@
 
 #![deny(unsafe_code)]
 
+pub mod beliefs;
 pub mod cli;
 pub mod offers;
 pub mod planner_accuracy;
 pub mod reference;
+pub mod robustness;
 pub mod speed;

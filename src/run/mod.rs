@@ -1,7 +1,6 @@
 //! Shells that run sessions: they combine session, robot, participant, files and clock, which no other module combines.
 
 mod advisor_desk;
-pub mod check_beliefs;
 mod coding_desk;
 mod desk;
 pub mod error;
@@ -16,7 +15,6 @@ pub mod plan;
 pub mod recording_list;
 pub mod resume;
 pub mod review_console;
-pub mod robustness;
 pub mod seekable_replay;
 pub mod series;
 pub mod simulate;

@@ -5,6 +5,7 @@ mod files;
 mod inference;
 mod missed_signals;
 mod offers;
+mod robustness;
 
 use std::path::{Path, PathBuf};
 

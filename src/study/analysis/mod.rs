@@ -1,9 +1,6 @@
 //! Computation over sessions and recordings: judged presses and estimates, fits, comparisons and summaries. Everything
 //! in this module is a function of events that the caller passes in; files, threads and clocks belong to the caller.
-pub mod belief_check;
 pub mod bids;
-pub mod cohort_lines;
-pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;
 pub mod event_lines;

@@ -7,15 +7,15 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::likelihood::PressLogLikelihood;
-use super::trial_bootstrap::intervals;
-use super::trial_summary::TrialSummary;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::{ThresholdChoice, chosen_thresholds};
 use tomcom_core::measures::resampled_detection::DetectionScores;
 use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_study::analysis::likelihood::PressLogLikelihood;
+use tomcom_study::analysis::trial_bootstrap::intervals;
+use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
@@ -76,7 +76,7 @@ pub struct CohortRow {
     pub saved_interval: Option<[f64; 2]>,
 }
 
-/// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom robustness`.
+/// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom-research robustness`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobustnessTable {
     /// Seed of the judged trials.

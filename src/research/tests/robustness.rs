@@ -1,22 +1,20 @@
 //! The robustness table: its trials are paired, what is in memory is what a recording gives, and threads change nothing.
 
-use std::path::{Path, PathBuf};
-
-use tomcom::edge::battery_file::{CohortBattery, read_battery};
-use tomcom::edge::files::read_session;
-use tomcom::run::check_beliefs;
-use tomcom::run::robustness::{RobustnessRequest, measure};
 use tomcom_core::measures::flags::ThresholdSource;
 use tomcom_people::participant::population::Population;
-use tomcom_session::battery::CohortSpec;
+use tomcom_research::beliefs;
+use tomcom_research::robustness::battery::{CohortBattery, CohortSpec, read_battery};
+use tomcom_research::robustness::report::{chart, describe_end, describe_row, name_width};
+use tomcom_research::robustness::table::{CohortRow, RobustnessTable};
+use tomcom_research::robustness::{RobustnessRequest, measure};
+use tomcom_session::files::read_session;
+use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{ArmKind, Condition};
-use tomcom_session::shard::SimulationShard;
-use tomcom_study::analysis::cohort_lines::{describe_end, describe_row, name_width};
-use tomcom_study::analysis::cohort_table::{CohortRow, RobustnessTable};
-use tomcom_study::cohort_chart::robustness;
+use tomcom_study::analysis::trial_summary::TrialSummary;
 use tomcom_study::gathered::GatheredRecordings;
 
-use super::{folder, run};
+use crate::files::place;
+use crate::{folder, recorded};
 
 /// Judged trials of each cohort in these tests, and presses of a trial.
 const TRIALS: u64 = 3;
@@ -24,7 +22,7 @@ const PRESSES: u32 = 90;
 
 /// Two cohorts with short trials and few rollouts.
 fn battery() -> CohortBattery {
-    let mut battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("the battery");
+    let mut battery = read_battery(&place("sessions/people/robustness.toml")).expect("the battery");
     battery.cohorts.retain(|cohort| ["base", "confident wrong recipes"].contains(&cohort.name.get_ref().as_str()));
     let spec = &mut battery.session.spec;
     (spec.trial.presses, spec.robot.arm) = (PRESSES, ArmKind::Timed);
@@ -58,7 +56,7 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert!(end.contains("3 trials of seed 41"), "{end}");
     assert!(text.chars().count() <= 126, "{text}");
     assert!(one.cohorts.iter().all(|row| row.assisted.signals_per_100 > 0.0), "{text}");
-    let picture = robustness(&one);
+    let picture = chart(&one);
     assert!(picture.starts_with("<svg ") && picture.contains("ROC, recipes"), "{picture}");
     assert_eq!(picture.matches("<circle").count(), 2 * 3, "a point for each value");
 }
@@ -80,16 +78,18 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
     let row = &table(&battery, 44).cohorts[0];
     let mut files = battery.session.clone();
     files.spec.trial.condition = Condition::None;
-    let recorded = |seed: u64| -> (u64, Vec<PathBuf>) {
+    let [judged, chosen_on] = [44, 51].map(|seed| {
         files.spec.seed = seed;
-        let out = folder(&format!("robustness-{seed}"));
-        let figures = run(&files, TRIALS, SimulationShard::WHOLE, &out);
-        let related = figures.beliefs.belief_related_errors.expect("known of simulated people");
-        (related, figures.recordings.iter().map(PathBuf::from).collect())
+        let recordings = recorded(&files, TRIALS, &folder(&format!("robustness-{seed}")));
+        GatheredRecordings::find(&recordings).expect("recordings")
+    });
+    let related_of = |recording| {
+        let mut replay = RecordingReplay::open(recording).expect("a recording");
+        replay.run().expect("a recording");
+        TrialSummary::from_follower(&replay.follower).beliefs.expect("known of simulated people").related
     };
-    let gathered = |paths: &[PathBuf]| GatheredRecordings::find(paths).expect("recordings");
-    let [(related, judged), (_, chosen_on)] = [44, 51].map(recorded);
-    let check = check_beliefs::check(&gathered(&judged), &gathered(&chosen_on), || ()).expect("recordings");
+    let related: u64 = judged.paths.iter().map(|recording| related_of(recording)).sum();
+    let check = beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
     assert_eq!(row.detection, check.detection);
     assert_eq!(row.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
     assert_eq!(row.log_likelihood, check.log_likelihood);
@@ -105,13 +105,13 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
 
 #[test]
 fn the_battery_that_comes_with_the_program_has_its_cohorts() {
-    let battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("a battery");
+    let battery = read_battery(&place("sessions/people/robustness.toml")).expect("a battery");
     assert_eq!(battery.cohorts.len(), 18);
     let defaults = battery.cohorts.iter().filter(|cohort| cohort.population == Some(Population::default())).count();
     assert_eq!(defaults, 0, "a cohort names a population that is the default");
     let named = |cohort: &&CohortSpec| cohort.name.get_ref() == "as in sessions/paper.toml";
     let of_paper = battery.cohorts.iter().find(named).and_then(|cohort| cohort.population.clone());
-    let paper = read_session(Path::new("sessions/paper.toml")).expect("the paper's session").spec;
+    let paper = read_session(&place("sessions/paper.toml"), None).expect("the paper's session").spec;
     // A cohort's people have one trial each, so what trials teach is left out.
     let Population { recipes_gained, practice_kept, .. } = Population::default();
     let paper = paper.participant.population.map(|paper| Population { recipes_gained, practice_kept, ..paper });

@@ -1,27 +1,32 @@
-//! Command `tomcom robustness`: simulates the cohorts of a battery in memory, for [`tomcom_study::analysis::cohort_table`].
+//! Command `tomcom-research robustness`: simulates the cohorts of a battery in memory, for the table of robustness
+//! ([`table`]).
+
+pub mod battery;
+pub mod report;
+pub mod table;
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use crate::edge::battery_file::CohortBattery;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
-use tomcom_session::battery::CohortSpec;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
 use tomcom_session::settings::{Condition, SessionSpec};
 use tomcom_session::{Event, Session, TimestampedEvent};
-use tomcom_study::analysis::belief_check::TrialBeliefCollector;
-use tomcom_study::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
 use tomcom_study::analysis::trial_summary::TrialSummary;
 use tomcom_study::files::simulated_trials::settings_of_trial;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::parallel::WorkerPool;
 
-/// Request of `tomcom robustness`.
+use self::battery::{CohortBattery, CohortSpec};
+use self::table::{CohortRow, CohortTrials, RobustnessTable};
+use crate::beliefs::TrialBeliefCollector;
+
+/// Request of `tomcom-research robustness`.
 #[derive(Clone, Debug)]
 pub struct RobustnessRequest {
     /// The battery file (cohorts of simulated people), with the session file that it names.

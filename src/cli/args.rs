@@ -15,7 +15,6 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::run::sweep::ParameterSweepAxis;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::shard::SimulationShard;
 
@@ -112,8 +111,7 @@ pub(super) struct PlanArgs {
 /// Participants are simulated. Signals come from nobody, the assistant, or a scripted wizard.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\n          \
-                  tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid\nMore: docs/study.md"
+    after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\nMore: docs/study.md"
 )]
 pub(super) struct SimulateArgs {
     /// The session file to simulate.
@@ -128,7 +126,7 @@ pub(super) struct SimulateArgs {
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Who sends signals: by default nobody, with --sweep the assistant, with a plan as the plan says.
+    /// Who sends signals: by default nobody, with a plan as the plan says.
     #[arg(long, value_enum)]
     pub(super) condition: Option<SimulatedCondition>,
     /// Communication concept of the assistant, instead of the session file's.
@@ -137,12 +135,6 @@ pub(super) struct SimulateArgs {
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
-    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5,
-    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several settings make a grid. The assistant sends
-    /// the signals unless --condition says otherwise. With a plan, its settings apply, and every trial has another
-    /// participant.
-    #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
-    pub(super) sweep: Vec<ParameterSweepAxis>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
     /// scripted wizard reads them where the session shows recommendations; nobody else sees them.
     #[arg(long)]

@@ -9,9 +9,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use miette::{MietteHandlerOpts, Report};
 use serde::Serialize;
 use tomcom_core::base::printable::printable_lines;
+use tomcom_core::base::words::count;
+use tomcom_core::communication::concept::ConceptName;
 use tomcom_session::files::file_error::FileError;
-use tomcom_session::files::overwrite;
-use tomcom_session::settings::ArmKind;
+use tomcom_session::files::{overwrite, read_session};
+use tomcom_session::log::RecordingError;
+use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::shard::SimulationShard;
+use tomcom_study::files::simulated_trials::SimulationRequest;
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::planned_trial::copies_in_words;
 
@@ -20,7 +25,8 @@ use crate::robustness::battery::read_battery;
 use crate::robustness::report::{chart, describe_end, describe_row, heading, name_width};
 use crate::robustness::table::CohortRow;
 use crate::robustness::{self, RobustnessRequest};
-use crate::{beliefs, offers, planner_accuracy, speed};
+use crate::sweep::ParameterSweepAxis;
+use crate::{beliefs, calibrate, offers, planner_accuracy, speed, sweep};
 
 /// Measurements for the development of tomcom: simulations, checks of the belief estimate, accuracy and speed.
 #[derive(Debug, Parser)]
@@ -37,10 +43,12 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Robustness(RobustnessArgs),
+    Sweep(SweepArgs),
     Beliefs(BeliefsArgs),
     Planner(PlannerArgs),
     Speed(SpeedArgs),
     Offers(OffersArgs),
+    Calibrate(CalibrateArgs),
 }
 
 /// Measures estimate and assistant with cohorts of simulated people.
@@ -95,6 +103,66 @@ impl From<ArmArg> for ArmKind {
             ArmArg::Timed => ArmKind::Timed,
         }
     }
+}
+
+/// Simulates the same trials for every value of a setting and without signals, and prints the effects.
+///
+/// Plans are left out: every trial has another participant.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tomcom-research sweep sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid\nMore: docs/study.md"
+)]
+struct SweepArgs {
+    /// The session file to simulate.
+    session: PathBuf,
+    /// A setting with its values: cost=0.5,1.5, threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several
+    /// settings make a grid.
+    #[arg(long, value_name = "SETTING=VALUES", required = true)]
+    sweep: Vec<ParameterSweepAxis>,
+    /// Number of trials; each has its own orders and participant and does not depend on their number.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    trials: u64,
+    /// Simulate one shard of the trials, such as "2/8", the second of eight disjoint shards, for job arrays.
+    #[arg(long, value_name = "PART/PARTS", default_value = "1/1", hide_default_value = true)]
+    shard: SimulationShard,
+    /// Seed of all random numbers; by default that of the session file.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Who sends signals.
+    #[arg(long, value_enum, default_value = "assistant")]
+    condition: SenderArg,
+    /// Communication concept of the assistant, instead of the session file's.
+    #[arg(long, value_enum)]
+    concept: Option<ConceptArg>,
+    /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
+    #[arg(long, value_enum)]
+    arm: Option<ArmArg>,
+    /// Folder for the recordings, one folder per combination of values, and for the table.
+    #[arg(long, default_value = "sessions/simulated")]
+    out: PathBuf,
+    /// Output format.
+    #[arg(long, value_enum, default_value = "text")]
+    format: OutputFormat,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SenderArg {
+    /// The scripted wizard of the session sends signals.
+    Wizard,
+    /// The assistant sends signals by itself.
+    Assistant,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ConceptArg {
+    /// Signals that save more presses than they cost (ToM-Com).
+    TomCom,
+    /// Signals about sufficiently certain false beliefs (ToM).
+    Tom,
+    /// Proposals of the next good presses after an error (DEV).
+    Dev,
+    /// No signals.
+    None,
 }
 
 /// Compares the estimates before each press with recorded beliefs, and with the presses.
@@ -160,6 +228,59 @@ struct OffersArgs {
     format: OutputFormat,
 }
 
+/// Calibrates simulated participants to the rates of the paper.
+///
+/// Measures populations over whole studies, on all processors (RAYON_NUM_THREADS limits them).
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tomcom-research calibrate figures sessions/paper.toml 3001,3002\nMore: docs/simulated-participants.md"
+)]
+struct CalibrateArgs {
+    #[command(subcommand)]
+    what: Calibration,
+}
+
+#[derive(Debug, Subcommand)]
+enum Calibration {
+    /// Rates of the session's population.
+    Figures {
+        #[command(flatten)]
+        studies: StudiesArgs,
+        /// Parameters of the population to change, such as "slip = 0.01".
+        changes: Vec<String>,
+    },
+    /// Rates of the same people, who know everything and do not slip.
+    Planning {
+        #[command(flatten)]
+        studies: StudiesArgs,
+        /// Parameters of the population to change, such as "slip = 0.01".
+        changes: Vec<String>,
+    },
+    /// Draws vectors of belief parameters, and tells which agree with the paper.
+    Search {
+        #[command(flatten)]
+        studies: StudiesArgs,
+        /// Number of vectors.
+        count: u64,
+    },
+    /// Rates of each vector of a file.
+    Each {
+        #[command(flatten)]
+        studies: StudiesArgs,
+        /// File of vectors, such as sessions/people/accepted.toml.
+        file: PathBuf,
+    },
+}
+
+#[derive(Debug, Args)]
+struct StudiesArgs {
+    /// A session file with a plan.
+    session: PathBuf,
+    /// Seeds of the studies, separated by commas.
+    #[arg(required = true, value_delimiter = ',')]
+    seeds: Vec<u64>,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum OutputFormat {
     /// Text for people.
@@ -169,7 +290,7 @@ enum OutputFormat {
 }
 
 /// Failure of a command, which decides the exit code: 2 for wrong arguments or files, 1 for all else.
-enum Failure {
+pub(crate) enum Failure {
     Wrong(Report),
     Failed(Report),
     /// The program that reads the output has closed the pipe, as `head` does.
@@ -179,6 +300,15 @@ enum Failure {
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Failure {
         Failure::Wrong(Report::new(error))
+    }
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Failure {
+        match error {
+            RecordingError::File(error) => Failure::from(*error),
+            RecordingError::Recording(error) => Failure::Failed(Report::new(error)),
+        }
     }
 }
 
@@ -197,10 +327,12 @@ pub fn main() -> ExitCode {
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
     let done = match Cli::parse().command {
         Command::Robustness(args) => robustness(&args),
+        Command::Sweep(args) => sweep(args),
         Command::Beliefs(args) => beliefs(&args),
         Command::Planner(args) => planner(&args),
         Command::Speed(args) => speed(&args),
         Command::Offers(args) => offers(&args),
+        Command::Calibrate(args) => calibrate(&args),
     };
     let (code, report) = match done {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
@@ -258,6 +390,43 @@ fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     print(args.format, &table, || describe_end(&table))
 }
 
+fn sweep(args: SweepArgs) -> Result<(), Failure> {
+    let mut files = read_session(&args.session, None)?;
+    let spec = &mut files.spec;
+    let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
+    if !is_simulated || !matches!(spec.participant.gaze, GazeSource::Simulated | GazeSource::None) {
+        let found = "a session whose participant or gaze is not simulated".to_string();
+        let remedy = "kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
+        return Err(wrong_argument(&args.session, found, remedy));
+    }
+    if args.shard.of > args.trials {
+        let found = format!("--shard of {} parts, with {}", args.shard.of, count(args.trials, "trial", "trials"));
+        return Err(wrong_argument(&args.session, found, "at most as many parts as trials, so that no part is empty"));
+    }
+    (spec.plan, spec.seed) = (None, args.seed.unwrap_or(spec.seed));
+    spec.trial.condition = match args.condition {
+        SenderArg::Wizard => Condition::Wizard,
+        SenderArg::Assistant => Condition::Assistant,
+    };
+    if spec.unattended(spec.trial.condition) != spec.trial.condition {
+        let found = "--condition wizard, with a session file whose wizard is a person".to_string();
+        return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
+    }
+    spec.assistant.concept = args.concept.map_or(spec.assistant.concept, |concept| match concept {
+        ConceptArg::TomCom => ConceptName::TomCom,
+        ConceptArg::Tom => ConceptName::Tom,
+        ConceptArg::Dev => ConceptName::Dev,
+        ConceptArg::None => ConceptName::None,
+    });
+    spec.robot.arm = args.arm.map_or(spec.robot.arm, ArmKind::from);
+    spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
+    let simulation = SimulationRequest { files, trials: args.trials, shard: args.shard, out: args.out };
+    let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
+    let found = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;
+    bar.finish_and_clear();
+    print(args.format, &found, || sweep::describe(&found, &args.sweep))
+}
+
 fn beliefs(args: &BeliefsArgs) -> Result<(), Failure> {
     let (recordings, choose_on) = (gathered(&args.recordings)?, gathered(&args.choose_on)?);
     let bar = progress((recordings.paths.len() + choose_on.paths.len()) as u64, "recordings");
@@ -292,8 +461,22 @@ fn offers(args: &OffersArgs) -> Result<(), Failure> {
     print(args.format, &found, || offers::describe(&found))
 }
 
+fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
+    let (Calibration::Figures { studies, .. }
+    | Calibration::Planning { studies, .. }
+    | Calibration::Search { studies, .. }
+    | Calibration::Each { studies, .. }) = &args.what;
+    let setting = calibrate::Setting::read(&studies.session)?;
+    match &args.what {
+        Calibration::Figures { changes, .. } => setting.figures(changes, false, &studies.seeds),
+        Calibration::Planning { changes, .. } => setting.figures(changes, true, &studies.seeds),
+        Calibration::Search { count, .. } => setting.search(*count, &studies.seeds),
+        Calibration::Each { file, .. } => setting.each(file, &studies.seeds),
+    }
+}
+
 /// The failure of a command because an argument is invalid for this file.
-fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
+pub(crate) fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
     Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }
 
@@ -315,7 +498,7 @@ fn print(format: OutputFormat, found: &impl Serialize, text: impl FnOnce() -> St
     Ok(put(&text)?)
 }
 
-fn put(text: &str) -> io::Result<()> {
+pub(crate) fn put(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(printable_lines(text).as_bytes())?;
     out.flush()

@@ -6,9 +6,11 @@
 #![deny(unsafe_code)]
 
 pub mod beliefs;
+pub mod calibrate;
 pub mod cli;
 pub mod offers;
 pub mod planner_accuracy;
 pub mod reference;
 pub mod robustness;
 pub mod speed;
+pub mod sweep;

@@ -18,7 +18,6 @@ pub mod review_console;
 pub mod seekable_replay;
 pub mod series;
 pub mod simulate;
-pub mod sweep;
 pub mod train;
 mod training_shell;
 mod unfinished_recording;

@@ -1,11 +1,15 @@
 //! The commands of this crate, and the crates of the program against its plain references.
 
+mod cost_to_go;
 #[path = "../../../tests/core/files.rs"]
 mod files;
 mod inference;
 mod missed_signals;
 mod offers;
+mod oracle;
 mod robustness;
+mod states_met;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 

@@ -27,7 +27,6 @@ pub mod recording_summary;
 pub mod recording_table;
 pub mod seen_contents;
 pub mod signal_time;
-pub mod sweep_row;
 pub mod training_record;
 pub mod trial_bootstrap;
 pub mod trial_summary;

@@ -7,14 +7,13 @@ use std::time::{Duration, Instant};
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
-use tomcom::edge::files::read_kitchen;
-use tomcom::run::options::session_or_default;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, DecisionCosts, MAX_BUTTONS};
 use tomcom_core::kitchen::{Agent, AspectKind, ButtonId, Kitchen, Recipes, State};
 use tomcom_core::mind::RecordedBelief;
 use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::{read_kitchen, read_session};
 use tomcom_session::{Event, TrialPhase};
 
 /// Belief samples a press, and states a sample: the least that counts as the algorithm.
@@ -38,8 +37,9 @@ struct Moment {
 type Belief = Vec<Vec<f64>>;
 
 fn moments(layout: &str, trial: u64) -> (Arc<Kitchen>, Vec<Moment>) {
-    let kitchen = Arc::new(read_kitchen(Path::new(layout)).expect("the layout loads").kitchen);
-    let mut spec = session_or_default(None).expect("the default session").spec;
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let kitchen = Arc::new(read_kitchen(&top.join(layout)).expect("the layout loads").kitchen);
+    let mut spec = read_session(&top.join("sessions/default.toml"), None).expect("the default session").spec;
     spec.seed = 7;
     let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen.clone()));
     let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);

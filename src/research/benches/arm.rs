@@ -5,18 +5,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use nalgebra::Point3;
-use tomcom::edge::files::read_kitchen;
 use tomcom_arm::controller::ArmController;
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::hand_body::HandPose;
 use tomcom_core::kitchen::{Agent, ButtonId};
 use tomcom_core::robot::moment::ArmPhase;
+use tomcom_session::files::read_kitchen;
 
 /// So much is simulated, in seconds.
 const SIMULATED_S: f64 = 300.0;
 
 fn main() {
-    let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen;
+    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join("layouts/sushi.toml");
+    let kitchen = read_kitchen(&layout).expect("the kitchen loads").kitchen;
     let hand = HandPose { at_m: Point3::new(0.72, 0.1, 0.1), elbow_m: Point3::new(1.0, 0.1, 0.1) };
     for (what, hand) in [("alone", None), ("with a hand near", Some(hand))] {
         let mut arm = ArmController::new(&kitchen);

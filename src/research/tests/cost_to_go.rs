@@ -1,8 +1,8 @@
 //! Cost to go, searched and proven, against exact search, on states met in sessions and on states full of obstacles.
 //!
-//! Exact search takes up to seconds a state, so its results are kept in `tests/oracle/`: a line a state, with the least
+//! Exact search takes up to seconds a state, so its results are kept in `src/research/tests/oracle/`: a line a state, with the least
 //! presses for the first order and for all orders. Some of them are searched again in every run; all of them by
-//! `cargo test --release -p tomcom-core --test core cost_to_go -- --ignored`.
+//! `cargo test --release -p tomcom-research --test research cost_to_go -- --ignored`.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ fn scrambled(kitchen: &Arc<Kitchen>) -> Vec<State> {
 }
 
 fn file(kitchen: &str, sample: &str) -> String {
-    format!("tests/oracle/{kitchen}_{sample}.txt")
+    format!("src/research/tests/oracle/{kitchen}_{sample}.txt")
 }
 
 /// States with their exact costs: of the first order, and of all.

@@ -1,38 +1,28 @@
-//! Calibrates simulated participants to the rates of the paper: measures populations over whole studies, and searches for some
-//! that agree with it. docs/simulated-participants.md has the steps, the seeds and what came of them.
-//!
-//! ```sh
-//! run="cargo run --release --example calibrate_participants --"
-//! $run figures sessions/paper.toml 3001,3002          # the session's population
-//! $run planning sessions/paper.toml 3001,3002         # the same people, who know everything and do not slip
-//! $run search sessions/paper.toml 3001,3002 200 > found.toml  # vectors of belief parameters that agree with the paper
-//! $run each sessions/paper.toml 4001,4002 sessions/people/accepted.toml
-//! ```
-//!
-//! Studies run on all processors (`RAYON_NUM_THREADS` limits them). What is printed, and in which order, does not depend on their
-//! number.
+//! Command `tomcom-research calibrate`: calibrates simulated participants to the rates of the paper. Measures populations
+//! over whole studies, and searches for some that agree with it; docs/simulated-participants.md has the steps, the seeds
+//! and what came of them. What is printed, and in which order, does not depend on the number of processors.
 
 use std::convert::Infallible;
-use std::error::Error;
-use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
 use rand::RngExt;
+use serde::Deserialize;
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::layout::LayoutSpec;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::{sequences, sequences_any_aspect};
 use tomcom_people::participant::population::Population;
-use tomcom_session::SessionSpec;
 use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::file_error::{FileError, read_text};
+use tomcom_session::files::{SessionSetup, read_session};
 use tomcom_session::headless;
-use tomcom_session::plan::Study;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::parallel::WorkerPool;
+
+use crate::cli::{Failure, put};
 
 /// The belief parameters that a search varies, with the least and the largest value that it tries.
 const PARAMETERS: [(&str, f64, f64); 5] = [
@@ -147,43 +137,39 @@ impl Rates {
     }
 }
 
-/// A session file with its kitchen.
-struct Setting {
-    spec: SessionSpec,
+/// A session file with a plan, and its kitchen.
+pub(crate) struct Setting {
+    files: SessionSetup,
     kitchen: Arc<Kitchen>,
-    /// Layout and recipes, as they stand in their files.
-    texts: [String; 2],
 }
 
 impl Setting {
-    fn read(path: &Path) -> Result<Setting, Box<dyn Error>> {
-        let mut spec: SessionSpec = toml::from_str(&std::fs::read_to_string(path)?)?;
-        let layout = path.parent().unwrap_or(Path::new(".")).join(&spec.layout);
-        let text = std::fs::read_to_string(&layout)?;
-        let names: LayoutSpec = toml::from_str(&text)?;
-        let recipes = layout.parent().unwrap_or(Path::new(".")).join(names.recipes.get_ref());
-        let texts = [text, std::fs::read_to_string(recipes)?];
-        let kitchen = Arc::new(Kitchen::from_toml(&texts[0], &texts[1])?);
+    pub(crate) fn read(path: &Path) -> Result<Setting, Failure> {
+        let mut files = read_session(path, None)?;
+        if files.spec.plan.is_none() {
+            let remedy = "a session file with a [plan], like sessions/paper.toml".to_string();
+            return Err(FileError::from_finding(path, "a session without a plan".to_string(), remedy).into());
+        }
         // Nobody asks for the estimate, or for advice.
-        let inference = &mut spec.human.inference;
+        let inference = &mut files.spec.human.inference;
         (inference.beliefs, inference.states, inference.max_beliefs, inference.predictions) = (1, 1, 1, 1);
         inference.min_effective = 1.0;
-        spec.assistant.shadow = ShadowMode::Off;
-        Ok(Setting { spec, kitchen, texts })
+        files.spec.assistant.shadow = ShadowMode::Off;
+        let kitchen = Arc::new(files.kitchen.kitchen.clone());
+        Ok(Setting { files, kitchen })
     }
 
     fn population(&self) -> Population {
-        self.spec.participant.population.clone().unwrap_or_default()
+        self.files.spec.participant.population.clone().unwrap_or_default()
     }
 
     /// A whole study of this population: every participant with every condition. The caches of `kept` serve one trial
     /// after the other.
-    fn study(&self, kept: &mut KeptCost, population: &Population, seed: u64) -> Result<Rates, &'static str> {
-        let mut spec = self.spec.clone();
-        (spec.seed, spec.participant.population) = (seed, Some(population.clone()));
-        let study = Study::new(&spec, Vec::new(), None, self.texts.each_ref().map(String::as_str))
-            .ok_or("the session file has no plan")?;
+    fn study(&self, kept: &mut KeptCost, population: &Population, seed: u64) -> Rates {
+        let mut files = self.files.clone();
+        (files.spec.seed, files.spec.participant.population) = (seed, Some(population.clone()));
         let mut rates = Rates::default();
+        let Some(study) = files.study() else { return rates };
         for participant in 0..study.plan.codes().len() {
             for period in 1..=study.plan.conditions.len() as u32 {
                 let (spec, trial) = study.simulated(participant, period);
@@ -194,7 +180,7 @@ impl Setting {
                 kept.keep(&self.kitchen, engine.into_follower().cost);
             }
         }
-        Ok(rates)
+        rates
     }
 
     /// Studies with several seeds of each population, on all processors. `tell` gets each population's number and its
@@ -203,8 +189,8 @@ impl Setting {
         &self,
         populations: &[Population],
         seeds: &[u64],
-        mut tell: impl FnMut(usize, &[Rates]) -> Result<(), Box<dyn Error>>,
-    ) -> Result<(), Box<dyn Error>> {
+        mut tell: impl FnMut(usize, &[Rates]) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let workers = WorkerPool::new(KeptCost::default);
         // As many populations are simulated together as are needed to give every processor a study.
         let at_once = rayon::current_num_threads().div_ceil(seeds.len());
@@ -214,13 +200,67 @@ impl Setting {
                 block.clone().flat_map(|number| seeds.iter().map(move |&seed| (number, seed))).collect();
             let one =
                 |kept: &mut KeptCost, &(number, seed): &(usize, u64)| self.study(kept, &populations[number], seed);
-            let found = workers.each(&items, one, || ()).into_iter().collect::<Result<Vec<Rates>, _>>()?;
+            let found = workers.each(&items, one, || ());
             for (number, studies) in block.zip(found.chunks(seeds.len())) {
                 tell(number, studies)?;
             }
         }
         Ok(())
     }
+
+    /// Prints the rates of the population with some parameters changed, of each study and of all. `knowing`: of the same
+    /// people, who know everything and do not slip.
+    pub(crate) fn figures(&self, changes: &[String], knowing: bool, seeds: &[u64]) -> Result<(), Failure> {
+        let text = changes.join("\n");
+        let vector: toml::Table = text.parse().map_err(|error| wrong_parameters("the changes", &error))?;
+        let mut population = with_parameters(&self.population(), &vector)?;
+        if knowing {
+            let never =
+                ["slip", "look_alike_slip", "thoughtless"].map(|name| (name.to_string(), toml::Value::Float(NEVER)));
+            population =
+                with_parameters(&Population { all_knowing: true, ..population }, &never.into_iter().collect())?;
+        }
+        self.studies(&[population], seeds, |_, studies| {
+            for (seed, rates) in seeds.iter().zip(studies) {
+                print(&format!("seed {seed}: {}", rates.line()))?;
+            }
+            print(&format!("all: {}", together(studies).line()))
+        })
+    }
+
+    /// Draws vectors of parameters and prints them with their rates; those that do not agree with the paper as comments.
+    pub(crate) fn search(&self, count: u64, seeds: &[u64]) -> Result<(), Failure> {
+        let vectors: Vec<toml::Table> = (0..count).map(drawn).collect();
+        let own = self.population();
+        let populations = vectors.iter().map(|vector| with_parameters(&own, vector)).collect::<Result<Vec<_>, _>>()?;
+        self.studies(&populations, seeds, |number, studies| {
+            let (rates, words) = (together(studies), words(&vectors[number]));
+            let found = if rates.agrees() { "[[vector]]\n" } else { "" };
+            let told = if found.is_empty() { format!("# {}\n", words.replace('\n', ", ")) } else { words };
+            print(&format!("{found}# {number}: {}\n{told}", rates.line()))
+        })
+    }
+
+    /// Prints the rates of each vector of a file.
+    pub(crate) fn each(&self, file: &Path, seeds: &[u64]) -> Result<(), Failure> {
+        let accepted: Accepted =
+            toml::from_str(&read_text(file)?).map_err(|error| wrong_parameters(&file.display().to_string(), &error))?;
+        let own = self.population();
+        let applied = accepted.vector.iter().map(|vector| with_parameters(&own, vector));
+        let populations = applied.collect::<Result<Vec<_>, _>>()?;
+        self.studies(&populations, seeds, |_, studies| print(&together(studies).line()))
+    }
+}
+
+/// A file of vectors of parameters.
+#[derive(Deserialize)]
+struct Accepted {
+    vector: Vec<toml::Table>,
+}
+
+fn wrong_parameters(place: &str, error: &toml::de::Error) -> Failure {
+    let help = "parameters of a population, such as slip = 0.01; a file of vectors like sessions/people/accepted.toml";
+    Failure::Wrong(miette::miette!(help = help, "{place}: found {}", error.message()))
 }
 
 /// The rates over several studies.
@@ -231,22 +271,20 @@ fn together(studies: &[Rates]) -> Rates {
 }
 
 /// A population with some parameters replaced: numbers, or medians of traits.
-fn with_parameters(population: &Population, vector: &toml::Table) -> Result<Population, Box<dyn Error>> {
-    let mut table = toml::Table::try_from(population)?;
+fn with_parameters(population: &Population, vector: &toml::Table) -> Result<Population, Failure> {
+    let wrong = |error: &toml::de::Error| wrong_parameters("a population", error);
+    let mut table = toml::Table::try_from(population).map_err(|error| Failure::Failed(miette::miette!("{error}")))?;
     for (name, value) in vector {
-        match table.get_mut(name).ok_or_else(|| format!("{name}: no parameter"))? {
-            toml::Value::Table(spread) => drop(spread.insert("median".to_string(), value.clone())),
-            number => *number = value.clone(),
+        match table.get_mut(name) {
+            None => {
+                let help = "a parameter of a population, such as slip";
+                return Err(Failure::Wrong(miette::miette!(help = help, "found {name}, which is no parameter")));
+            }
+            Some(toml::Value::Table(spread)) => drop(spread.insert("median".to_string(), value.clone())),
+            Some(number) => *number = value.clone(),
         }
     }
-    Ok(table.try_into()?)
-}
-
-/// People who know everything and do not slip.
-fn knowing(population: &Population) -> Result<Population, Box<dyn Error>> {
-    let never = ["slip", "look_alike_slip", "thoughtless"].map(|name| (name.to_string(), toml::Value::Float(NEVER)));
-    let knowing = Population { all_knowing: true, ..population.clone() };
-    with_parameters(&knowing, &never.into_iter().collect())
+    table.try_into().map_err(|error| wrong(&error))
 }
 
 /// Draws a vector of belief parameters.
@@ -264,62 +302,6 @@ fn words(vector: &toml::Table) -> String {
 }
 
 /// Prints at once, also into a file, so that an interrupted search keeps what it found.
-fn print(text: &str) -> Result<(), Box<dyn Error>> {
-    let mut out = std::io::stdout();
-    writeln!(out, "{text}")?;
-    Ok(out.flush()?)
-}
-
-/// Prints the rates of one population: of each study, and of all.
-fn figures(setting: &Setting, population: Population, seeds: &[u64]) -> Result<(), Box<dyn Error>> {
-    setting.studies(&[population], seeds, |_, studies| {
-        for (seed, rates) in seeds.iter().zip(studies) {
-            print(&format!("seed {seed}: {}", rates.line()))?;
-        }
-        print(&format!("all: {}", together(studies).line()))
-    })
-}
-
-/// Prints all vectors with their rates; those that do not agree with the paper as comments.
-fn search(setting: &Setting, seeds: &[u64], count: u64) -> Result<(), Box<dyn Error>> {
-    let vectors: Vec<toml::Table> = (0..count).map(drawn).collect();
-    let own = setting.population();
-    let populations = vectors.iter().map(|vector| with_parameters(&own, vector)).collect::<Result<Vec<_>, _>>()?;
-    setting.studies(&populations, seeds, |number, studies| {
-        let (rates, words) = (together(studies), words(&vectors[number]));
-        let found = if rates.agrees() { "[[vector]]\n" } else { "" };
-        let told = if found.is_empty() { format!("# {}\n", words.replace('\n', ", ")) } else { words };
-        print(&format!("{found}# {number}: {}\n{told}", rates.line()))
-    })
-}
-
-/// Prints the rates of each vector of a file.
-fn each(setting: &Setting, seeds: &[u64], file: &str) -> Result<(), Box<dyn Error>> {
-    let accepted: toml::Table = std::fs::read_to_string(file)?.parse()?;
-    let vectors = accepted.get("vector").and_then(toml::Value::as_array).ok_or("no [[vector]]")?;
-    let own = setting.population();
-    let applied =
-        |vector: &toml::Value| with_parameters(&own, vector.as_table().ok_or("a [[vector]] that is no table")?);
-    let populations = vectors.iter().map(applied).collect::<Result<Vec<_>, _>>()?;
-    setting.studies(&populations, seeds, |_, studies| print(&together(studies).line()))
-}
-
-/// Runs the command of the arguments.
-pub fn main() -> Result<(), Box<dyn Error>> {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let [command, session, seeds, rest @ ..] = &args[..] else {
-        return Err("figures, planning, search or each; a session file; seeds such as 1,2; for search how many".into());
-    };
-    let seeds = seeds.split(',').map(str::parse).collect::<Result<Vec<u64>, _>>()?;
-    let setting = Setting::read(Path::new(session))?;
-    match (command.as_str(), rest) {
-        ("figures" | "planning", changes) => {
-            let vector: toml::Table = changes.join("\n").parse()?;
-            let population = with_parameters(&setting.population(), &vector)?;
-            figures(&setting, if command == "planning" { knowing(&population)? } else { population }, &seeds)
-        }
-        ("search", [count]) => search(&setting, &seeds, count.parse()?),
-        ("each", [file]) => each(&setting, &seeds, file),
-        _ => Err(format!("{command}: figures, planning, search or each").into()),
-    }
+fn print(text: &str) -> Result<(), Failure> {
+    Ok(put(&format!("{text}\n"))?)
 }

@@ -1,24 +1,24 @@
-//! The states of sessions on which the cost to go is held against exact search (`tests/core/cost_to_go.rs`).
+//! The states of sessions on which the cost to go is held against exact search (`cost_to_go.rs`).
 
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::run::options::session_or_default;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Kitchen, State};
 use tomcom_session::engine::SessionEngine;
+use tomcom_session::files::read_session;
 use tomcom_session::{Event, TrialPhase};
 
-use crate::kitchen;
+use crate::files::{kitchen, place, read};
 
 /// States a kitchen.
 const STATES: usize = 1000;
 
 /// Different states that simulated sessions went through, a few from every trial.
 fn met(kitchen: &Arc<Kitchen>) -> Vec<State> {
-    let mut spec = session_or_default(None).expect("the default session").spec;
+    let mut spec = read_session(&place("sessions/default.toml"), None).expect("the default session").spec;
     spec.seed = 3;
     let mut states: Vec<State> = Vec::new();
     for trial in 0.. {
@@ -50,8 +50,8 @@ fn the_states_in_the_files_are_those_that_sessions_meet() {
     for name in ["burger", "sushi"] {
         let kitchen = kitchen(name);
         let states: Vec<String> = met(&kitchen).iter().map(|state| format!("{:x}", state.bits())).collect();
-        let path = format!("tests/oracle/{name}_met.txt");
-        let text = fs::read_to_string(&path).expect("the exact costs are there");
+        let path = format!("src/research/tests/oracle/{name}_met.txt");
+        let text = read(&path);
         let lines = text.lines().filter(|line| !line.starts_with('#'));
         let listed: Vec<&str> = lines.filter_map(|line| line.split(' ').next()).collect();
         if states != listed {

@@ -1,5 +1,6 @@
 //! The commands of this crate, and the crates of the program against its plain references.
 
+mod commands;
 mod cost_to_go;
 #[path = "../../../tests/core/files.rs"]
 mod files;

@@ -1,7 +1,6 @@
 //! Everything that touches the outside of the program: files, terminal, network, clocks.
 
 pub mod ask;
-pub mod battery_file;
 pub mod clock;
 pub mod doctor;
 pub mod files;

@@ -31,7 +31,6 @@ mod readers;
 mod replay;
 mod robot_on_display;
 mod session;
-mod states_met;
 mod study;
 #[cfg(unix)]
 mod terminal_input;

@@ -5,7 +5,6 @@ mod codes;
 mod job_array;
 mod learning;
 mod pool;
-mod robustness;
 mod twins;
 mod wizard;
 

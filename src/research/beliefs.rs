@@ -41,15 +41,11 @@ const SEED: u64 = 1;
 /// How well the belief estimate agrees with beliefs and presses: the output of `tomcom-research beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
-    /// Number of recordings whose belief estimates were checked.
     pub recordings: u64,
-    /// Number of participants of these recordings.
     pub participants: u64,
-    /// Number of the human's presses in the trials.
     pub human_actions: u64,
     /// Source of what participants believed: recorded beliefs, or answers to freeze probes; null if there is neither.
     pub beliefs_from: Option<BeliefSource>,
-    /// How well the estimate of the participant's beliefs finds false ones.
     #[serde(flatten)]
     pub detection: FalseBeliefDetection,
     /// Log likelihood of the human's presses under the model, per press, in nats.
@@ -223,7 +219,6 @@ pub fn check(
 /// Trials of one kitchen whose belief estimates are checked.
 #[derive(Clone, Debug)]
 struct BeliefCheckTrials {
-    /// The kitchen that all trials share.
     kitchen: Arc<Kitchen>,
     /// The trials' presses with estimates, in the order of the recordings.
     trials: Vec<TrialBeliefs>,
@@ -251,7 +246,6 @@ fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefChe
     Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, participants, probes })
 }
 
-/// What the check takes from one recording.
 struct RecordingView {
     kitchen: Arc<Kitchen>,
     trial: TrialBeliefs,
@@ -259,7 +253,6 @@ struct RecordingView {
     probed: Option<ProbedTrial>,
 }
 
-/// The presses with estimates, and the freeze probes, of one recording.
 fn view(recording: &Path) -> FileResult<RecordingView> {
     let mut replay = RecordingReplay::open(recording)?;
     let mut probes = ProbeCollector::default();
@@ -283,7 +276,6 @@ fn view(recording: &Path) -> FileResult<RecordingView> {
     Ok(RecordingView { kitchen: session.kitchen.clone(), trial: views.trial, participant, probed })
 }
 
-/// The result of the belief check as text for the terminal.
 pub fn describe(check: &BeliefCheck) -> String {
     let number = |value: Option<f64>| decimal(value, 3);
     let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);

@@ -38,27 +38,21 @@ pub struct OfferReadingCounts {
     pub readings: u64,
     /// Number of readings after which the key meant the offer that the hand had read.
     pub as_read: u64,
-    /// Number of readings after which the key meant another offer than the one that the hand had read.
     pub something_else: u64,
-    /// Number of readings after which the key meant no offer.
     pub nothing: u64,
 }
 
 /// Steadiness of offers: the output of `tomcom-research offers`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferSteadinessSummary {
-    /// Number of recordings in which offers were measured.
     pub recordings: u64,
-    /// Statistics of offers: number, durations, and how many were used.
     pub offers: OfferSummary,
     /// Median time for which the assistant's recommendation stayed the same before it was turned into offers, in
     /// seconds; null without recommendations.
     pub raw_median_s: Option<f64>,
-    /// How often the scripted hand's key `enter` meant the offer that the hand had read.
     pub hand: OfferReadingCounts,
     /// Number of closed offers, without those that the wizard used and those that the end of the trial closed.
     pub could_reopen: u64,
-    /// Number of closed offers whose signal was offered again within 5 s.
     pub reopened: u64,
     /// Share of closed offers that reopened within 5 s; null without such offers.
     pub reopened_share: Option<f64>,
@@ -72,7 +66,6 @@ pub struct OfferSteadinessSummary {
 /// An offer that the scripted hand has read.
 #[derive(Clone, Debug)]
 struct Reading {
-    /// Session time at which the scripted hand presses the key `enter`.
     key_at: SessionTime,
     /// Sequence number of the offer that the scripted hand has read; `None` if no offer was on the screen.
     read: Option<u64>,
@@ -173,7 +166,6 @@ impl OfferSteadinessTally {
     }
 }
 
-/// Whether the recommendation gives the offered signal a net benefit of 0 or below.
 fn is_at_or_below_0(advice: &Recommendation, offer: &Offer) -> bool {
     match offer.signal() {
         Some(signal) => advice.options.iter().any(|option| option.signal == *signal && option.net <= 0.0),
@@ -181,7 +173,6 @@ fn is_at_or_below_0(advice: &Recommendation, offer: &Offer) -> bool {
     }
 }
 
-/// Statistics of offers summed over recordings.
 #[derive(Clone, Debug, Default)]
 pub struct OfferSteadinessSums {
     summary: OfferSteadinessSummary,
@@ -191,7 +182,6 @@ pub struct OfferSteadinessSums {
 }
 
 impl OfferSteadinessSums {
-    /// Adds the measurement of a recording that was read to its end.
     pub fn add(&mut self, tally: OfferSteadinessTally, session: &Session) {
         let sums = &mut self.summary;
         sums.recordings += 1;
@@ -208,7 +198,6 @@ impl OfferSteadinessSums {
         self.offers.extend(offers);
     }
 
-    /// The summary of the offers' steadiness over all added recordings.
     pub fn summary(self) -> OfferSteadinessSummary {
         let OfferSteadinessSums { summary, offers, raw_s, at_or_below_0_s } = self;
         let share = |part: f64, all: f64| (all > 0.0).then(|| part / all);
@@ -269,7 +258,6 @@ fn tally(recording: &Path) -> FileResult<(OfferSteadinessTally, Session)> {
     Ok((tally, session))
 }
 
-/// The steadiness of offers as text for the terminal.
 pub fn describe(found: &OfferSteadinessSummary) -> String {
     let seconds = |value: Option<f64>| value.map_or("-".to_string(), |s| format!("{s:.1} s"));
     let mut text = format!(

@@ -35,7 +35,6 @@ const MATTERS: f64 = 0.3;
 /// Accuracy of the planner: the output of `tomcom-research planner`. A value is null where no step contributes to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PlannerAccuracySummary {
-    /// Number of steps at which the planner was compared with its converged answer.
     pub steps: u64,
     /// Number of steps at which the best option (a signal or silence) leads by more than 0.2 presses.
     pub clear_steps: u64,
@@ -48,32 +47,25 @@ pub struct PlannerAccuracySummary {
     pub benefit_pairs: u64,
     /// Computing time of the plain reference planner divided by that of the planner, for the same steps.
     pub reference_ratio: Option<f64>,
-    /// Number of steps at which the plain reference planner answered.
     pub reference_steps: u64,
     /// Root mean square difference between the benefits of the plain reference and of the converged planner, in
     /// presses, over the signals of the steps that the reference answered.
     pub reference_rmse: Option<f64>,
     /// Part of `reference_rmse` that the reference planner's own standard errors explain, in presses.
     pub reference_error: Option<f64>,
-    /// Number of pairs of a step and a signal from which `reference_rmse` is computed.
     pub reference_pairs: u64,
     /// Number of the reference planner's steps at which the best option of the converged planner leads by more than 0.2
     /// presses.
     pub reference_clear_steps: u64,
     /// Share of the reference planner's clear steps at which it made the same decision as the converged planner.
     pub reference_same_decision: Option<f64>,
-    /// Mean computing time of the planner for a step that the reference planner answered, too, in milliseconds.
     pub plan_ms: Option<f64>,
-    /// Mean computing time of the plain reference planner for a step, in milliseconds.
     pub reference_ms: Option<f64>,
 }
 
-/// Requests for advice that the assistant gets in a recording, one request after each press.
 #[derive(Debug)]
 struct RecordedAdviceRequests {
-    /// The recorded session before its first event.
     pub session: Session,
-    /// The requests for advice, one after each press.
     pub questions: Vec<AdviceRequest>,
 }
 
@@ -275,9 +267,7 @@ fn figures(steps: &[ComparedAdviceRequest], prices: &[f64]) -> PlannerAccuracySu
 /// Numbers of steps at which the planner's accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccuracyStepCounts {
-    /// Number of steps answered by the converged planner.
     pub steps: usize,
-    /// Number of steps answered by the plain reference planner, a subset of `steps`.
     pub reference_steps: usize,
 }
 
@@ -304,7 +294,6 @@ pub fn measure(
     Ok(bench.summary(&steps))
 }
 
-/// The requests for advice that the assistant gets in a recording.
 fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
     let session = replay.log().session();
     let mut questions = Vec::new();
@@ -314,7 +303,6 @@ fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
     Ok(RecordedAdviceRequests { session, questions })
 }
 
-/// The accuracy of the planner as text for the terminal.
 pub fn describe(figures: &PlannerAccuracySummary) -> String {
     if figures.benefit_pairs == 0 {
         return format!(

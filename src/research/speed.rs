@@ -17,18 +17,13 @@ use tomcom_session::replay::RecordingReplay;
 /// recording does not need.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimingSummary {
-    /// Computing time of the belief filter for a gaze sample.
     pub gaze_us: Option<DurationPercentiles>,
-    /// Computing time of the belief filter for a press of the human or of the robot.
     pub action_us: Option<DurationPercentiles>,
-    /// Computing time of the planner for one request for advice.
     pub plan_us: Option<DurationPercentiles>,
-    /// Computing time of belief filter and planner together for one press.
     pub step_us: Option<DurationPercentiles>,
     /// Computing time of the planner where the advisor worked ahead between requests for as long as it had in the
     /// session.
     pub plan_ahead_us: Option<DurationPercentiles>,
-    /// Computing time of filter and planner together where the advisor worked ahead.
     pub step_ahead_us: Option<DurationPercentiles>,
     /// Computing time that the advisor spent on working ahead, in seconds.
     pub ahead_s: f64,
@@ -36,22 +31,15 @@ pub struct TimingSummary {
     pub decisions_computed: u64,
     /// Number of decisions of the cost to go that planning had to compute where the advisor worked ahead.
     pub decisions_computed_ahead: u64,
-    /// Duration of the recording in session time, in seconds.
     pub session_s: f64,
-    /// Duration of the replay by the computer's clock, in seconds.
     pub wall_s: f64,
 }
 
-/// Percentiles of measured computing times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DurationPercentiles {
-    /// Number of computing times that were measured.
     pub n: u64,
-    /// Median of the computing times.
     pub p50: f64,
-    /// 99th percentile of the computing times.
     pub p99: f64,
-    /// Longest of the computing times.
     pub max: f64,
 }
 
@@ -152,7 +140,6 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     })
 }
 
-/// The computing times as text for the terminal.
 pub fn describe(figures: &TimingSummary) -> String {
     let line = |what: &str, spread: Option<DurationPercentiles>| match spread {
         Some(DurationPercentiles { n, p50, p99, max }) => {

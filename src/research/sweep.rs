@@ -28,7 +28,6 @@ use tomcom_study::files::simulated_trials::{SimulationRequest, describe_moved, e
 /// Name of the results table's file in the folder of the recordings; shards have file names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";
 const PART_NAME: &str = "sweep-part";
-/// Largest number of combinations of setting values in a sweep.
 const MAX_CELLS: usize = 1000;
 
 /// A setting whose values can be swept (varied between simulations).
@@ -46,7 +45,6 @@ enum Knob {
     Gaze,
 }
 
-/// The settings that can be swept, by name.
 const KNOBS: [(&str, Knob); 7] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),
@@ -122,11 +120,9 @@ impl ParameterSweepAxis {
 /// Numbers of errors and of presses of the human in a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PressErrorCounts {
-    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Number of errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub related: Option<u64>,
-    /// Number of presses of the human.
     pub human_actions: u64,
 }
 
@@ -135,15 +131,11 @@ pub struct PressErrorCounts {
 pub struct ParameterSweepRow {
     /// Values of the varied settings, by the setting's name; empty in the row without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
-    /// Number of simulated trials with this combination of setting values.
     pub trials: u64,
-    /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
-    /// Signals per 100 presses of the human.
     pub signals_per_100: f64,
     /// Reduction of the errors per 100 presses of the human compared with no signals: mean over the same trials.
     pub spared_per_100: Option<f64>,
-    /// Standard error of the reduction `spared_per_100`.
     pub spared_error: Option<f64>,
     /// Mean number of errors in an error sequence; null without sequences.
     pub mean_sequence_length: Option<f64>,
@@ -155,12 +147,10 @@ pub struct ParameterSweepRow {
     /// Reduction of the errors per 100 presses of the human compared with the first row with signals: mean over the
     /// same trials.
     pub fewer_than_first: Option<f64>,
-    /// Standard error of the reduction `fewer_than_first`.
     pub fewer_error: Option<f64>,
     /// Reduction of the errors from false beliefs per 100 presses of the human compared with the first row with
     /// signals: mean over the same trials.
     pub related_fewer_than_first: Option<f64>,
-    /// Standard error of the reduction `related_fewer_than_first`.
     pub related_fewer_error: Option<f64>,
 }
 
@@ -225,15 +215,12 @@ type Cell = Vec<(&'static str, String)>;
 /// Table of results for every combination of values of the swept settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterSweepSummary {
-    /// Rows of the results table; the first row is without signals.
     pub rows: Vec<ParameterSweepRow>,
-    /// Path of the results table's file.
     pub table: PathText,
     /// New paths of logs that ended before the end of their header; the trials of these logs were simulated again.
     pub moved: Vec<String>,
 }
 
-/// Total number of trials in a parameter sweep.
 pub fn trials(simulation: &SimulationRequest, axes: &[ParameterSweepAxis]) -> u64 {
     let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
     (cells as u64 + 1) * simulation.own_trials().count() as u64
@@ -409,7 +396,6 @@ fn write_table(path: &Path, axes: &[ParameterSweepAxis], rows: &[ParameterSweepR
     overwrite::write(path, &bytes)
 }
 
-/// The table of the parameter sweep as text.
 pub fn describe(figures: &ParameterSweepSummary, axes: &[ParameterSweepAxis]) -> String {
     let settings: String = axes.iter().map(|axis| format!("{:>13}", axis.name)).collect();
     let mut text = describe_moved(&figures.moved);

@@ -28,7 +28,6 @@ pub struct ParticleSet {
     pub prior: DirichletBelief,
     /// Distribution that replaces a belief after an observation that was impossible under that belief.
     pub doubt: DirichletBelief,
-    /// The explicit beliefs of the set.
     pub of: Vec<Particle>,
     sight: LookTracker,
     presence: UnknownGazeTimer,
@@ -83,7 +82,6 @@ impl ParticleSet {
         self.show(now, state);
     }
 
-    /// Replaces all explicit beliefs of the set.
     pub fn replace(&mut self, people: Vec<Particle>) {
         (self.of, self.unseen) = (people, None);
     }
@@ -317,7 +315,6 @@ impl ParticleSet {
         }
     }
 
-    /// The signal leaves the display.
     fn end_signal(&mut self) {
         self.signals.end();
         self.of.iter_mut().for_each(|person| person.read_signal = false);

@@ -19,7 +19,6 @@ const ELSEWHERE: f64 = 0.1;
 /// The effect of a gaze sample at one location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocationReading {
-    /// The location that the gaze sample may read.
     pub location: LocationId,
     /// Whether the sample begins a new look, in which the location can be read again.
     pub begins: bool,
@@ -32,12 +31,9 @@ pub struct LocationReading {
     pub observation: Option<Vec<Vec<f64>>>,
 }
 
-/// A look at a location.
 #[derive(Clone, Copy, Debug, Default)]
 struct Look {
-    /// Code of the content that is displayed.
     code: u8,
-    /// Time of the last sample.
     last: SessionTime,
 }
 
@@ -296,7 +292,6 @@ impl ReferenceSignalHistory {
         self.shown = Some(ShownContent { location, aspects, since: now, noticed });
     }
 
-    /// The signal leaves the display.
     pub fn end(&mut self) {
         self.shown = None;
     }

@@ -36,11 +36,9 @@ pub struct Particle {
 /// A hypothesis of kitchen state and recipes, with its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PossibleWorld {
-    /// The content of every location.
     pub state: State,
     /// For every dish, the stack of items that is believed to be its recipe.
     pub recipes: Recipes,
-    /// Probability of the world.
     pub p: f64,
 }
 

@@ -25,11 +25,9 @@ use tomcom_core::robot::policy;
 /// Estimated benefit of one signal by the reference planner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceBenefit {
-    /// The signal whose benefit was estimated.
     pub signal: Signal,
     /// Expected saving of the signal in presses of both agents.
     pub benefit: f64,
-    /// Standard error of the benefit, in presses.
     pub standard_error: f64,
 }
 

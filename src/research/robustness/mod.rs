@@ -29,19 +29,15 @@ use crate::beliefs::TrialBeliefCollector;
 /// Request of `tomcom-research robustness`.
 #[derive(Clone, Debug)]
 pub struct RobustnessRequest {
-    /// The battery file (cohorts of simulated people), with the session file that it names.
     pub battery: CohortBattery,
     /// For each cohort, number of judged trials, and number of trials on which thresholds for flagging false beliefs
     /// are chosen.
     pub trials: u64,
-    /// Seed of the trials on which estimate and assistant are judged.
     pub seed: u64,
-    /// Seed of the trials on which the thresholds for flagging false beliefs are chosen.
     pub choose_seed: u64,
 }
 
 impl RobustnessRequest {
-    /// Total number of trials that have to be simulated.
     pub fn all_trials(&self) -> u64 {
         PARTS.len() as u64 * self.trials * self.battery.cohorts.len() as u64
     }

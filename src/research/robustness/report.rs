@@ -80,7 +80,6 @@ pub fn describe_end(table: &RobustnessTable) -> String {
 
 /// Width of a cohort's column, and of the rest of the chart, in pixels.
 const WIDTHS: [f64; 2] = [94.0, 230.0];
-/// Height of the chart, in pixels.
 const HEIGHT: f64 = 460.0;
 /// Largest number of characters in a line of a cohort's name, and of lines.
 const NAME: [usize; 2] = [13, 3];

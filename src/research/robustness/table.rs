@@ -20,14 +20,11 @@ use tomcom_study::analysis::trial_summary::TrialSummary;
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
 
-/// Simulated trials of one cohort.
 #[derive(Clone, Debug, Default)]
 pub struct CohortTrials {
     /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
     pub chosen_on: Vec<TrialBeliefs>,
-    /// The presses of the judged trials without signals.
     pub judged: Vec<TrialBeliefs>,
-    /// Summaries of the judged trials without signals.
     pub unassisted: Vec<TrialSummary>,
     /// Summaries of the judged trials, in the same order, repeated with signals that the assistant sends by itself.
     pub assisted: Vec<TrialSummary>,
@@ -36,13 +33,9 @@ pub struct CohortTrials {
 /// Rates of errors, signals and served orders of one cohort, without signals or with the assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CohortRates {
-    /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
-    /// Errors that follow from false beliefs, per 100 presses of the human.
     pub related_per_100: f64,
-    /// Signals per 100 presses of the human.
     pub signals_per_100: f64,
-    /// Orders served per minute of the trials.
     pub orders_per_minute: f64,
 }
 
@@ -50,20 +43,14 @@ pub struct CohortRates {
 /// 95 %, by a bootstrap over trials; it is null also where resamples leave its value unknown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CohortRow {
-    /// Name of the cohort in the battery file.
     pub cohort: String,
     /// Number of trials on which the estimate and the assistant are judged.
     pub trials: u64,
-    /// Rates of errors, signals and served orders in the trials without signals.
     pub unassisted: CohortRates,
-    /// How well the belief estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
     pub detection: FalseBeliefDetection,
-    /// Interval of the area under the ROC curve over the aspects that are locations.
     pub auc_locations_interval: Option<[f64; 2]>,
-    /// Interval of the area under the ROC curve over the aspects that are recipes.
     pub auc_recipes_interval: Option<[f64; 2]>,
-    /// Interval of the expected calibration error.
     pub ece_interval: Option<[f64; 2]>,
     /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
     pub log_likelihood: PressLogLikelihood,
@@ -72,18 +59,14 @@ pub struct CohortRow {
     /// Share by which the assistant lowers the rate of errors from false beliefs per press of the human; below 0 if the
     /// assistant raises the rate.
     pub saved: Option<f64>,
-    /// Interval of `saved`.
     pub saved_interval: Option<[f64; 2]>,
 }
 
 /// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom-research robustness`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobustnessTable {
-    /// Seed of the judged trials.
     pub seed: u64,
-    /// Seed of the trials on which the thresholds for flagging false beliefs were chosen.
     pub choose_seed: u64,
-    /// One entry per cohort, in the order of the battery file.
     pub cohorts: Vec<CohortRow>,
 }
 

@@ -1,6 +1,7 @@
 //! Inference of the human's belief under whatever may come. The plain reference, and exact computation: src/research.
 
 mod laws;
+mod signals;
 mod unknown_gaze;
 
 use rand::RngExt;

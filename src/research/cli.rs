@@ -3,6 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -277,8 +278,20 @@ struct StudiesArgs {
     /// A session file with a plan.
     session: PathBuf,
     /// Seeds of the studies, separated by commas.
-    #[arg(required = true, value_delimiter = ',')]
-    seeds: Vec<u64>,
+    seeds: Seeds,
+}
+
+/// One argument, since others may follow.
+#[derive(Clone, Debug)]
+struct Seeds(Vec<u64>);
+
+impl FromStr for Seeds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Seeds, String> {
+        let seeds: Result<Vec<u64>, _> = text.split(',').map(str::parse).collect();
+        seeds.map(Seeds).map_err(|error| format!("{error}: right would be whole numbers such as 1,2"))
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -468,10 +481,10 @@ fn calibrate(args: &CalibrateArgs) -> Result<(), Failure> {
     | Calibration::Each { studies, .. }) = &args.what;
     let setting = calibrate::Setting::read(&studies.session)?;
     match &args.what {
-        Calibration::Figures { changes, .. } => setting.figures(changes, false, &studies.seeds),
-        Calibration::Planning { changes, .. } => setting.figures(changes, true, &studies.seeds),
-        Calibration::Search { count, .. } => setting.search(*count, &studies.seeds),
-        Calibration::Each { file, .. } => setting.each(file, &studies.seeds),
+        Calibration::Figures { changes, .. } => setting.figures(changes, false, &studies.seeds.0),
+        Calibration::Planning { changes, .. } => setting.figures(changes, true, &studies.seeds.0),
+        Calibration::Search { count, .. } => setting.search(*count, &studies.seeds.0),
+        Calibration::Each { file, .. } => setting.each(file, &studies.seeds.0),
     }
 }
 

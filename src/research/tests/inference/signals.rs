@@ -43,8 +43,7 @@ fn a_signal_without_a_delay_is_one_event_that_is_noticed_or_not_and_may_be_misre
     }
     let projected = people.projected(&vec![1.0; people.of.len()]);
     for aspect in [AspectId::of_location(order), recipe, AspectId::of_location(place)] {
-        let [filter, reference] =
-            [filter.belief(), &projected].map(|belief| belief.p_truth(&kitchen, state, aspect));
+        let [filter, reference] = [filter.belief(), &projected].map(|belief| belief.p_truth(&kitchen, state, aspect));
         println!("{}: filter {filter:.4}, reference {reference:.4}", kitchen.aspects[aspect.index()].name);
         assert!((filter - reference).abs() < 0.015, "{filter} and {reference}");
     }

@@ -6,9 +6,9 @@ use std::path::Path;
 use crate::edge::files::read_session;
 use tomcom_session::battery::{BatterySpec, CohortSpec};
 use tomcom_session::files::SessionSetup;
+use tomcom_session::files::file_error::place_of;
 use tomcom_session::files::file_error::{FileError, FileResult, missing, read_text};
 use tomcom_session::files::parse::parse;
-use tomcom_session::files::place::place_of;
 use tomcom_session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
 /// A battery: cohorts of simulated participants, with the session settings that the cohorts share.

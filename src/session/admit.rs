@@ -1,18 +1,15 @@
 //! Preconditions of events: whether a session accepts an event now. Preconditions are checked before an input is taken,
 //! and again when an event is applied.
 
-use super::event::{Event, SignalEndReason, TrialEndReason};
-use super::phase::TrialPhase;
-use super::probe_event::ProbeEvent;
-use super::protocol::{self, ProtocolEvent};
-use super::session_state::Session;
-use super::settings::{ArmKind, Condition, ParticipantKind};
-use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, interventions, probes, tracker};
+use crate::event::{SignalEndReason, TrialEndReason};
+use crate::probes::{self, ProbeEvent};
+use crate::protocol::{self, ProtocolEvent};
+use crate::settings::{ArmKind, Condition, ParticipantKind};
+use crate::{Event, Session, TimelineEvent, TrialPhase, gaze_check, tracker};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
-use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::{Agent, ContentId, LocationKind};
 
 /// Whether the session accepts this event now (admits it).
 ///
@@ -44,7 +41,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             refuse_if(!finite, "the gaze sample is not a number")
         }
         Event::Tracker(event) => tracker::admit(event),
-        Event::Calibration(event) => accuracy_check::admit(session, event),
+        Event::Calibration(event) => gaze_check::admit(session, event),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
             session.spec.robot.arm == ArmKind::Timed,
             "the robot's arm is timed in this session: it is not \
@@ -73,7 +70,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown to the participant"),
         Event::Probe(event) => probes::admit(session, event),
         Event::Protocol(event) => protocol::admit(session, event),
-        other => interventions::admit(session, other),
+        other => admit_intervention(session, other),
     }
 }
 
@@ -135,7 +132,7 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
 }
 
 /// Whether a press of a person comes sooner after the person's previous press than the session setting `pace_s` allows.
-pub(super) fn is_too_early(session: &Session, now: SessionTime) -> bool {
+pub(crate) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     let spec = &session.spec;
     let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
         return false;
@@ -199,5 +196,68 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::OfferClosed { .. }
         | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
+    }
+}
+
+/// Whether the session accepts a manual intervention of the experimenter now.
+///
+/// # Errors
+/// Why the session refuses the event, in words for the wizard.
+pub(crate) fn admit_intervention(session: &Session, event: &Event) -> Result<(), &'static str> {
+    let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
+    let (phase, robot) = (session.phase, &session.robot);
+    match event {
+        Event::KitchenCorrected { location, content } => admit_correction(session, location, content),
+        Event::RobotHeld { by } => by_the_wizard(*by).and(refuse_if(robot.held, "the robot is held already")),
+        Event::RobotReleased { by } => by_the_wizard(*by).and(refuse_if(!robot.held, "the robot is not held")),
+        Event::RobotSkipped { by } => {
+            by_the_wizard(*by)?;
+            refuse_if(phase != TrialPhase::Running, "the robot's presses can be skipped only while the trial runs")?;
+            refuse_if(robot.intention.is_none(), "the robot is not on its way to a press")
+        }
+        Event::RobotDriven { by, .. } => {
+            by_the_wizard(*by)?;
+            refuse_if(phase != TrialPhase::Running, "the robot's press can be chosen only while the trial runs")?;
+            refuse_if(robot.stopped, "the robot is stopped: resume it first")
+        }
+        Event::TrialAborted { .. } => {
+            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "no trial runs that could be aborted")
+        }
+        Event::TrialExcluded { .. } => {
+            refuse_if(phase == TrialPhase::Ready, "no trial has begun that could be excluded")?;
+            refuse_if(session.excluded.is_some(), "the trial is excluded already")
+        }
+        Event::TrialIncluded => refuse_if(session.excluded.is_none(), "the trial is not excluded"),
+        _ => Ok(()),
+    }
+}
+
+fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
+    if by == Sender::Wizard {
+        Ok(())
+    } else {
+        Err("only the wizard can hold the robot, skip its presses and choose \
+                                                   them")
+    }
+}
+
+fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
+    if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) {
+        return Err("the kitchen can be corrected only during a trial");
+    }
+    if session.is_frozen() {
+        // The probe's questions are about the kitchen as it was when the task was frozen.
+        return Err("the kitchen can be corrected only after the freeze probe");
+    }
+    let kitchen = &session.kitchen;
+    let place = kitchen.location_named(location).ok_or("the kitchen has no location with this name")?;
+    let what = kitchen.content_named(content).ok_or("the kitchen has no content with this name")?;
+    match () {
+        () if kitchen.location(place).kind == LocationKind::Order => {
+            Err("orders are shown by the program, and cannot be corrected")
+        }
+        () if session.state.content(place) == what => Err("the program assumes this content already"),
+        () if what != ContentId::EMPTY && !kitchen.accepts(place, what) => Err("this content cannot be at this place"),
+        () => Ok(()),
     }
 }

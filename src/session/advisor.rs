@@ -1,8 +1,8 @@
 //! The assistant of a session: answers a request for advice after every press and every order change, and at the other
 //! times that the session's settings name.
 
-use super::follower::SessionFollower;
-use crate::Session;
+use crate::follower::SessionFollower;
+use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
@@ -118,4 +118,18 @@ impl Advisor {
     pub fn work_ahead(&mut self, question: &AdviceRequest, proceed: &mut dyn FnMut() -> bool) {
         self.concept.work_ahead(&mut self.cost, &question.moment(), proceed);
     }
+}
+
+/// Whether the assistant is asked for advice after an event that has just been applied: after a press of either agent,
+/// after a change of the task without a press, and while the human has not pressed for unusually long.
+pub fn leads_to_advice(session: &Session, event: &Event) -> bool {
+    let leads = matches!(
+        event,
+        Event::Press { .. }
+            | Event::OrderShown { .. }
+            | Event::OrderCleared { .. }
+            | Event::KitchenCorrected { .. }
+            | Event::HumanWaits { .. }
+    );
+    leads && session.is_running()
 }

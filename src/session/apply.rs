@@ -1,13 +1,12 @@
 //! `apply(&mut Session, &TimestampedEvent)`: the only function that changes a session, by applying one event.
 
-use super::admit::{admit, is_too_early};
-use super::event::{Event, SignalEndReason, TimestampedEvent, TrialEndReason};
-use super::gaze_samples::take_sample;
-use super::phase::TrialPhase;
-use super::session_effect::{SessionEffect, Timer};
-use super::session_state::{ServedOrder, Session, ShownSignal};
-use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, offers, probes, protocol, robot_changes, silence, trial_clock};
+use crate::admit::{admit, is_too_early};
+use crate::event::{SignalEndReason, TrialEndReason};
+use crate::gaze_samples::take_sample;
+use crate::{
+    Event, ServedOrder, Session, ShownSignal, TimelineEvent, TimestampedEvent, TrialPhase, gaze_check, offers, probes,
+    protocol,
+};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
 use tomcom_core::communication::recommendation::Recommendation;
@@ -71,7 +70,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::FocusRegained => session.note(now, TimelineEvent::Focus(true)),
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
-        Event::Calibration(event) => accuracy_check::apply(session, now, event),
+        Event::Calibration(event) => gaze_check::apply(session, now, event),
         Event::Press { agent, button, .. } => {
             let button = named.button(*agent, button)?;
             change = press(session, now, *agent, button, &mut effects);
@@ -99,12 +98,12 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             session.robot.idle = Some((*reason, waits_for));
         }
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
-            robot_changes::arm(session, now, &stamped.event);
+            change_arm(session, now, &stamped.event);
         }
-        Event::RobotStopped => robot_changes::stop(session, now, true),
-        Event::RobotResumed => robot_changes::stop(session, now, false),
-        Event::RobotHeld { .. } => robot_changes::hold(session, now, true),
-        Event::RobotReleased { .. } => robot_changes::hold(session, now, false),
+        Event::RobotStopped => stop_robot(session, now, true),
+        Event::RobotResumed => stop_robot(session, now, false),
+        Event::RobotHeld { .. } => hold_robot(session, now, true),
+        Event::RobotReleased { .. } => hold_robot(session, now, false),
         Event::RobotSkipped { .. } => {
             if let Some((button, ..)) = session.robot.intention {
                 session.note(now, TimelineEvent::RobotSkipped(button));
@@ -249,14 +248,14 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
 
 /// Sets the timer for the event that the human has still not pressed after an unusually long time.
 fn await_press(session: &Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
-    let time = now + silence::unusual(session);
+    let time = now + unusual_silence(session);
     effects.push(SessionEffect::At { time, timer: Timer::HumanWaits });
 }
 
 fn pause(session: &mut Session, now: SessionTime) {
     match session.is_frozen() {
         true => probes::pause(session, now),
-        false => trial_clock::pause(session, now),
+        false => pause_clock(session, now),
     }
     session.note(now, TimelineEvent::Trial(TrialPhase::Paused));
 }
@@ -267,12 +266,12 @@ fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffe
     if session.is_frozen() {
         return probes::resume(session, now);
     }
-    effects.push(SessionEffect::Postpone(trial_clock::resume(session, now)));
+    effects.push(SessionEffect::Postpone(resume_clock(session, now)));
     session.note(now, TimelineEvent::Trial(TrialPhase::Running));
 }
 
 fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, effects: &mut Vec<SessionEffect>) {
-    trial_clock::stop(session, now);
+    stop_clock(session, now);
     session.phase = TrialPhase::Over(reason);
     probes::trial_ends(session, now);
     session.robot.rests();
@@ -283,7 +282,7 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, ef
 }
 
 fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
-    trial_clock::stop(session, now);
+    stop_clock(session, now);
     session.phase = TrialPhase::Closed;
     probes::session_ends(session, now);
     session.robot.intention = None;
@@ -380,4 +379,140 @@ fn press(
         effects.push(SessionEffect::At { time: now, timer: Timer::EndTrialByPresses });
     }
     KitchenChange::Press { press, presses: session.presses }
+}
+
+/// An action that the running session must perform after an event. A replay performs none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SessionEffect {
+    /// Set a timer; [`SessionEffect::Postpone`] can delay it.
+    At {
+        /// Session time at which the timer is due.
+        time: SessionTime,
+        /// What happens when the timer is due.
+        timer: Timer,
+    },
+    /// Cancel a timer that has been set.
+    Cancel(Timer),
+    /// Cancel all timers, at the end of the trial.
+    CancelAll,
+    /// Postpone all timers by the length of a pause.
+    Postpone(SessionTime),
+    /// Close the recording, at the end of the session.
+    Close,
+}
+
+/// A timer of a session: what happens when it is due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Timer {
+    /// The order location stops showing `served` after a dish was served.
+    ClearOrder(LocationId),
+    /// A new order appears at this location; the running session draws the ordered dish.
+    NewOrder(LocationId),
+    /// The display time of the shown signal is over.
+    EndSignal,
+    /// The set duration of the trial is over.
+    EndTrial,
+    /// The set number of presses that ends the trial was reached.
+    EndTrialByPresses,
+    /// The set number of served orders that ends the trial was reached.
+    EndTrialByOrders,
+    /// The rules of offers have to be asked whether an offer to the wizard opens or closes.
+    ReviewOffer,
+    /// The human has still not pressed after an unusually long time.
+    HumanWaits,
+}
+
+/// Pauses the trial and stops its clock.
+pub(crate) fn pause_clock(session: &mut Session, now: SessionTime) {
+    stop_clock(session, now);
+    session.phase = TrialPhase::Paused;
+    session.gaze.measured = None;
+}
+
+/// Stops the trial's clock, if it is running.
+pub(crate) fn stop_clock(session: &mut Session, now: SessionTime) {
+    match session.phase {
+        TrialPhase::Running => session.paused_at = now,
+        TrialPhase::Ready => {
+            session.trial_start = now;
+            session.paused_at = now;
+        }
+        _ => {}
+    }
+}
+
+/// Resumes the trial; returns for how long the trial stood still, by which all pending times have to be postponed.
+pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTime {
+    let by = now - session.paused_at;
+    session.pauses.push((session.paused_at, now));
+    session.gaze.measured = None;
+    session.paused_total = session.paused_total + by;
+    session.phase = TrialPhase::Running;
+    if let Some((_, _, until)) = &mut session.robot.intention {
+        *until = *until + by;
+    }
+    if let Some(shown) = &mut session.shown {
+        shown.until = shown.until + by;
+    }
+    by
+}
+
+/// Applies an event of the simulated arm to the session's state of the robot.
+pub(crate) fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
+    match event {
+        Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
+        Event::RobotTouched { force_n } => session.note(now, TimelineEvent::ArmTouched { force_n: *force_n }),
+        Event::RobotSafety { mode, force_n, joint } => {
+            let arm = &mut session.robot.arm;
+            (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
+            // A stop by the wizard has an event of its own, so only other stops are noted here.
+            if mode.is_stopped() && !session.robot.stopped {
+                session.robot.stopped = true;
+                session.robot.idle = None;
+                session.note(now, TimelineEvent::ArmStopped { mode: *mode, force_n: *force_n, joint: *joint });
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Applies that the wizard stops the robot, or releases it.
+pub(crate) fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
+    session.robot.stopped = stopped;
+    session.robot.idle = None;
+    session.note(now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
+}
+
+/// Applies that the wizard holds the robot, or lets it continue.
+pub(crate) fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
+    session.robot.held = held;
+    session.robot.idle = None;
+    session.note(now, if held { TimelineEvent::RobotHeld } else { TimelineEvent::RobotReleased });
+}
+
+/// Number of the human's usual intervals between presses after which silence is unusual.
+const SILENT_INTERVALS: u64 = 3;
+/// Least unusual silence, in nanoseconds: 6 s, three usual intervals of the paper's participants.
+const LEAST_SILENCE: SessionTime = SessionTime(6_000_000_000);
+
+/// The time without a press after which silence is unusual: three of the human's usual intervals in this trial (the
+/// median of the intervals between counted presses, without pauses), and at least 6 s.
+pub(crate) fn unusual_silence(session: &Session) -> SessionTime {
+    let times: Vec<SessionTime> = own_presses(session).collect();
+    let mut intervals: Vec<SessionTime> = times.windows(2).map(|pair| session.age(pair[1], pair[0])).collect();
+    intervals.sort_unstable();
+    let usual = intervals.get(intervals.len() / 2).copied().unwrap_or_default();
+    SessionTime(SILENT_INTERVALS * usual.0).max(LEAST_SILENCE)
+}
+
+/// For how long the human has not pressed at `now`, without pauses; before the human's first press, the time since the
+/// trial's start.
+pub fn silence_so_far(session: &Session, now: SessionTime) -> SessionTime {
+    session.age(own_presses(session).next().unwrap_or(session.trial_start), now)
+}
+
+/// Session times of the human's counted presses, the latest first.
+fn own_presses(session: &Session) -> impl Iterator<Item = SessionTime> + '_ {
+    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
+    session.timeline.iter().rev().filter(move |entry| is_own(&entry.what)).map(|entry| entry.time)
 }

@@ -4,7 +4,8 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::settings::{Condition, GazeSource, SessionSpec};
+use crate::SessionSpec;
+use crate::settings::{Condition, GazeSource};
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::participant::population::Population;
 

@@ -14,29 +14,28 @@
 //! same code.
 
 mod agents;
-mod consequences;
-mod due_timers;
-mod informing;
-mod probing;
-mod robot;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use self::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
 use crate::admit::{admit, hygiene};
-use crate::advice_moments::leads_to_advice;
-use crate::advisor::{AdviceRequest, Advisor};
-use crate::apply::ApplyError;
+use crate::advisor::{AdviceRequest, Advisor, leads_to_advice};
+use crate::apply::{ApplyError, silence_so_far};
+use crate::engine::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
+use crate::event::{SignalEndReason, TrialEndReason};
 use crate::follower::SessionFollower;
-use crate::offers;
 use crate::orders::OrderList;
 use crate::probes::ProbeEvent;
+use crate::protocol::ProtocolEvent;
 use crate::settings::ParticipantKind;
-use crate::timers::TimerQueue;
-use crate::{AppliedEvent, Event, LogHeader, Session, SessionSpec, TimestampedEvent};
+use crate::{
+    AppliedEvent, Event, LogHeader, Session, SessionEffect, SessionSpec, Timer, TimestampedEvent, TrialPhase, offers,
+    proposals,
+};
 use tomcom_arm::worker::RobotTaskExecutor;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
@@ -362,5 +361,135 @@ impl SessionEngine {
         self.check_criterion(now);
         self.measure_calibration(now);
         Ok(())
+    }
+}
+
+impl SessionEngine {
+    /// Performs what an applied event asks of the running session.
+    pub(crate) fn perform(&mut self, effect: SessionEffect) {
+        match effect {
+            SessionEffect::At { time, timer } => self.timers.set(time, timer),
+            SessionEffect::Cancel(timer) => self.timers.cancel(timer),
+            SessionEffect::CancelAll => {
+                self.timers.cancel_all();
+                self.robot.rest();
+            }
+            SessionEffect::Postpone(by) => {
+                self.timers.postpone(by);
+                self.robot.postpone(by);
+                if let Some(participant) = &mut self.participant {
+                    participant.postpone(by);
+                }
+                if let Some(wizard) = &mut self.wizard {
+                    wizard.postpone(by);
+                }
+            }
+            SessionEffect::Close => {}
+        }
+    }
+
+    /// Records the event of the first timer, which is due.
+    pub(crate) fn fire_timer(&mut self, now: SessionTime) {
+        let Some(timer) = self.timers.take_first() else { return };
+        let kitchen = self.session().kitchen.clone();
+        let event = match timer {
+            Timer::ClearOrder(order) => Event::OrderCleared { order: kitchen.location(order).name.clone() },
+            Timer::NewOrder(order) => {
+                let dish = kitchen.dish(self.orders.draw()).name.clone();
+                Event::OrderShown { order: kitchen.location(order).name.clone(), dish }
+            }
+            Timer::EndSignal => Event::SignalEnded { reason: SignalEndReason::Elapsed },
+            Timer::EndTrial => Event::TrialEnded { reason: TrialEndReason::Time },
+            Timer::EndTrialByOrders => Event::TrialEnded { reason: TrialEndReason::Orders },
+            Timer::EndTrialByPresses => Event::TrialEnded { reason: TrialEndReason::Presses },
+            Timer::HumanWaits => Event::HumanWaits { silent_ns: silence_so_far(self.session(), now) },
+            Timer::ReviewOffer => return self.review_offer(now),
+        };
+        self.record_own(now, event);
+    }
+}
+
+impl SessionEngine {
+    /// Records at the end of a practice trial (familiarisation) whether its criterion is met.
+    pub(crate) fn check_criterion(&mut self, now: SessionTime) {
+        let session = self.session();
+        let Some((step, protocol)) = session.step() else { return };
+        let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
+        if !matches!(session.phase, TrialPhase::Over(_)) || session.aborted.is_some() {
+            return;
+        }
+        let (orders, presses) = (session.served.len() as u32, session.presses[Agent::Human.index()]);
+        let errors = self.follower.errors() as u32;
+        let met = criterion.is_met(orders, presses, errors);
+        self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
+    }
+
+    /// Removes proposed presses from the participant's display once they are out of date.
+    pub(crate) fn end_outdated_proposal(&mut self, now: SessionTime) {
+        if self.session().is_running() && proposals::is_outdated(self.session()) {
+            self.record_own(now, Event::SignalEnded { reason: SignalEndReason::Outdated });
+        }
+    }
+
+    /// Measures the gaze accuracy after the last target of a gaze accuracy check.
+    pub(crate) fn measure_calibration(&mut self, now: SessionTime) {
+        let session = self.session();
+        let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
+        if let Some(event) = event {
+            self.record_own(now, Event::Calibration(event));
+        }
+    }
+
+    /// The signal that the assistant sends because of its recommendation, if the assistant may act. An error gets one
+    /// proposal, as long as the error is the human's last press.
+    pub(crate) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
+        let is_last = |error: u64| self.judged().last().is_some_and(|press| press.seq == error);
+        let proposal =
+            advice.proposal.as_ref().filter(|one| is_last(one.error) && !proposals::was_made(self.session()));
+        let proposal = proposal.map(|one| Signal::Propose(one.presses.clone()));
+        let signal = advice.best.clone().or(proposal)?;
+        let event = Event::SignalShown { by: Sender::Assistant, signal, offer: None };
+        admit(self.session(), &event).is_ok().then_some(event)
+    }
+}
+
+/// Pending timers in the order in which they are due; timers due at once keep the order in which they were set.
+#[derive(Clone, Debug, Default)]
+pub struct TimerQueue {
+    pending: BTreeSet<(SessionTime, u64, Timer)>,
+    set_so_far: u64,
+}
+
+impl TimerQueue {
+    /// Adds a timer that is due at this session time.
+    pub fn set(&mut self, time: SessionTime, timer: Timer) {
+        self.pending.insert((time, self.set_so_far, timer));
+        self.set_so_far += 1;
+    }
+
+    /// Removes all timers of this kind from the queue.
+    pub fn cancel(&mut self, timer: Timer) {
+        self.pending.retain(|(_, _, pending)| *pending != timer);
+    }
+
+    /// Removes all timers from the queue.
+    pub fn cancel_all(&mut self) {
+        self.pending.clear();
+    }
+
+    /// Postpones all timers of the queue by a duration.
+    pub fn postpone(&mut self, by: SessionTime) {
+        let pending = std::mem::take(&mut self.pending);
+        self.pending = pending.into_iter().map(|(time, serial, timer)| (time + by, serial, timer)).collect();
+    }
+
+    /// Session time at which the next timer of the queue is due.
+    pub fn next_due(&self) -> Option<SessionTime> {
+        self.pending.first().map(|(time, _, _)| *time)
+    }
+
+    /// Removes the timer that is due next from the queue, and returns it.
+    pub fn take_first(&mut self) -> Option<Timer> {
+        self.pending.pop_first().map(|(_, _, timer)| timer)
     }
 }

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::follower::SessionFollower;
-use super::wizard_log::clock_at;
 use crate::TimelineEvent;
+use crate::follower::SessionFollower;
 use crate::history::wording;
+use crate::wizard_log::clock_at;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Agent;
 

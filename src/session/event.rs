@@ -5,13 +5,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::gaze_check::GazeCheckEvent;
-use super::preflight_check::PreflightCheck;
-use super::probe_event::ProbeEvent;
-use super::protocol_event::ProtocolEvent;
-use super::tracker::TrackerEvent;
-use super::wall_display::DisplayEvent;
-use super::wizard_screen::WizardScreenContent;
+use crate::gaze_check::GazeCheckEvent;
+use crate::preflight_checks::PreflightCheck;
+use crate::probes::ProbeEvent;
+use crate::protocol::ProtocolEvent;
+use crate::settings::WizardVisibility;
+use crate::tracker::TrackerEvent;
+use crate::wall_display::DisplayEvent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
@@ -355,4 +355,18 @@ pub enum SignalEndReason {
     /// The proposed presses are out of date: they were made, another button was pressed, or the next proposed press
     /// would have no effect.
     Outdated,
+}
+
+/// Visible content of the wizard's screen.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WizardScreenContent {
+    /// How much the wizard may see in this session.
+    pub visibility: WizardVisibility,
+    /// Size class of the screen: `small`, `medium`, `large`, or `too_small` for anything but questions.
+    pub room: String,
+    /// The names of the visible panels, from top to bottom.
+    pub panels: Vec<String>,
+    /// Name of the open dialog, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dialog: Option<String>,
 }

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use crate::SessionSpec;
+use crate::settings::{ArmKind, ParticipantKind};
+
 /// An optional part of the crate; each is a Cargo feature of this name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
@@ -84,5 +87,31 @@ impl MissingFeature {
     /// How to get a build that contains the missing part, in words.
     pub fn remedy(self) -> String {
         format!("cargo build --release --features {}, or a build with the default features", self.0.key())
+    }
+}
+
+impl SessionSpec {
+    /// Checks that this build can run the session without a console; the simulated arm is an optional part of the
+    /// build.
+    ///
+    /// # Errors
+    /// The part of the program that this build lacks.
+    pub const fn require_built(&self) -> Result<(), MissingFeature> {
+        match self.robot.arm {
+            ArmKind::Physics => Feature::Physics.require(),
+            ArmKind::Timed => Ok(()),
+        }
+    }
+
+    /// Checks that this build can run the session at the console.
+    ///
+    /// # Errors
+    /// The part of the program that this build lacks.
+    pub fn require_built_live(&self) -> Result<(), MissingFeature> {
+        self.require_built()?;
+        match self.participant.kind {
+            ParticipantKind::Display => Feature::Display.require(),
+            ParticipantKind::Keyboard | ParticipantKind::Simulated => Ok(()),
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
 //! Live sessions and replays derive these with the same code.
 
-use crate::apply::ApplyError;
+use crate::apply::{ApplyError, apply};
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
-use crate::{AppliedEvent, Event, Session, TimestampedEvent, apply};
+use crate::{AppliedEvent, Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::repeats::SignalRepeatRule;

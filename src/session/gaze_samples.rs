@@ -1,11 +1,48 @@
 //! The stream of gaze samples in a session: how a sample changes the session's state, and faults of the stream.
 
-use super::accuracy_check;
-use super::gaze_status::{GazeStatus, RateMeasurement};
-use super::session_state::Session;
+use crate::{Session, gaze_check};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::quality::{GazeFault, GazeFaultDetector};
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::LocationId;
+use tomcom_core::kitchen::state::MAX_LOCATIONS;
+
+/// State of the participant's gaze stream in a session.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GazeStatus {
+    /// Arrival time of the latest gaze sample, whether the sample was usable or not.
+    pub arrived: Option<SessionTime>,
+    /// The newest usable gaze sample that lies on the display, and its arrival time.
+    pub last: Option<(SessionTime, GazeSample)>,
+    /// Time at which the last gaze sample inside each location's area was taken: the participant's last look there.
+    pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
+    /// Locations in whose areas the latest gaze sample lies, as a bit set; empty if that sample is faulty or unusable, or
+    /// was taken while the kitchen was not on the display.
+    pub here: u32,
+    /// Number of all gaze samples; samples with low confidence or outside the display are also counted in `unusable`.
+    pub samples: u64,
+    /// Number of gaze samples with too low a confidence or outside of the display.
+    pub unusable: u64,
+    /// Detector that finds faulty gaze samples and counts them by kind.
+    pub judge: GazeFaultDetector,
+    /// Fault of the latest gaze sample.
+    pub fault: Option<GazeFault>,
+    /// Sampling rate of the gaze in Hz, measured over about a second: see [`crate::Session::gaze_hz`].
+    pub(crate) rate_hz: f64,
+    /// The present measurement of the sampling rate.
+    pub(crate) measured: Option<RateMeasurement>,
+}
+
+/// A measurement of the sampling rate, from one gaze sample on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RateMeasurement {
+    /// Arrival of the first sample.
+    pub since: SessionTime,
+    /// Time at which the first sample was taken.
+    pub first_taken: SessionTime,
+    /// Number of samples since.
+    pub samples: u32,
+}
 
 /// A gap between gaze samples of this length makes the sampling rate be measured anew, in seconds.
 const GAP_S: f64 = 0.5;
@@ -15,7 +52,7 @@ const FIRST_S: f64 = 0.05;
 
 /// Applies a gaze sample: counts it, updates the sampling rate, and records which location the participant looks at. A
 /// look counts by the time at which the sample was taken: a sample that arrives after a change may have been taken before.
-pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
+pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let status = &mut session.gaze;
     status.samples += 1;
     measure_rate(status, now, sample.taken(now));
@@ -25,7 +62,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
         return;
     }
     let taken = sample.taken(now);
-    accuracy_check::gaze(session, taken, sample);
+    gaze_check::gaze(session, taken, sample);
     let sample = session.corrected(sample);
     let status = &mut session.gaze;
     if !sample.is_on_display() || sample.confidence < MIN_CONFIDENCE {
@@ -87,9 +124,9 @@ fn measure_rate(status: &mut GazeStatus, now: SessionTime, taken: SessionTime) {
 }
 
 /// Names of kinds of faulty gaze samples.
-pub(super) const MALFORMED: &str = "malformed";
-pub(super) const TOO_FREQUENT: &str = "too frequent";
-pub(super) const DUPLICATE: &str = "duplicate";
+pub(crate) const MALFORMED: &str = "malformed";
+pub(crate) const TOO_FREQUENT: &str = "too frequent";
+pub(crate) const DUPLICATE: &str = "duplicate";
 
 /// Kinds of faulty gaze samples that have occurred so far, each with its number of samples.
 pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {

@@ -4,11 +4,9 @@
 //! of an offer that `due` returns; a replay applies the recorded events. Ages of offers are measured on the trial's
 //! clock, so offers do not grow older in a pause.
 
-use super::admit::{admit, hygiene};
-use super::event::Event;
-use super::phase::TrialPhase;
-use super::session_state::Session;
-use super::settings::{Condition, WizardVisibility};
+use crate::admit::{admit, hygiene};
+use crate::settings::{Condition, WizardVisibility};
+use crate::{Event, Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{
     GAP, HOLD, Offer, OfferCloseReason, OfferCloseThresholds, OfferKeyKind, OfferUse, OfferWorth, OfferedAdvice,

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::settings::SessionSpec;
+use crate::SessionSpec;
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::kitchen::DishId;
 

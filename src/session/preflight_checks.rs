@@ -1,17 +1,62 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
-use super::condition::Condition;
-use super::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
-use super::lsl_settings::LslGazeSpec;
-use super::participant_settings::{GazeSource, ParticipantKind};
-pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
-use super::session_state::Session;
-use super::tracker::TrackerConnection;
+use serde::{Deserialize, Serialize};
+
+use crate::Session;
+use crate::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
+use crate::settings::{Condition, GazeSource, ParticipantKind};
+use crate::stream_settings::LslGazeSpec;
+use crate::tracker::TrackerConnection;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::mind::model::HumanModel;
+
+/// Verdict of a preflight check (a check before a trial).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PreflightVerdict {
+    /// The preflight check found nothing wrong.
+    Ok,
+    /// The checked part (such as the eye tracker) is usable with limitations.
+    Warning,
+    /// The checked part (such as the eye tracker) is not usable.
+    Failed,
+}
+
+/// Result of a preflight check before a trial or a session.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PreflightCheck {
+    /// What the preflight check is about: "display", "disk".
+    pub name: String,
+    /// The verdict of the preflight check.
+    pub verdict: PreflightVerdict,
+    /// What the preflight check found, in words.
+    pub found: String,
+    /// What the wizard can do about the finding; `None` if the verdict is ok.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<String>,
+}
+
+impl PreflightCheck {
+    /// A preflight check with its result; a check with the verdict ok gets no remedy.
+    pub fn new(
+        name: &str,
+        verdict: PreflightVerdict,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> PreflightCheck {
+        let remedy = (verdict != PreflightVerdict::Ok).then(|| remedy.into());
+        PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
+    }
+
+    /// A preflight check with the verdict ok and this finding.
+    pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
+        PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
+    }
+}
 
 /// Sampling rate of the gaze below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;

@@ -13,9 +13,8 @@
 
 use rand::RngExt;
 
-use super::probe_event::{ProbeQuestion, ProbeSubject};
-use super::probe_settings::ProbeSpec;
-use super::session_state::Session;
+use crate::Session;
+use crate::probes::{ProbeQuestion, ProbeSpec, ProbeSubject};
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
 

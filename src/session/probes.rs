@@ -4,18 +4,471 @@
 //! the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which stands
 //! still while the wizard pauses the probe.
 
-use super::event::{Event, TimestampedEvent};
-use super::phase::TrialPhase;
-pub use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use super::probe_sampling;
-pub use super::probe_schedule::{ScheduledProbe, of_trial};
-use super::probe_schedule::{draw, requested_uses_estimate};
-use super::probe_settings::ProbeSpec;
-pub use super::probe_state::{ProbeAnswer, StartedProbe, TrialProbes, WaitingProbe};
-use super::session_state::Session;
-use super::timeline_entry::TimelineEvent;
-use super::trial_clock;
+use rand::RngExt;
+use serde::{Deserialize, Serialize};
+
+use crate::apply::{pause_clock, resume_clock};
+use crate::settings::SettingError;
+use crate::wall_display::AnswerDevice;
+use crate::{Event, Session, SessionSpec, TimelineEvent, TimestampedEvent, TrialPhase, probe_sampling};
+use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Kitchen;
+
+/// Settings of freeze probes: how often the task stands still for questions about the participant's beliefs. A session
+/// file without these settings has no freeze probes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ProbeSpec {
+    /// Number of freeze probes that are scheduled in a trial.
+    pub per_trial: u32,
+    /// Least time before the first freeze probe and between two probes, in seconds of the trial's clock.
+    pub apart_s: f64,
+    /// Time after a signal or a freeze probe in which no freeze probe begins, in seconds of the trial's clock.
+    pub after_signal_s: f64,
+    /// Longest time for which a freeze probe waits while it may not begin, in seconds of the trial's clock; afterwards
+    /// the probe is cancelled.
+    pub wait_s: f64,
+    /// Time limit for all questions of a freeze probe, in seconds.
+    pub limit_s: f64,
+    /// Duration of the count-down after a freeze probe before the task continues, in seconds.
+    pub count_down_s: f64,
+    /// The least number of questions in a freeze probe.
+    pub least_questions: u32,
+    /// The largest number of questions in a freeze probe.
+    pub most_questions: u32,
+    /// Share of blind probes in a trial, whose questions are chosen without the belief estimate.
+    pub blind_share: f64,
+    /// The least inclusion probability of any question in a freeze probe.
+    pub least_inclusion: f64,
+    /// Probability that the participant looks at a place because a probe's question was about that place; the belief
+    /// filter uses this probability.
+    pub teaches: f64,
+    /// Whether the participant also reports the confidence in each answer.
+    pub confidence: bool,
+    /// Whether a freeze probe can also ask what happens next (level 2 of situation awareness).
+    pub level_2: bool,
+    /// Names of locations, and recipes as "recipe of DISH", about which freeze probes ask no questions.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub leave_out: Vec<String>,
+}
+
+impl Default for ProbeSpec {
+    fn default() -> Self {
+        ProbeSpec {
+            per_trial: 4,
+            apart_s: 60.0,
+            after_signal_s: 10.0,
+            wait_s: 15.0,
+            limit_s: 25.0,
+            count_down_s: 3.0,
+            least_questions: 2,
+            most_questions: 4,
+            blind_share: 0.5,
+            least_inclusion: 0.05,
+            teaches: 0.0,
+            confidence: false,
+            level_2: false,
+            leave_out: Vec::new(),
+        }
+    }
+}
+
+impl ProbeSpec {
+    /// Checks that the settings of freeze probes fit each other and a trial of this duration.
+    ///
+    /// # Errors
+    /// The first setting of freeze probes that does not fit.
+    pub(crate) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
+        let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
+        if least_questions > most_questions {
+            let found = format!("least_questions = {least_questions}, and most_questions = {most_questions}");
+            return Err(SettingError::new("probes.least_questions", found, "no more than most_questions"));
+        }
+        let needs_s = f64::from(per_trial) * apart_s + wait_s;
+        if per_trial > 0 && needs_s > trial_s {
+            let found = format!(
+                "per_trial = {per_trial}, which takes {needs_s} s with apart_s = {apart_s} and wait_s = {wait_s}, in a trial of \
+                 {trial_s} s"
+            );
+            let remedy = "fewer probes, a smaller apart_s under [probes], or more seconds under [trial]";
+            return Err(SettingError::new("probes.per_trial", found, remedy));
+        }
+        Ok(())
+    }
+
+    /// Checks that the kitchen has what the probe settings name, and enough state aspects for the questions.
+    ///
+    /// # Errors
+    /// The first setting of freeze probes that does not fit the kitchen.
+    pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
+        let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
+        if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
+            let found = format!("leave_out = \"{name}\", which the kitchen does not have");
+            let remedy = "names of the layout's locations, or \"recipe of DISH\"";
+            return Err(SettingError::new("probes.leave_out", found, remedy));
+        }
+        let asked = kitchen.aspects.iter().filter(|aspect| self.asks_about(&aspect.name, aspect.labels.len())).count();
+        if (self.most_questions as usize) > asked {
+            let found =
+                format!("most_questions = {}, and {asked} locations and recipes to ask about", self.most_questions);
+            return Err(SettingError::new("probes.most_questions", found, "no more questions than that"));
+        }
+        if self.least_inclusion * asked as f64 > f64::from(self.least_questions) {
+            let found = format!(
+                "least_inclusion = {} for each of {asked} locations and recipes, in probes with least_questions = {}",
+                self.least_inclusion, self.least_questions
+            );
+            let remedy = format!("at most {:.3}, or more questions", f64::from(self.least_questions) / asked as f64);
+            return Err(SettingError::new("probes.least_inclusion", found, remedy));
+        }
+        Ok(())
+    }
+
+    /// Whether probes can ask about the state aspect with this name and number of possible values.
+    pub fn asks_about(&self, aspect: &str, values: usize) -> bool {
+        values > 1 && !self.leave_out.iter().any(|name| name == aspect)
+    }
+}
+
+/// An event of a freeze probe. Probes have numbers from 1 within a trial, scheduled and requested ones together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "did", rename_all = "snake_case")]
+pub enum ProbeEvent {
+    /// The wizard requests a freeze probe.
+    Requested,
+    /// A freeze probe is due but may not begin yet; it waits.
+    Delayed {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// Why the freeze probe has to wait.
+        reason: ProbeDelayReason,
+    },
+    /// A freeze probe has waited for the longest allowed time, and is cancelled.
+    Dropped {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// Why the cancelled freeze probe still had to wait at the end.
+        reason: ProbeDelayReason,
+    },
+    /// A freeze probe begins: the task stands still from now on. All questions of the probe are drawn.
+    Begun {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// Whether the schedule or the wizard caused the freeze probe.
+        origin: ProbeOrigin,
+        /// Whether the belief estimate influenced the choice of the probe's questions.
+        uses_estimate: bool,
+        /// The questions of the freeze probe, in the order in which they are asked.
+        questions: Vec<ProbeQuestion>,
+    },
+    /// A question of the freeze probe is shown.
+    Asked {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// Number of the question in the freeze probe, from 1.
+        question: u32,
+    },
+    /// The participant answers the shown question of the freeze probe.
+    Answered {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// Number of the question in the freeze probe, from 1.
+        question: u32,
+        /// The answer that the participant chose among the question's choices; `None`: "I don't know".
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        answer: Option<String>,
+        /// The participant's confidence in the answer, from 1 to 3, if it was asked for.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        confidence: Option<u8>,
+        /// Where the answer to the probe was entered: on the display or at the console.
+        on: AnswerDevice,
+    },
+    /// The wizard skips the remaining questions of the freeze probe.
+    Skipped {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// The wizard's reason for skipping the remaining questions.
+        reason: String,
+    },
+    /// No more questions of the freeze probe are asked: the count-down to the task begins, unless the trial is over.
+    Closed {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+        /// Why no more questions of the freeze probe are asked.
+        reason: ProbeEndReason,
+    },
+    /// The freeze probe ends, and the task continues.
+    Ended {
+        /// Number of the freeze probe within the trial, counted from 1.
+        probe: u32,
+    },
+}
+
+/// A question of a freeze probe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProbeQuestion {
+    /// What the question of the freeze probe is about.
+    pub about: ProbeSubject,
+    /// Possible answers to the probe's question, by their names in the log, in the order in which they are shown.
+    pub choices: Vec<String>,
+    /// Inclusion probability: the probability with which this question was drawn for the probe, given the settings, the
+    /// session so far, and the number of questions.
+    pub inclusion: f64,
+}
+
+/// What a question of a freeze probe is about.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(tag = "asks", rename_all = "snake_case")]
+pub enum ProbeSubject {
+    /// The question is about the content of a location.
+    Location {
+        /// Name of the location that the question is about.
+        location: String,
+    },
+    /// The question is about the recipe of a dish.
+    Recipe {
+        /// Name of the dish that the question is about.
+        dish: String,
+    },
+    /// The question is about the order that will be served next.
+    NextOrder,
+    /// The question is about the robot's next press.
+    NextPress,
+}
+
+/// Why a freeze probe that is due cannot begin yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeDelayReason {
+    /// The freeze probe waits because a signal was shown a short time before.
+    Signal,
+    /// The freeze probe waits because another freeze probe ended a short time before.
+    Probe,
+}
+
+impl ProbeDelayReason {
+    /// The reason for the freeze probe's delay in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            ProbeDelayReason::Signal => "a signal was shown just before",
+            ProbeDelayReason::Probe => "another probe ended just before",
+        }
+    }
+}
+
+/// What caused a freeze probe: the schedule or the wizard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeOrigin {
+    /// The freeze probe comes from the schedule, which was drawn before the trial.
+    Schedule,
+    /// The freeze probe comes from a request of the wizard.
+    Wizard,
+}
+
+impl ProbeOrigin {
+    /// Name of the freeze probe's origin in logs.
+    pub fn name(self) -> &'static str {
+        match self {
+            ProbeOrigin::Schedule => "schedule",
+            ProbeOrigin::Wizard => "wizard",
+        }
+    }
+}
+
+/// Why a freeze probe asks no more questions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeEndReason {
+    /// All questions of the probe are answered.
+    Answered,
+    /// The time limit of the probe was reached.
+    TimeOver,
+    /// The wizard skipped the remaining questions.
+    Skipped,
+    /// The trial ended during the probe.
+    TrialEnded,
+}
+
+impl ProbeEndReason {
+    /// Name of the reason for which no more questions are asked, in logs.
+    pub fn name(self) -> &'static str {
+        match self {
+            ProbeEndReason::Answered => "answered",
+            ProbeEndReason::TimeOver => "time_over",
+            ProbeEndReason::Skipped => "skipped",
+            ProbeEndReason::TrialEnded => "trial_ended",
+        }
+    }
+
+    /// The reason for the end of the questions in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            ProbeEndReason::Answered => "all questions of the probe are answered",
+            ProbeEndReason::TimeOver => "the probe's time is over",
+            ProbeEndReason::Skipped => "the wizard skipped the other questions",
+            ProbeEndReason::TrialEnded => "the trial is over",
+        }
+    }
+}
+
+/// All freeze probes of a trial: the present one, past ones, and the schedule.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrialProbes {
+    /// The freeze probe for which the task stands still now, from its event `begun` to its event `ended`.
+    pub open: Option<StartedProbe>,
+    /// The freeze probes that have ended.
+    pub over: Vec<StartedProbe>,
+    /// A freeze probe that is due and has not begun.
+    pub waiting: Option<WaitingProbe>,
+    /// Numbers of the cancelled freeze probes, each with the reason for which the probe had to wait.
+    pub dropped: Vec<(u32, ProbeDelayReason)>,
+    /// The scheduled freeze probes of the trial, whose times were drawn at its start.
+    pub schedule: Vec<ScheduledProbe>,
+    /// Number of scheduled freeze probes that have become due.
+    pub came_due: usize,
+    /// The highest number of a freeze probe so far.
+    pub numbered: u32,
+    /// Session time at which the last signal was shown.
+    pub signalled_at: Option<SessionTime>,
+    /// Session time at which the last freeze probe ended.
+    pub ended_at: Option<SessionTime>,
+}
+
+/// A freeze probe that is due and has not begun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaitingProbe {
+    /// Number of the freeze probe within the trial, counted from 1.
+    pub number: u32,
+    /// Whether the schedule or the wizard caused the probe.
+    pub origin: ProbeOrigin,
+    /// Whether the belief estimate influences the choice of the probe's questions.
+    pub uses_estimate: bool,
+    /// Time at which the probe became due, on the trial's clock.
+    pub since: SessionTime,
+    /// Why the freeze probe has to wait, once its delay is recorded.
+    pub reason: Option<ProbeDelayReason>,
+}
+
+/// A freeze probe that has begun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartedProbe {
+    /// Number of the freeze probe within the trial, counted from 1.
+    pub number: u32,
+    /// Whether the schedule or the wizard caused the probe.
+    pub origin: ProbeOrigin,
+    /// Whether the belief estimate influenced the choice of the probe's questions.
+    pub uses_estimate: bool,
+    /// The questions of the freeze probe.
+    pub questions: Vec<ProbeQuestion>,
+    /// Index of the probe's question that is shown now.
+    pub shown: Option<usize>,
+    /// The participant's answers so far, one for each question of the probe.
+    pub answers: Vec<Option<ProbeAnswer>>,
+    /// Session time at which the task was frozen.
+    pub begun: SessionTime,
+    /// Session time at which the shown question appeared.
+    pub asked_at: SessionTime,
+    /// The wizard's reason for skipping the remaining questions, if the wizard did.
+    pub skipped: Option<String>,
+    /// Why and when the questions of the freeze probe ended.
+    pub closed: Option<(ProbeEndReason, SessionTime)>,
+    /// Session time at which the wizard paused the freeze probe, if the probe is paused.
+    pub paused_since: Option<SessionTime>,
+    /// Session times of start and end of each finished pause of the freeze probe.
+    pub pauses: Vec<(SessionTime, SessionTime)>,
+}
+
+/// The participant's answer to a question of a freeze probe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeAnswer {
+    /// The answer that the participant chose; `None`: "I don't know".
+    pub answer: Option<String>,
+    /// The participant's confidence in the answer, from 1 to 3.
+    pub confidence: Option<u8>,
+    /// Response time: from the appearance of the question to the answer, without pauses.
+    pub took: SessionTime,
+    /// Where the answer was entered: on the display or at the console.
+    pub on: AnswerDevice,
+}
+
+impl StartedProbe {
+    /// Whether the wizard paused the freeze probe.
+    pub fn is_paused(&self) -> bool {
+        self.paused_since.is_some()
+    }
+
+    /// The probe's shown question, which waits for an answer, with its index.
+    pub fn question(&self) -> Option<(usize, &ProbeQuestion)> {
+        let shown = self.shown.filter(|&shown| self.closed.is_none() && self.answers[shown].is_none())?;
+        Some((shown, &self.questions[shown]))
+    }
+
+    /// Time from `at` to `now` without the pauses of the freeze probe.
+    pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
+        let end = self.paused_since.unwrap_or(now).min(now);
+        let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
+        paused.fold(end - at, |age, pause| age - pause)
+    }
+
+    /// Session time at which the duration `after` will have passed since `at`, if no further pause comes.
+    pub fn when(&self, at: SessionTime, after: SessionTime) -> SessionTime {
+        let paused = self.pauses.iter().map(|&(from, until)| until - from.max(at));
+        paused.fold(at + after, |when, pause| when + pause)
+    }
+}
+
+/// A freeze probe of the trial's schedule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScheduledProbe {
+    /// Time at which the freeze probe is due, on the trial's clock.
+    pub at: SessionTime,
+    /// Whether the belief estimate influences the choice of the probe's questions.
+    pub uses_estimate: bool,
+}
+
+/// The settings of the freeze probes in this session's trial; none in a practice trial (familiarisation), in which
+/// there are no probes because a practice trial does not count.
+pub fn of_trial(spec: &SessionSpec) -> Option<&ProbeSpec> {
+    let counts = spec.step.as_ref().is_none_or(|step| step.period.is_some());
+    spec.probes.as_ref().filter(|_| counts)
+}
+
+/// Draws the schedule of the freeze probes in a trial.
+pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
+    let Some(probes) = of_trial(spec) else { return Vec::new() };
+    let mut random = stream(spec.seed, "times of probes", trial);
+    let number = probes.per_trial as usize;
+    let slack_s = spec.trial.seconds - probes.wait_s - probes.apart_s * number as f64;
+    let spread_s = (slack_s / number.max(1) as f64).clamp(0.0, probes.apart_s);
+    let mut at_s = 0.0;
+    let times: Vec<SessionTime> = (0..number)
+        .map(|_| {
+            at_s += probes.apart_s + spread_s * random.random::<f64>();
+            SessionTime::from_secs_f64(at_s)
+        })
+        .collect();
+    let blind = blind(number, probes.blind_share, &mut random);
+    times.into_iter().zip(blind).map(|(at, is_blind)| ScheduledProbe { at, uses_estimate: !is_blind }).collect()
+}
+
+/// Draws for each probe whether it ignores the belief estimate (is blind): `share` of the probes are blind, in random
+/// order. A fractional remainder of the number is the probability of one more blind probe.
+fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
+    let wanted = number as f64 * share;
+    let count = wanted.floor() as usize + usize::from(random.random::<f64>() < wanted.fract());
+    let mut blind: Vec<bool> = (0..number).map(|index| index < count).collect();
+    shuffle(&mut blind, random);
+    blind
+}
+
+/// Whether a freeze probe that the wizard requested uses the belief estimate: drawn at random, as for scheduled probes.
+pub(crate) fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
+    let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
+    let name = format!("requested probes of trial {trial}");
+    stream(spec.seed, &name, u64::from(number)).random::<f64>() >= share
+}
 
 /// Time between the freeze of the task and the first question, in seconds: the kitchen disappears from the display
 /// before any question is shown.
@@ -127,7 +580,7 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeD
 ///
 /// # Errors
 /// Why the session refuses the event, in words for the wizard.
-pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
+pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
     let spec = of_trial(&session.spec).ok_or("this trial has no freeze probes")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let book = &session.probes;
@@ -214,13 +667,13 @@ impl Session {
 }
 
 /// Draws the schedule of freeze probes at the start of a trial.
-pub(super) fn start(session: &mut Session) {
+pub(crate) fn start(session: &mut Session) {
     session.probes = TrialProbes { schedule: draw(&session.spec, session.trial), ..TrialProbes::default() };
 }
 
 /// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if the event
 /// lets the task continue.
-pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
+pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
     if !matches!(event, ProbeEvent::Asked { .. } | ProbeEvent::Answered { .. }) {
         session.note(now, TimelineEvent::Probe(event.clone()));
     }
@@ -244,7 +697,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
         }
         ProbeEvent::Begun { origin, uses_estimate, questions, .. } => {
             let number = take_due(session, now).number;
-            trial_clock::pause(session, now);
+            pause_clock(session, now);
             session.probes.open = Some(StartedProbe {
                 number,
                 origin: *origin,
@@ -263,7 +716,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
         ProbeEvent::Ended { .. } => {
             session.probes.over.extend(session.probes.open.take());
             session.probes.ended_at = Some(now);
-            return Some(trial_clock::resume(session, now));
+            return Some(resume_clock(session, now));
         }
         _ => in_open(session, now, event),
     }
@@ -313,14 +766,14 @@ fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
 }
 
 /// Stops the freeze probe's own time, because the wizard pauses.
-pub(super) fn pause(session: &mut Session, now: SessionTime) {
+pub(crate) fn pause(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open {
         open.paused_since = Some(now);
     }
 }
 
 /// Continues the freeze probe after a pause by the wizard.
-pub(super) fn resume(session: &mut Session, now: SessionTime) {
+pub(crate) fn resume(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open
         && let Some(since) = open.paused_since.take()
     {
@@ -330,7 +783,7 @@ pub(super) fn resume(session: &mut Session, now: SessionTime) {
 
 /// Handles the end of the trial: a freeze probe in its count-down ends, too; a probe with remaining questions is closed
 /// by an event of its own.
-pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
+pub(crate) fn trial_ends(session: &mut Session, now: SessionTime) {
     resume(session, now);
     session.probes.waiting = None;
     if session.probes.open.as_ref().is_some_and(|open| open.closed.is_some()) {
@@ -339,7 +792,7 @@ pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
 }
 
 /// Handles the end of the session: an open freeze probe ends with the session.
-pub(super) fn session_ends(session: &mut Session, now: SessionTime) {
+pub(crate) fn session_ends(session: &mut Session, now: SessionTime) {
     trial_ends(session, now);
     if let Some(mut open) = session.probes.open.take() {
         open.closed = Some((ProbeEndReason::TrialEnded, now));

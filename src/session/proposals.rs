@@ -1,8 +1,7 @@
 //! Proposed presses (of the concept DEV) on the participant's display: which presses are still to be made, and when the
 //! proposal is out of date.
 
-use super::session_state::Session;
-use super::timeline_entry::TimelineEvent;
+use crate::{Session, TimelineEvent};
 use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::kitchen::Agent;
 

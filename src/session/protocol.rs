@@ -1,12 +1,205 @@
 //! The study protocol: rules for the phases of a plan's recording, which follow one after another.
 
-use super::phase::TrialPhase;
-use super::plan::{PhaseSpec, PlanPosition, Questionnaire};
-pub use super::protocol_event::{ProtocolEvent, StudyPhase};
-pub use super::protocol_state::{ItemAnswer, PracticeResult, StudyProtocolState};
-use super::session_state::Session;
-use super::tutorial;
+use serde::{Deserialize, Serialize};
+
+use crate::plan::{PhaseSpec, PlanPosition};
+use crate::questionnaire::{AnswerValue, Questionnaire};
+use crate::tutorial::{self, TutorialEvent, TutorialState};
+use crate::wall_display::AnswerDevice;
+use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
+
+/// A phase of a study, such as instruction, trial or questionnaire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StudyPhase {
+    /// The wizard instructs the participant.
+    Instruction,
+    /// The participant goes through the tutorial on the display.
+    Tutorial,
+    /// Practice trial (familiarisation), which does not count for the analysis.
+    Familiarisation,
+    /// A trial that counts for the analysis.
+    Trial,
+    /// The participant answers a questionnaire.
+    Questionnaire,
+    /// The wizard debriefs the participant after the last trial.
+    Debriefing,
+}
+
+impl StudyPhase {
+    /// The study phase's name in logs and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            StudyPhase::Instruction => "instruction",
+            StudyPhase::Tutorial => "tutorial",
+            StudyPhase::Familiarisation => "familiarisation",
+            StudyPhase::Trial => "trial",
+            StudyPhase::Questionnaire => "questionnaire",
+            StudyPhase::Debriefing => "debriefing",
+        }
+    }
+
+    /// Whether the study phase contains a trial (practice or counted).
+    pub fn has_trial(self) -> bool {
+        matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
+    }
+}
+
+/// An event of the study protocol around a trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum ProtocolEvent {
+    /// The participant consented; without consent nothing is recorded. Older recordings contain only that consent was
+    /// given.
+    ConsentGiven {
+        /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
+        /// it on the console.
+        on: AnswerDevice,
+        /// The text to which the participant consented.
+        text: String,
+        /// Digest of the consent text.
+        digest: String,
+    },
+    /// The next phase of the recording begins.
+    PhaseStarted {
+        /// The kind of the study phase that begins.
+        phase: StudyPhase,
+        /// Number of the phase in the recording, counted from 1.
+        number: usize,
+    },
+    /// The wizard ticked or unticked a step of an instruction or debriefing.
+    Ticked {
+        /// Number of the step in the instruction or debriefing, counted from 1.
+        step: usize,
+        /// Whether the step of the instruction or debriefing is done now.
+        done: bool,
+    },
+    /// An event of the participant's tutorial.
+    Tutorial(TutorialEvent),
+    /// An item of the questionnaire is shown.
+    ItemShown {
+        /// Identifier of the questionnaire item.
+        item: String,
+    },
+    /// All answers to the questionnaire are shown, for the participant to confirm them.
+    AnswersShown,
+    /// The participant answered the shown questionnaire item; a later answer replaces an earlier one. The next item
+    /// follows at once, except after sliders and choices of several options.
+    ItemAnswered {
+        /// Identifier of the questionnaire item.
+        item: String,
+        /// The participant's answer to the questionnaire item.
+        answer: AnswerValue,
+    },
+    /// The shown item of the questionnaire is skipped, and the next item follows.
+    ItemSkipped {
+        /// Identifier of the questionnaire item.
+        item: String,
+    },
+    /// The participant confirms the answers to the questionnaire, which become final.
+    AnswersConfirmed,
+    /// Result of the practice trial, and whether it meets the criterion.
+    CriterionChecked {
+        /// Whether the practice trial meets the criterion.
+        met: bool,
+        /// Number of orders served in the practice trial.
+        orders: u32,
+        /// Number of the participant's presses in the practice trial.
+        presses: u32,
+        /// Number of errors among the participant's presses in the practice trial.
+        errors: u32,
+    },
+    /// The wizard waives the criterion of the practice trial, for this reason.
+    CriterionWaived {
+        /// The wizard's reason for waiving the criterion.
+        reason: String,
+    },
+}
+
+/// The answer to a questionnaire item, or that it was skipped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ItemAnswer {
+    /// The participant's answer to the questionnaire item.
+    Given(AnswerValue),
+    /// The participant gave no answer to the questionnaire item.
+    Skipped,
+}
+
+/// Result of the practice trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PracticeResult {
+    /// Whether the practice trial met the criterion.
+    pub met: bool,
+    /// Number of orders served in the practice trial.
+    pub orders: u32,
+    /// Number of the participant's presses in the practice trial.
+    pub presses: u32,
+    /// Number of errors among the participant's presses in the practice trial.
+    pub errors: u32,
+    /// The wizard's reason for waiving the criterion, if it was waived.
+    pub waived: Option<String>,
+}
+
+/// State of the study protocol in a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StudyProtocolState {
+    /// Whether the participant consented to what the plan asks for.
+    pub consent: bool,
+    /// Number of the recording's present phase, from 1; 0 before the first phase.
+    pub number: usize,
+    /// Whether each step of the present instruction or debriefing is done.
+    pub ticks: Vec<bool>,
+    /// Answers to the items of the present phase's questionnaire.
+    pub answers: Vec<Option<ItemAnswer>>,
+    /// Index of the shown questionnaire item; the number of items while all answers are shown for confirmation.
+    pub item: usize,
+    /// Whether the participant has confirmed the answers to the phase's questionnaire.
+    pub confirmed: bool,
+    /// Result of the practice trial, once it is over.
+    pub practice: Option<PracticeResult>,
+    /// State of the tutorial, if the present phase is the tutorial.
+    pub tutorial: Option<TutorialState>,
+}
+
+impl ItemAnswer {
+    /// The value that the participant answered; `None` if the questionnaire item was skipped.
+    pub fn value(&self) -> Option<&AnswerValue> {
+        match self {
+            ItemAnswer::Given(value) => Some(value),
+            ItemAnswer::Skipped => None,
+        }
+    }
+}
+
+impl StudyProtocolState {
+    /// The answer to the questionnaire item with this index, if the participant gave one.
+    pub fn given(&self, index: usize) -> Option<&AnswerValue> {
+        self.answers.get(index)?.as_ref()?.value()
+    }
+
+    /// Records the answer to the shown questionnaire item and shows the next one, unless the shown item stays; after
+    /// the last item, the first unanswered one or all answers are shown.
+    pub(crate) fn answer(&mut self, answer: ItemAnswer, stays: bool) {
+        if let Some(place) = self.answers.get_mut(self.item) {
+            *place = Some(answer);
+        }
+        if stays {
+            return;
+        }
+        let next = self.item + 1;
+        self.item = match self.open_item() {
+            None => self.answers.len(),
+            Some(open) if next == self.answers.len() => open,
+            Some(_) => next,
+        };
+    }
+
+    /// Index of the first questionnaire item without an answer.
+    pub fn open_item(&self) -> Option<usize> {
+        self.answers.iter().position(Option::is_none)
+    }
+}
 
 impl Session {
     /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.
@@ -174,7 +367,7 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
 }
 
 /// Applies an event of the study protocol that the session accepts, at the event's session time `now`.
-pub(super) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
+pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
     let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
     let (steps, items) = match event {
         ProtocolEvent::PhaseStarted { number, .. } => sizes(session.spec.step.as_ref(), *number),

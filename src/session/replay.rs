@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::advice_moments::leads_to_advice;
-use crate::advisor::AdviceRequest;
+use crate::advisor::{AdviceRequest, leads_to_advice};
 use crate::files::file_error::{FileError, FileResult};
 use crate::follower::SessionFollower;
 use crate::log::{LogLine, LogReader};
@@ -154,5 +153,30 @@ impl SameKitchenCheck {
             FileError::from_finding(Path::new("."), "no recording".to_string(), remedy)
         };
         self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
+    }
+}
+
+/// Kind of event in a recording to which a replay can jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplayLandmark {
+    /// The human made an erroneous press.
+    Error,
+    /// The participant's display began to show a signal.
+    Signal,
+    /// The wizard set a marker.
+    Marker,
+    /// A false belief about a state aspect began in the belief estimate.
+    FalseBelief,
+}
+
+impl ReplayLandmark {
+    /// The kind of landmark in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            ReplayLandmark::Error => "error",
+            ReplayLandmark::Signal => "signal",
+            ReplayLandmark::Marker => "note",
+            ReplayLandmark::FalseBelief => "false belief",
+        }
     }
 }

@@ -2,23 +2,25 @@
 
 use std::sync::Arc;
 
-use super::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
-use super::gaze_status::GazeStatus;
-use super::phase::TrialPhase;
-use super::probe_state::TrialProbes;
-use super::protocol_state::StudyProtocolState;
-use super::robot_status::RobotStatus;
-use super::settings::{Condition, SessionSpec, WizardVisibility};
-use super::study_arm::StudyArm;
-use super::timeline_entry::{TimelineEntry, TimelineEvent};
-use super::tracker::TrackerStatus;
+use crate::event::{SignalEndReason, TrialEndReason};
+use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
+use crate::probes::{ProbeEvent, TrialProbes};
+use crate::protocol::StudyProtocolState;
+use crate::settings::{Condition, WizardVisibility};
+use crate::study_arm::StudyArm;
+use crate::tracker::TrackerStatus;
+use crate::{GazeStatus, SessionSpec};
 use tomcom_core::base::rng::of_trial;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferHistory;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{HighlightSet, Sender, Signal};
+use tomcom_core::kitchen::no_effect::NoEffectReason;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
-use tomcom_core::kitchen::{DishId, Kitchen, LocationId, State};
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, State};
+use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{AbortReason, IdleReason};
 use tomcom_people::wizard::settings::WizardKind;
 
 /// Time without a gaze sample after which gaze counts as missing, in seconds.
@@ -241,7 +243,197 @@ impl Session {
     }
 
     /// Adds an entry to the session's timeline.
-    pub(super) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
+    pub(crate) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
         self.timeline.push(TimelineEntry { time, what });
+    }
+}
+
+/// Phase of a session's trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrialPhase {
+    /// The trial has not started.
+    Ready,
+    /// The trial is running: its clock goes.
+    Running,
+    /// The trial is paused: its clock stands still.
+    Paused,
+    /// The trial has ended; the reason says why.
+    Over(TrialEndReason),
+    /// The session has ended, and its recording is closed.
+    Closed,
+}
+
+/// An entry of the session's timeline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimelineEntry {
+    /// Session time of the entry.
+    pub time: SessionTime,
+    /// What happened at that time, as the timeline shows it.
+    pub what: TimelineEvent,
+}
+
+/// Content of an entry of the session's timeline.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimelineEvent {
+    /// An agent pressed a button.
+    Press {
+        /// The agent that pressed.
+        agent: Agent,
+        /// The pressed button, as an index into that agent's buttons.
+        button: ButtonId,
+        /// The state of the kitchen before the press.
+        before: State,
+        /// The state of the kitchen after the press; the same as before if the press had no effect.
+        after: State,
+        /// Why the press had no effect, and the location that the reason is about; `None` if the press had an effect.
+        no_effect: Option<(NoEffectReason, LocationId)>,
+    },
+    /// A signal appeared on the participant's display.
+    Signal {
+        /// Who sent the signal.
+        by: Sender,
+        /// The signal that appeared.
+        signal: Signal,
+    },
+    /// The signal disappeared from the display, for this reason.
+    SignalEnded(SignalEndReason),
+    /// An order was served at a location.
+    Served {
+        /// The location of the served order.
+        order: LocationId,
+    },
+    /// An order appeared at a location.
+    OrderShown {
+        /// The location of the order that appeared.
+        order: LocationId,
+    },
+    /// The wizard set a marker with this note.
+    Marker(String),
+    /// The wizard stopped the robot's arm.
+    RobotStopped,
+    /// The arm stopped by itself (protective stop or fault), with the contact force in newtons or the number of the
+    /// faulty joint.
+    ArmStopped {
+        /// The arm's safety mode since the stop.
+        mode: SafetyMode,
+        /// The contact force that stopped the arm, in newtons, if a contact did.
+        force_n: Option<f64>,
+        /// The number of the faulty joint that stopped the arm, if one did; 1 is the first.
+        joint: Option<u8>,
+    },
+    /// Somebody touched the robot's arm.
+    ArmTouched {
+        /// The force of the contact in newtons.
+        force_n: f64,
+    },
+    /// The wizard released the stopped robot.
+    RobotResumed,
+    /// The wizard holds the robot before its next press.
+    RobotHeld,
+    /// The robot, which was held, continues.
+    RobotReleased,
+    /// The robot abandoned its press of this button, because the wizard skipped it.
+    RobotSkipped(ButtonId),
+    /// The wizard chose this button for the robot's next press.
+    RobotDriven(ButtonId),
+    /// The wizard corrected the content of a location in the program's state.
+    Corrected {
+        /// The location that the wizard corrected.
+        location: LocationId,
+    },
+    /// The trial entered this phase (running, paused, over).
+    Trial(TrialPhase),
+    /// An event of a freeze probe, other than a question or an answer.
+    Probe(ProbeEvent),
+    /// The trial was excluded from the analysis, for this reason.
+    Excluded(String),
+    /// The trial was included in the analysis again.
+    Included,
+    /// The terminal gained or lost keyboard focus.
+    Focus(bool),
+}
+
+/// State of the robot in a session.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RobotStatus {
+    /// The robot's ongoing press: button, start, and expected time of contact.
+    pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
+    /// Whether the ongoing or last press is part of the robot's initiative.
+    pub initiative: bool,
+    /// Number of presses that the robot made by its initiative while the trial ran.
+    pub initiative_presses: u32,
+    /// Whether the robot is stopped, by the wizard or by itself, until the wizard resumes it.
+    pub stopped: bool,
+    /// Whether the wizard holds the robot before its next press.
+    pub held: bool,
+    /// The press that the wizard chose for the robot, until the robot has made or aborted that press.
+    pub driven_to: Option<ButtonId>,
+    /// Why the robot is idle, if it is, and the human's buttons for a press of one of which it waits.
+    pub idle: Option<(IdleReason, Vec<ButtonId>)>,
+    /// State of the simulated robot arm.
+    pub arm: ArmStatus,
+}
+
+/// Pose and safety state of the simulated arm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ArmStatus {
+    /// Last sample of the arm's motion with its time; `None` before the first motion and for the timed arm.
+    pub last: Option<(SessionTime, ArmSample)>,
+    /// The safety mode of the arm: normal, slowed, or stopped for a reason.
+    pub mode: SafetyMode,
+    /// Contact force that caused a protective stop, in newtons.
+    pub stopped_by_n: Option<f64>,
+}
+
+impl RobotStatus {
+    /// Whether the wizard stopped the robot (also possible after a protective stop).
+    pub fn is_stopped_by_wizard(&self) -> bool {
+        self.stopped && !self.arm.mode.has_stopped_itself()
+    }
+
+    /// The safety mode as screens name it: a stop by the wizard is an emergency stop also of the timed arm, which has no
+    /// safety modes of its own.
+    pub fn safety_mode(&self) -> SafetyMode {
+        if self.is_stopped_by_wizard() { SafetyMode::EmergencyStop } else { self.arm.mode }
+    }
+
+    /// Records that the robot starts a press and will touch the button at `until`.
+    pub(crate) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime, initiative: bool) {
+        self.intention = Some((button, now, until));
+        self.initiative = initiative;
+        self.idle = None;
+    }
+
+    pub(crate) fn gives_up(&mut self, reason: AbortReason) {
+        self.intention = None;
+        // If the wizard chose another press for the robot, that press is still pending.
+        self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
+    }
+
+    /// Records the end of the trial: the robot has no press and is not idle for a reason.
+    pub(crate) fn rests(&mut self) {
+        self.intention = None;
+        self.driven_to = None;
+        self.idle = None;
+    }
+}
+
+impl Session {
+    /// Agent whose press changed a location at this session time, from the timeline.
+    pub fn changed_by(&self, at: SessionTime) -> Option<Agent> {
+        let since = self.timeline.iter().rev().take_while(|entry| entry.time >= at);
+        since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
+            TimelineEvent::Press { agent, no_effect: None, .. } => Some(agent),
+            _ => None,
+        })
+    }
+
+    /// Whether a location changed without a press of the human, and the participant has not looked at the location
+    /// since.
+    pub fn is_unseen(&self, location: LocationId) -> bool {
+        let at = self.changed_at[location.index()];
+        let seen = self.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
+        let knows = seen || self.gaze.samples == 0 || at == SessionTime::ZERO;
+        !knows && self.changed_by(at) != Some(Agent::Human)
     }
 }

@@ -1,26 +1,25 @@
 //! The settings of a session file, all together.
 
+use core::net::{IpAddr, Ipv4Addr};
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
-pub use super::condition::Condition;
-pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
-pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
-pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
-use super::person_code;
-use super::plan::{PlanPosition, PlanSpec};
-pub use super::probe_settings::ProbeSpec;
-use super::ranges;
-pub use super::robot_settings::{ArmKind, RobotSpec};
-pub use super::setting_checks::{SettingError, is_code};
-use super::stream_settings::RerunSpec;
-use super::tracker::TrackerSpec;
-use super::wall_display::DisplaySpec;
+use crate::plan::{PlanPosition, PlanSpec};
+use crate::stream_settings::RerunSpec;
+use crate::tracker::TrackerSpec;
+use crate::wall_display::DisplaySpec;
+use crate::{person_code, ranges};
+use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::communication::HighlightSet;
 use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
 use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
 use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
 use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
+
+pub use crate::probes::ProbeSpec;
+pub use crate::stream_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 
 /// The settings of a session file: who takes part, under which condition, and for how long.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -247,5 +246,327 @@ pub struct SignalSpec {
 impl Default for SignalSpec {
     fn default() -> Self {
         SignalSpec { shown_s: 4.0, highlights: None, cool_down_s: 0.5 }
+    }
+}
+
+impl SessionSpec {
+    /// Parses the text of a session file. Missing settings get their defaults; other files to which the session file
+    /// refers are not read.
+    ///
+    /// # Errors
+    /// The text is not TOML, or a setting is unknown or invalid.
+    pub fn from_toml(text: &str) -> Result<SessionSpec, SettingError> {
+        let wrong = |error: toml::de::Error| SettingError::new("", error.to_string(), "settings of a session");
+        let spec: SessionSpec = toml::from_str(text).map_err(wrong)?;
+        spec.check().map(|()| spec)
+    }
+}
+
+/// Error: an invalid setting in a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found {found}, wanted {remedy}")]
+pub struct SettingError {
+    /// Dotted path of the setting, outermost table first; inner tables may be left out: "rerun.address".
+    pub path: String,
+    /// The invalid value that was found.
+    pub found: String,
+    /// Description of a valid value of the setting.
+    pub remedy: Cow<'static, str>,
+    /// Index of the invalid setting among several settings with the same path, from 0.
+    pub nth: usize,
+}
+
+impl SettingError {
+    /// An error in the first setting with this path.
+    pub fn new(path: impl Into<String>, found: String, remedy: impl Into<Cow<'static, str>>) -> SettingError {
+        SettingError { path: path.into(), found, remedy: remedy.into(), nth: 0 }
+    }
+
+    /// Name of the invalid setting without the tables in front.
+    pub fn key(&self) -> &str {
+        self.path.rsplit('.').next().unwrap_or(&self.path)
+    }
+}
+
+impl From<OutOfRange> for SettingError {
+    fn from(error: OutOfRange) -> SettingError {
+        SettingError::new(error.path, error.found, error.remedy)
+    }
+}
+
+/// Whether a text is a valid code: 1 to 32 ASCII letters, digits, `-` and `_`. Such codes are safe in names of folders,
+/// keys and tables.
+pub fn is_code(text: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)
+}
+
+/// Who sends signals in a trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Condition {
+    /// Unassisted condition: nobody sends signals to the human.
+    None,
+    /// Wizard condition: the wizard at the console sends signals.
+    Wizard,
+    /// Assistant condition: the assistant sends signals by itself.
+    Assistant,
+}
+
+impl Condition {
+    /// Name of the condition in logs, settings and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Condition::None => "none",
+            Condition::Wizard => "wizard",
+            Condition::Assistant => "assistant",
+        }
+    }
+}
+
+const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+
+/// Settings of the participant and of the gaze source.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ParticipantSpec {
+    /// Anonymous code of the participant, never a name.
+    pub code: String,
+    /// Whether a simulated participant or a person takes part, and by which input.
+    pub kind: ParticipantKind,
+    /// Source of the gaze samples.
+    pub gaze: GazeSource,
+    /// UDP and TCP port of the JSON gaze input.
+    pub gaze_port: u16,
+    /// Address at which the JSON gaze input listens; this computer's own (localhost) by default.
+    pub gaze_listen: IpAddr,
+    /// Addresses of other computers from which gaze is read; if empty, other computers need the pairing code.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gaze_from: Vec<IpAddr>,
+    /// Addresses from which the JSON gaze input reads datagrams.
+    pub gaze_senders: GazeSenders,
+    /// Population from which simulated participants are drawn; `None` for the default population.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub population: Option<Population>,
+}
+
+impl Default for ParticipantSpec {
+    fn default() -> Self {
+        let code = "P01".to_string();
+        ParticipantSpec {
+            code,
+            kind: ParticipantKind::Simulated,
+            gaze: GazeSource::Simulated,
+            gaze_port: 50021,
+            gaze_listen: LOCALHOST,
+            gaze_from: Vec::new(),
+            gaze_senders: GazeSenders::First,
+            population: None,
+        }
+    }
+}
+
+impl ParticipantSpec {
+    /// Whether gaze samples come from the simulated participant.
+    pub fn simulates_gaze(&self) -> bool {
+        self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
+    }
+}
+
+/// Who takes the human's part: a simulation or a person, and by which input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParticipantKind {
+    /// A simulated participant.
+    Simulated,
+    /// A person who presses keys at the keyboard of the console.
+    Keyboard,
+    /// A person at the wall display, which is a page in a browser.
+    Display,
+}
+
+/// Source of gaze samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeSource {
+    /// Gaze comes from the eyes of the simulated participant.
+    Simulated,
+    /// Gaze is the mouse pointer: over the console's kitchen, or over the display if the participant plays there.
+    Mouse,
+    /// Gaze comes from the eye tracker Pupil Core, through Pupil Capture's network API.
+    Pupil,
+    /// Gaze comes from a recorded file: Pupil Player's export, or a recording of this program.
+    File,
+    /// Gaze comes as newline separated JSON over TCP or UDP (network) from another program.
+    Json,
+    /// Gaze comes from a stream of the Lab Streaming Layer.
+    Lsl,
+    /// There are no gaze samples at all.
+    None,
+}
+
+/// Addresses from which the JSON gaze input accepts datagrams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeSenders {
+    /// Only the address that sent the first gaze sample is accepted, until it has been silent for 5 s.
+    First,
+    /// Gaze datagrams from every address are accepted.
+    Any,
+}
+
+/// Settings of the wizard's console.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ConsoleSpec {
+    /// How much the wizard sees: kitchen, estimated belief, recommendations.
+    pub visibility: WizardVisibility,
+    /// Draw with ASCII characters only, for terminals and fonts without others.
+    pub ascii: bool,
+    /// Colour theme of the console: for a dark or a light terminal background.
+    pub theme: ColourTheme,
+    /// Whether a mouse click on a signal or on the offer sends the signal at once, without a question.
+    pub click_sends: bool,
+    /// Path of the file with the wizard's key bindings, relative to the session file; without a path the default keys
+    /// apply.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keys: Option<String>,
+    /// Preset texts for the wizard's markers (time marks with a note): key 1 sets a marker with the first text.
+    pub notes: Vec<String>,
+    /// Preset reasons for aborting or excluding a trial.
+    pub reasons: Vec<String>,
+}
+
+/// Largest number of preset notes for the wizard's markers (keys 1 to 5).
+pub const MAX_NOTES: usize = 5;
+/// Largest number of preset reasons for aborting or excluding a trial.
+const MAX_REASONS: usize = 20;
+/// Largest length of a preset note or reason, in characters.
+const MAX_PRESET: usize = 40;
+
+impl Default for ConsoleSpec {
+    fn default() -> Self {
+        let texts = |texts: [&str; 5]| texts.map(str::to_string).to_vec();
+        ConsoleSpec {
+            visibility: WizardVisibility::Recommendation,
+            ascii: false,
+            theme: ColourTheme::Auto,
+            click_sends: false,
+            keys: None,
+            notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
+            reasons: texts([
+                "participant stopped",
+                "technical failure",
+                "wizard's mistake",
+                "instructions not understood",
+                "interrupted",
+            ]),
+        }
+    }
+}
+
+impl ConsoleSpec {
+    pub(crate) fn check(&self) -> Result<(), SettingError> {
+        let wrong = |key: &str, texts: &[String], most: usize, remedy| {
+            let is_text = |text: &String| {
+                let length = text.chars().count();
+                (1..=MAX_PRESET).contains(&length) && text.trim() == text && !text.chars().any(char::is_control)
+            };
+            let is_wrong = texts.is_empty() || texts.len() > most || !texts.iter().all(is_text);
+            is_wrong.then(|| SettingError::new(format!("console.{key}"), format!("{key} = {texts:?}"), remedy))
+        };
+        let notes = "1 to 5 texts of 1 to 40 characters, each on one line";
+        let reasons = "1 to 20 texts of 1 to 40 characters, each on one line";
+        let found = wrong("notes", &self.notes, MAX_NOTES, notes);
+        found.or_else(|| wrong("reasons", &self.reasons, MAX_REASONS, reasons)).map_or(Ok(()), Err)
+    }
+}
+
+/// Colour theme of the console.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ColourTheme {
+    /// Colours that fit the terminal's background; colours for a dark one if the terminal does not report its
+    /// background.
+    Auto,
+    /// Colours for a dark terminal background.
+    Dark,
+    /// Colours for a light terminal background.
+    Light,
+}
+
+/// Amount of information on the wizard's console.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WizardVisibility {
+    /// The wizard sees kitchen and gaze only, as in the paper.
+    State,
+    /// The wizard sees kitchen, gaze and estimated belief.
+    Belief,
+    /// The wizard sees kitchen, gaze, estimated belief and recommendations.
+    Recommendation,
+}
+
+impl WizardVisibility {
+    /// Name of the wizard's visibility level in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            WizardVisibility::State => "state",
+            WizardVisibility::Belief => "belief",
+            WizardVisibility::Recommendation => "recommendation",
+        }
+    }
+
+    /// Words for what the wizard sees at this visibility level.
+    pub fn title(self) -> &'static str {
+        match self {
+            WizardVisibility::State => "kitchen and gaze",
+            WizardVisibility::Belief => "kitchen, gaze and the estimated belief",
+            WizardVisibility::Recommendation => {
+                "kitchen, gaze, the estimated belief and the assistant's recommendation"
+            }
+        }
+    }
+}
+
+/// Kind of the robot's arm: timed (presses take a drawn duration), or simulated with physics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArmKind {
+    /// The timed arm: presses have a random duration; the arm's motion is only displayed.
+    #[default]
+    Timed,
+    /// The arm in the physics simulation: a simulated UR5 presses buttons by contact; the UR5 slows near the human's
+    /// hand and stops on contact with the hand.
+    Physics,
+}
+
+impl ArmKind {
+    /// Name of the robot's arm in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            ArmKind::Timed => "timed",
+            ArmKind::Physics => "physics",
+        }
+    }
+}
+
+/// Settings of the robot: its arm, the duration of its presses, and its initiative.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RobotSpec {
+    /// Kind of the arm.
+    pub arm: ArmKind,
+    /// Timed arm: median duration of a press, in seconds.
+    pub press_s: f64,
+    /// Timed arm: standard deviation of the logarithm of a press's duration.
+    pub press_spread: f64,
+    /// Time without a press of the human after which the robot takes the initiative, in seconds.
+    pub initiative_s: f64,
+}
+
+impl Default for RobotSpec {
+    fn default() -> Self {
+        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15, initiative_s: 6.0 }
     }
 }

@@ -2,7 +2,215 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::setting_checks::SettingError;
+use crate::settings::SettingError;
+
+/// Settings of the Lab Streaming Layer (LSL).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LslSpec {
+    /// Path of the library liblsl, relative to the session file; `None`: the library that the system has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub library: Option<String>,
+    /// The LSL streams that the program sends; none by default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub outlets: Vec<LslOutlet>,
+    /// The LSL stream from which gaze is received, with `gaze = "lsl"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gaze: Option<LslGazeSpec>,
+}
+
+/// An LSL stream (outlet) that the program sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LslOutlet {
+    /// Stream of every event of the session except gaze and arm samples, each as a short text code.
+    Markers,
+    /// Stream of every event of the session except gaze and arm samples, each as JSON, as in the log.
+    Events,
+    /// Stream of the presses of both agents, with their effects.
+    Presses,
+    /// Stream of the estimated probability of the true value for every state aspect.
+    Beliefs,
+    /// Stream of the estimated net benefit of every signal.
+    NetBenefit,
+    /// Stream of the participant's gaze samples.
+    Gaze,
+    /// Stream of the joint angles of the simulated robot arm.
+    Arm,
+}
+
+impl LslOutlet {
+    /// All LSL streams, in the order of the documentation.
+    pub const ALL: [LslOutlet; 7] = [
+        LslOutlet::Markers,
+        LslOutlet::Events,
+        LslOutlet::Presses,
+        LslOutlet::Beliefs,
+        LslOutlet::NetBenefit,
+        LslOutlet::Gaze,
+        LslOutlet::Arm,
+    ];
+
+    /// Name of the stream in settings, and part of its name in the Lab Streaming Layer.
+    pub fn name(self) -> &'static str {
+        match self {
+            LslOutlet::Markers => "markers",
+            LslOutlet::Events => "events",
+            LslOutlet::Presses => "presses",
+            LslOutlet::Beliefs => "beliefs",
+            LslOutlet::NetBenefit => "net_benefit",
+            LslOutlet::Gaze => "gaze",
+            LslOutlet::Arm => "arm",
+        }
+    }
+}
+
+/// An LSL stream of gaze on the display: how the program finds it, and the meaning of its channels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LslGazeSpec {
+    /// Name of the gaze stream; `None`: a stream of any name is accepted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Content type of the gaze stream, such as "Gaze"; `None`: a stream of any type is accepted.
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub content: Option<String>,
+    /// Source of the gaze stream, as its sender names it; `None`: a stream of any source is accepted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source_id: Option<String>,
+    /// Name of the computer that offers the gaze stream; `None`: a stream of any computer is accepted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub host: Option<String>,
+    /// Channel of the gaze's horizontal coordinate: its label, or its number from 1.
+    pub x: String,
+    /// Channel of the gaze's vertical coordinate: its label, or its number from 1.
+    pub y: String,
+    /// Channel of the gaze's confidence, from 0 to 1; `None` if the stream has none, in which case every gaze sample
+    /// counts as certain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<String>,
+    /// Unit of the gaze coordinates.
+    #[serde(default)]
+    pub unit: GazeUnit,
+    /// Point at which the gaze coordinates are 0, and the direction of y.
+    #[serde(default)]
+    pub origin: GazeOrigin,
+    /// Width and height of the display in the unit of the coordinates. By default 1 and 1 for normalised coordinates,
+    /// and the layout's size for metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<[f64; 2]>,
+}
+
+/// Unit of gaze coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeUnit {
+    /// Gaze coordinates are fractions of the display.
+    #[default]
+    Normalised,
+    /// Gaze coordinates are pixels of the display.
+    Pixels,
+    /// Gaze coordinates are metres on the display.
+    Metres,
+}
+
+/// Origin of gaze coordinates on the display, and the direction of y.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeOrigin {
+    /// Origin at the display's top left corner, y points down.
+    #[default]
+    TopLeft,
+    /// Origin at the display's bottom left corner, y points up.
+    BottomLeft,
+    /// Origin at the display's centre, y points up.
+    Centre,
+}
+
+impl LslGazeSpec {
+    /// Converts a point of the gaze stream to fractions of the display, origin at the top left, for a display of
+    /// `display_m` metres.
+    pub fn to_display(&self, [x, y]: [f64; 2], display_m: [f64; 2]) -> [f64; 2] {
+        let [width, height] = self.size.unwrap_or(match self.unit {
+            GazeUnit::Metres => display_m,
+            GazeUnit::Normalised | GazeUnit::Pixels => [1.0, 1.0],
+        });
+        let (x, y) = (x / width, y / height);
+        match self.origin {
+            GazeOrigin::TopLeft => [x, y],
+            GazeOrigin::BottomLeft => [x, 1.0 - y],
+            GazeOrigin::Centre => [0.5 + x, 0.5 - y],
+        }
+    }
+
+    /// How messages call the gaze stream: by its name, or by its type if the settings have no name; and by its source and
+    /// its computer if the settings have them.
+    pub fn title(&self) -> String {
+        let title = match (&self.name, &self.content) {
+            (Some(name), _) => format!("\"{name}\""),
+            (None, Some(content)) => format!("of type \"{content}\""),
+            (None, None) => "of any name".to_string(),
+        };
+        let source = self.source_id.as_ref().map(|source| format!(" of source_id \"{source}\""));
+        let host = self.host.as_ref().map(|host| format!(" on {host}"));
+        [Some(title), source, host].into_iter().flatten().collect()
+    }
+
+    fn check(&self) -> Result<(), SettingError> {
+        let texts = [
+            ("name", &self.name),
+            ("type", &self.content),
+            ("source_id", &self.source_id),
+            ("host", &self.host),
+            ("x", &Some(self.x.clone())),
+            ("y", &Some(self.y.clone())),
+            ("confidence", &self.confidence),
+        ];
+        for (key, text) in texts {
+            if let Some(text) = text.as_ref().filter(|text| !is_name(text)) {
+                let found = format!("{key} = {text:?}");
+                let remedy = "1 to 100 signs on one line, without quotation marks";
+                return Err(SettingError::new(format!("lsl.gaze.{key}"), found, remedy));
+            }
+        }
+        if self.name.is_none() && self.content.is_none() && self.source_id.is_none() {
+            let remedy =
+                "name = \"…\" or type = \"Gaze\" under [lsl.gaze]: tomcom doctor lists the streams that there are";
+            let found = "no name, type or source_id of a stream".to_string();
+            return Err(SettingError::new("lsl.gaze", found, remedy));
+        }
+        if self.x == self.y {
+            let remedy = "one channel for each coordinate";
+            return Err(SettingError::new("lsl.gaze.y", format!("x = y = \"{}\"", self.x), remedy));
+        }
+        if self.unit == GazeUnit::Pixels && self.size.is_none() {
+            let remedy = "size = [1920, 1080] under [lsl.gaze]: the display's pixels";
+            return Err(SettingError::new("lsl.gaze.unit", "unit = \"pixels\", and no size".to_string(), remedy));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a text can be a name in an LSL query for streams; such a query has names in quotation marks.
+fn is_name(text: &str) -> bool {
+    let is_plain = |sign: char| !sign.is_control() && !matches!(sign, '\'' | '"');
+    (1..=100).contains(&text.chars().count()) && text.chars().all(is_plain)
+}
+
+impl LslSpec {
+    pub(crate) fn check(&self) -> Result<(), SettingError> {
+        if let Some(library) = self.library.as_ref().filter(|path| path.trim().is_empty()) {
+            let remedy = "the path of liblsl, or no library at all for the system's";
+            return Err(SettingError::new("lsl.library", format!("library = {library:?}"), remedy));
+        }
+        let mut outlets = self.outlets.iter().enumerate();
+        if let Some((_, twice)) = outlets.find(|(index, outlet)| self.outlets[..*index].contains(outlet)) {
+            let found = format!("\"{}\" twice", twice.name());
+            return Err(SettingError::new("lsl.outlets", found, "each stream once"));
+        }
+        self.gaze.as_ref().map_or(Ok(()), LslGazeSpec::check)
+    }
+}
 
 /// Settings of the stream to the 3D viewer Rerun.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,7 +236,7 @@ impl RerunSpec {
         self.live || self.record
     }
 
-    pub(super) fn check(&self) -> Result<(), SettingError> {
+    pub(crate) fn check(&self) -> Result<(), SettingError> {
         let is_address = self.address.rsplit_once(':').is_some_and(|(host, port)| {
             let is_host = !host.is_empty() && host.chars().all(|c| c.is_ascii_hexdigit() || "[].:".contains(c));
             is_host && port.parse::<u16>().is_ok_and(|port| port > 0)

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::condition::Condition;
+use crate::settings::Condition;
 use tomcom_core::communication::concept::ConceptName;
 
 /// An arm of a study. A wizard who sees the assistant's recommendations is another arm than a wizard who does not.

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::participant_settings::GazeSource;
-use super::setting_checks::SettingError;
+use crate::settings::{GazeSource, SettingError};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::quality::DroppedInputCounts;
 use tomcom_core::gaze::stamp_check::StampFault;

@@ -1,11 +1,526 @@
 //! The participant's tutorial, a phase of a study plan: which tutorial events a session accepts, and what they change.
 
-use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
-use super::session_state::Session;
-pub use super::tutorial_event::{TutorialEvent, TutorialPageTurner};
-pub use super::tutorial_state::{TutorialPress, TutorialState};
+use serde::{Deserialize, Serialize};
+
+use crate::Session;
+use crate::plan::PhaseSpec;
+use crate::settings::{SettingError, is_code};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+
+/// Longest time for which a tutorial may show the recipe cards, in seconds.
+const LONGEST_S: f64 = 3600.0;
+/// Largest number of choices of a tutorial question: each is chosen by a digit key.
+const MOST_CHOICES: usize = 9;
+
+/// A tutorial for participants, as its file has it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tutorial {
+    /// Identifier of the tutorial in the log.
+    pub name: String,
+    /// Language code of the tutorial's texts: "en".
+    pub language: String,
+    /// The steps of the tutorial in order; each is a page.
+    #[serde(rename = "step")]
+    pub steps: Vec<TutorialStep>,
+}
+
+/// The kind of a tutorial step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TutorialStepKind {
+    /// Step with a text; places on the display that the text is about are framed.
+    Text,
+    /// Step in which the participant presses buttons one after another; each button is marked in turn.
+    Press,
+    /// Step with the recipe cards of all dishes, for the participant to learn.
+    Recipes,
+    /// Step with a signal on the display, shown as in a trial.
+    Signal,
+    /// Step with a guided order: as `press`, but with a dish to prepare and hints that fade.
+    Order,
+    /// Step with a question that has one right choice.
+    Question,
+}
+
+/// A step of a tutorial: one page on the participant's display.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TutorialStep {
+    /// Identifier of the tutorial step in the log.
+    pub id: String,
+    /// The kind of the tutorial step.
+    pub kind: TutorialStepKind,
+    /// Heading of the tutorial page.
+    pub title: String,
+    /// Text of the tutorial page; for the kind `question`, the question.
+    pub text: String,
+    /// Names of what the tutorial page frames: locations, the human's buttons, or "human" and "robot" for their areas.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub point_at: Vec<String>,
+    /// For the kinds `press` and `order`: the human's buttons, in the order in which the participant has to press them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub presses: Vec<String>,
+    /// For the kind `order`, for a signal that shows a recipe, and for a text that explains orders: name of the ordered
+    /// dish.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dish: Option<String>,
+    /// For the kind `signal`: the highlighted location; without a location, the signal shows the recipe of `dish`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub highlight: Option<String>,
+    /// For the kind `order`: number of presses whose button is marked at once; the buttons of later presses are marked
+    /// after `hint_after_s`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hints: Option<usize>,
+    /// For the kind `order`: time without the right press after which the button is marked, in seconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hint_after_s: Option<f64>,
+    /// For the kind `recipes`: time for which the recipe cards are shown, in seconds; 0: until the participant turns
+    /// the page.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+    /// For the kind `question`: the texts of the choices.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub choices: Vec<String>,
+    /// For the kind `question`: the number of the right choice, counted from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub right: Option<u8>,
+    /// For the kind `question`: text after a wrong choice, before the question is asked again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explanation: Option<String>,
+}
+
+impl TutorialStep {
+    /// Whether the participant presses buttons in this step.
+    pub fn has_presses(&self) -> bool {
+        matches!(self.kind, TutorialStepKind::Press | TutorialStepKind::Order)
+    }
+
+    /// Whether this step's recipe cards disappear after a set time.
+    pub fn is_timed(&self) -> bool {
+        self.kind == TutorialStepKind::Recipes && self.seconds.is_some_and(|seconds| seconds > 0.0)
+    }
+
+    /// How long the step waits without the right press before it marks the button of the press with this index (from
+    /// 0), in
+    /// seconds.
+    pub fn hint_after_s(&self, press: usize) -> f64 {
+        match self.kind {
+            TutorialStepKind::Order if press >= self.hints.unwrap_or(3) => self.hint_after_s.unwrap_or(8.0),
+            _ => 0.0,
+        }
+    }
+}
+
+impl Tutorial {
+    /// Whether this step is the first one in which the participant presses buttons.
+    pub fn has_first_presses(&self, step: usize) -> bool {
+        self.steps.iter().position(TutorialStep::has_presses) == Some(step)
+    }
+
+    /// Index of the tutorial step with this identifier.
+    pub fn position(&self, id: &str) -> Option<usize> {
+        self.steps.iter().position(|step| step.id == id)
+    }
+
+    /// The state of the tutorial's kitchen at the beginning of a step: after all presses of the steps before.
+    pub fn state_at(&self, kitchen: &Kitchen, step: usize) -> State {
+        let mut state = kitchen.empty_state();
+        for (nth, one) in self.steps.iter().enumerate().take(step + 1) {
+            for &order in &kitchen.orders {
+                state.set_order(order, OrderContent::None);
+            }
+            if let (Some(&order), Some(dish)) = (kitchen.orders.first(), dish_of(kitchen, one)) {
+                state.set_order(order, OrderContent::Dish(dish));
+            }
+            let presses = one.presses.iter().filter(|_| nth < step);
+            for button in presses.filter_map(|name| kitchen.button_named(Agent::Human, name)) {
+                state = kitchen.try_press(state, Agent::Human, button).after;
+            }
+        }
+        state
+    }
+
+    /// Checks the tutorial's settings as far as possible without a kitchen.
+    ///
+    /// # Errors
+    /// An error names the first invalid setting.
+    pub fn check(&self) -> Result<(), SettingError> {
+        if !is_code(&self.name) {
+            let remedy = "a short name of letters, digits, - and _, such as \"sushi\"";
+            return Err(SettingError::new("name", format!("name = \"{}\"", self.name), remedy));
+        }
+        if self.steps.is_empty() {
+            let found = "a tutorial without steps".to_string();
+            return Err(SettingError::new("step", found, "at least one [[step]]"));
+        }
+        for (nth, step) in self.steps.iter().enumerate() {
+            let twice = self.steps[..nth].iter().any(|other| other.id == step.id);
+            let wrong_id = |found, remedy| Err(SettingError { nth, ..SettingError::new("step.id", found, remedy) });
+            if twice {
+                return wrong_id(format!("the id \"{}\" twice", step.id), "each id once");
+            }
+            if !is_code(&step.id) {
+                let remedy = "a short id of letters, digits, - and _, such as \"cook_rice\"";
+                return wrong_id(format!("id = \"{}\"", step.id), remedy);
+            }
+            check_step(step).map_err(|error| placed(error, nth, step))?;
+        }
+        Ok(())
+    }
+
+    /// Checks the names of locations, buttons and dishes in the tutorial, and that every press of the tutorial has an
+    /// effect when its turn comes.
+    ///
+    /// # Errors
+    /// The first name or press that does not fit the kitchen.
+    pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
+        for (nth, step) in self.steps.iter().enumerate() {
+            check_names(kitchen, step).map_err(|error| placed(error, nth, step))?;
+            let mut state = self.state_at(kitchen, nth);
+            for name in &step.presses {
+                let press = kitchen.button_named(Agent::Human, name).map(|button| pressed(kitchen, state, button));
+                let Some(Some(after)) = press else {
+                    let found =
+                        format!("step \"{}\": \"{name}\", which does nothing after the presses before it", step.id);
+                    let remedy =
+                        "a button that has an effect when its turn comes; the kitchen is empty before the first step";
+                    return Err(SettingError { nth, ..SettingError::new("step.id", found, remedy) });
+                };
+                state = after;
+            }
+            let is_open = kitchen.orders.first().is_some_and(|&order| state.order(order) != OrderContent::Served);
+            if step.kind == TutorialStepKind::Order && is_open {
+                let found = format!("step \"{}\": presses that do not serve its dish at the first order", step.id);
+                let remedy = "all presses up to the one that serves the dish";
+                return Err(SettingError { nth, ..SettingError::new("step.id", found, remedy) });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The state of the kitchen after the human's press; `None` if the press has no effect.
+fn pressed(kitchen: &Kitchen, state: State, button: ButtonId) -> Option<State> {
+    let press = kitchen.try_press(state, Agent::Human, button);
+    press.effective.then_some(press.after)
+}
+
+/// The dish that a tutorial step's first order wants.
+fn dish_of(kitchen: &Kitchen, step: &TutorialStep) -> Option<DishId> {
+    kitchen.dish_named(step.dish.as_ref()?)
+}
+
+/// Places the error of a tutorial step at the step's id in the file, which every step has exactly once.
+fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError {
+    let found = format!("step \"{}\": {}", step.id, error.found);
+    SettingError { nth, found, path: "step.id".to_string(), ..error }
+}
+
+fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
+    use TutorialStepKind::{Order, Press, Question, Recipes, Signal, Text};
+    let wrong = |key: &str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
+    let kind = step.kind;
+    let given = [
+        ("presses", !step.presses.is_empty(), matches!(kind, Press | Order), matches!(kind, Press | Order)),
+        (
+            "dish",
+            step.dish.is_some(),
+            matches!(kind, Order | Signal | Text),
+            kind == Order || (kind == Signal && step.highlight.is_none()),
+        ),
+        ("highlight", step.highlight.is_some(), kind == Signal && step.dish.is_none(), false),
+        ("hints", step.hints.is_some(), kind == Order, false),
+        ("hint_after_s", step.hint_after_s.is_some(), kind == Order, false),
+        ("seconds", step.seconds.is_some(), kind == Recipes, kind == Recipes),
+        ("choices", !step.choices.is_empty(), kind == Question, kind == Question),
+        ("right", step.right.is_some(), kind == Question, kind == Question),
+        ("explanation", step.explanation.is_some(), kind == Question, kind == Question),
+    ];
+    for (key, is_there, may, must) in given {
+        if is_there && !may {
+            return wrong(
+                key,
+                format!("`{key}`, which has no meaning in it"),
+                "only the settings of the step's kind: docs/display.md",
+            );
+        }
+        if must && !is_there {
+            return wrong(key, format!("no `{key}`"), "all settings of the step's kind: docs/display.md");
+        }
+    }
+    let is_time = |seconds: &f64| (0.0..=LONGEST_S).contains(seconds);
+    for (key, value) in [("seconds", step.seconds), ("hint_after_s", step.hint_after_s)] {
+        if let Some(value) = value.filter(|value| !is_time(value)) {
+            return wrong(key, format!("{key} = {value}"), "0 to 3600 seconds");
+        }
+    }
+    let choices = step.choices.len();
+    if kind == Question && !(2..=MOST_CHOICES).contains(&choices) {
+        return wrong("choices", format!("{choices} choices"), "two to nine");
+    }
+    match step.right.filter(|&right| right == 0 || usize::from(right) > choices) {
+        Some(right) if kind == Question => {
+            wrong("right", format!("right = {right}"), "the number of a choice, 1 the first")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingError> {
+    let wrong = |key: &str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
+    let is_button = |name: &String| kitchen.button_named(Agent::Human, name).is_some();
+    let is_shown = |name: &String| TutorialTarget::named(kitchen, name).is_some();
+    if let Some(name) = step.point_at.iter().find(|name| !is_shown(name)) {
+        let remedy =
+            "a location or a button of the human, as tomcom kitchen LAYOUT lists them, or \"human\", \"robot\"";
+        return wrong("point_at", format!("point_at \"{name}\""), remedy);
+    }
+    if let Some(name) = step.presses.iter().find(|name| !is_button(name)) {
+        return wrong(
+            "presses",
+            format!("the button \"{name}\""),
+            "a button of the human, as tomcom kitchen LAYOUT lists them",
+        );
+    }
+    if let Some(name) = step.dish.as_ref().filter(|name| kitchen.dish_named(name).is_none()) {
+        return wrong("dish", format!("the dish \"{name}\""), "a dish of the kitchen's menu");
+    }
+    match step.highlight.as_ref().filter(|name| kitchen.location_named(name).is_none()) {
+        Some(name) => wrong("highlight", format!("highlight \"{name}\""), "a location of the layout"),
+        None => Ok(()),
+    }
+}
+
+/// An element of the display that a tutorial step can frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TutorialTarget {
+    /// The area of human or robot on the display.
+    Area(Agent),
+    /// A location on the display.
+    Location(LocationId),
+    /// A button of the human on the display.
+    Button(ButtonId),
+}
+
+impl TutorialTarget {
+    /// The element of the display that has this name in a tutorial file.
+    pub fn named(kitchen: &Kitchen, name: &str) -> Option<TutorialTarget> {
+        match name {
+            "human" => Some(TutorialTarget::Area(Agent::Human)),
+            "robot" => Some(TutorialTarget::Area(Agent::Robot)),
+            _ => {
+                let location = kitchen.location_named(name).map(TutorialTarget::Location);
+                location.or_else(|| kitchen.button_named(Agent::Human, name).map(TutorialTarget::Button))
+            }
+        }
+    }
+}
+
+/// Who turned a page of a tutorial: participant or wizard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TutorialPageTurner {
+    /// The participant, who can turn the tutorial's page only when its step is done.
+    Participant,
+    /// The wizard, who may skip a step of the tutorial.
+    Wizard,
+}
+
+impl TutorialPageTurner {
+    /// Name of the one who turned the tutorial's page (participant or wizard) in logs.
+    pub fn name(self) -> &'static str {
+        match self {
+            TutorialPageTurner::Participant => "participant",
+            TutorialPageTurner::Wizard => "wizard",
+        }
+    }
+}
+
+/// An event of a tutorial. Presses in a tutorial act on a kitchen of the tutorial's own: such presses are no presses of
+/// a trial, and no evidence of beliefs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "did", rename_all = "snake_case")]
+pub enum TutorialEvent {
+    /// A step of the tutorial is shown.
+    Shown {
+        /// Identifier of the tutorial step.
+        step: String,
+        /// Who turned the tutorial's page.
+        by: TutorialPageTurner,
+    },
+    /// The participant pressed a button in the shown step of the tutorial.
+    Pressed {
+        /// Name of the pressed button.
+        button: String,
+    },
+    /// The set time of the tutorial's recipe cards is over: they disappear.
+    CardsHidden {
+        /// Identifier of the tutorial step.
+        step: String,
+    },
+    /// The participant answered the question of the tutorial step.
+    Answered {
+        /// Identifier of the tutorial step.
+        step: String,
+        /// Number of the participant's choice, counted from 1.
+        choice: u8,
+    },
+    /// The tutorial is over: the participant read its last step, or the wizard skipped the rest.
+    Ended {
+        /// Who ended the tutorial.
+        by: TutorialPageTurner,
+    },
+}
+
+/// A press of the participant in a tutorial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TutorialPress {
+    /// Number of the press in the tutorial, from 1.
+    pub number: u32,
+    /// The button that the participant pressed.
+    pub button: ButtonId,
+    /// Whether the pressed button is the button that the tutorial step asks for.
+    pub is_right: bool,
+    /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; `None` if
+    /// the press has an effect.
+    pub no_effect: Option<(NoEffectReason, LocationId)>,
+}
+
+/// State of the participant's tutorial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TutorialState {
+    /// Index of the shown tutorial step.
+    pub step: usize,
+    /// Session time since which the tutorial step is shown.
+    pub shown_since: SessionTime,
+    /// Total time for which each step of the tutorial was shown before it was last left.
+    pub shown_before: Vec<SessionTime>,
+    /// The state of the tutorial's own kitchen: the content of every location.
+    pub kitchen: State,
+    /// Number of the presses requested by the tutorial step that are done.
+    pub presses: usize,
+    /// The participant's last press in the shown tutorial step.
+    pub last: Option<TutorialPress>,
+    /// Number of presses in the tutorial so far.
+    pub pressed: u32,
+    /// Whether the recipe cards of the step were shown for their set time.
+    pub are_cards_hidden: bool,
+    /// The participant's wrong choice in the step's question, counted from 1, until the participant chooses again.
+    pub wrong: Option<u8>,
+    /// Whether each step of the tutorial was done.
+    pub done: Vec<bool>,
+    /// Number of wrong answers to each step's question.
+    pub wrong_answers: Vec<u32>,
+    /// Whether the tutorial is over.
+    pub is_over: bool,
+}
+
+impl TutorialState {
+    /// A tutorial at its first step, which is shown from session time `now`.
+    pub fn new(tutorial: &Tutorial, kitchen: &Kitchen, now: SessionTime) -> TutorialState {
+        let steps = tutorial.steps.len();
+        let mut state = TutorialState {
+            step: 0,
+            shown_since: now,
+            shown_before: vec![SessionTime::ZERO; steps],
+            kitchen: kitchen.empty_state(),
+            presses: 0,
+            last: None,
+            pressed: 0,
+            are_cards_hidden: false,
+            wrong: None,
+            done: vec![false; steps],
+            wrong_answers: vec![0; steps],
+            is_over: false,
+        };
+        state.show(tutorial, kitchen, 0, now);
+        state
+    }
+
+    /// Shows a tutorial step from its beginning, at session time `now`.
+    pub(crate) fn show(&mut self, tutorial: &Tutorial, kitchen: &Kitchen, step: usize, now: SessionTime) {
+        if let Some(before) = self.shown_before.get_mut(self.step) {
+            *before = *before + (now - self.shown_since);
+        }
+        self.shown_since = now;
+        self.step = step;
+        self.kitchen = tutorial.state_at(kitchen, step);
+        (self.presses, self.last, self.wrong) = (0, None, None);
+        // Recipe cards that were shown for their time are not shown again when the participant goes back in the
+        // tutorial: the recipes have to be remembered.
+        self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
+        let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
+            TutorialStepKind::Text | TutorialStepKind::Signal => true,
+            TutorialStepKind::Recipes => !step.is_timed(),
+            TutorialStepKind::Press | TutorialStepKind::Order | TutorialStepKind::Question => false,
+        });
+        self.finish(needs_nothing);
+    }
+
+    /// Time for which the recipe cards of a step with a set time are still shown, in seconds, counted from when the
+    /// step was last shown: the time continues where the participant left the step. `None` if no cards with a set time
+    /// are shown.
+    pub fn cards_left_s(&self, step: &TutorialStep) -> Option<f64> {
+        let seconds = step.seconds.filter(|_| step.is_timed() && !self.are_cards_hidden)?;
+        let before = self.shown_before.get(self.step).copied().unwrap_or_default();
+        Some((seconds - before.as_secs_f64()).max(0.0))
+    }
+
+    /// Whether the participant's last press was not the press that the tutorial step still asks for.
+    pub fn is_missed(&self, step: &TutorialStep) -> bool {
+        self.wanted(step).is_some() && self.last.is_some_and(|last| !last.is_right)
+    }
+
+    /// Whether the participant may continue from the shown tutorial step.
+    pub fn is_done(&self) -> bool {
+        self.done.get(self.step) == Some(&true)
+    }
+
+    /// The button that the tutorial step asks for now.
+    pub fn wanted<'a>(&self, step: &'a TutorialStep) -> Option<&'a String> {
+        step.presses.get(self.presses)
+    }
+
+    /// Applies a press of the participant in the tutorial. Only the button that the step asks for changes the
+    /// tutorial's kitchen, so that hints remain correct.
+    pub(crate) fn press(&mut self, step: &TutorialStep, kitchen: &Kitchen, button: ButtonId) {
+        self.pressed += 1;
+        let is_right =
+            self.wanted(step).is_some_and(|wanted| kitchen.button_named(Agent::Human, wanted) == Some(button));
+        let no_effect = kitchen.no_effect(self.kitchen, Agent::Human, button);
+        self.last = Some(TutorialPress { number: self.pressed, button, is_right, no_effect });
+        if is_right {
+            self.kitchen = kitchen.try_press(self.kitchen, Agent::Human, button).after;
+            self.presses += 1;
+            self.finish(self.presses == step.presses.len());
+        }
+    }
+
+    /// Applies the participant's answer to the tutorial step's question.
+    pub(crate) fn answer(&mut self, step: &TutorialStep, choice: u8) {
+        let is_right = step.right == Some(choice);
+        self.wrong = (!is_right).then_some(choice);
+        if let Some(count) = self.wrong_answers.get_mut(self.step) {
+            *count += u32::from(!is_right);
+        }
+        self.finish(is_right);
+    }
+
+    /// Hides the recipe cards of the tutorial step, because the cards were shown for their set time.
+    pub(crate) fn hide_cards(&mut self) {
+        self.are_cards_hidden = true;
+        self.finish(true);
+    }
+
+    fn finish(&mut self, is_done: bool) {
+        if let Some(done) = self.done.get_mut(self.step) {
+            *done |= is_done;
+        }
+    }
+}
 
 impl Session {
     /// The tutorial of the present phase and the tutorial's state; `None` if the phase has no tutorial.
@@ -28,7 +543,7 @@ impl Session {
 ///
 /// # Errors
 /// Why the session refuses the event, in words for the wizard.
-pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
+pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
     let (tutorial, _) = session.tutorial().ok_or("no tutorial is shown now")?;
     let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
@@ -70,7 +585,7 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
 }
 
 /// Begins the tutorial of the study phase that has just begun, at session time `now`, if the phase has a tutorial.
-pub(super) fn begin(session: &mut Session, now: SessionTime) {
+pub(crate) fn begin(session: &mut Session, now: SessionTime) {
     let begun = match session.study_phase() {
         Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen, now)),
         _ => None,
@@ -81,7 +596,7 @@ pub(super) fn begin(session: &mut Session, now: SessionTime) {
 }
 
 /// Applies an event of the tutorial that the session accepts, at the event's session time `now`.
-pub(super) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTime) {
+pub(crate) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTime) {
     let Some((tutorial, state)) = session.tutorial() else { return };
     let Some(step) = tutorial.steps.get(state.step) else { return };
     let (mut state, kitchen) = (state.clone(), &session.kitchen);

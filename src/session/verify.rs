@@ -7,9 +7,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::engine::SessionEngine;
 use crate::admit::is_external;
 use crate::advisor::{AdviceRequest, Advisor};
+use crate::engine::SessionEngine;
 use crate::files::file_error::{FileError, FileResult};
 use crate::follower::SessionFollower;
 use crate::log::{LogEnding, LogLine, LogReader, event_line};

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::setting_checks::SettingError;
+use crate::settings::SettingError;
 use tomcom_core::base::time::SessionTime;
 
 /// `[display]` of a session file: settings of the participant's display.

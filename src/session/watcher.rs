@@ -11,16 +11,15 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::advisor::{AdviceRequest, Advisor};
-use super::follower::SessionFollower;
-use crate::advice_moments::leads_to_advice;
+use crate::advisor::{AdviceRequest, Advisor, leads_to_advice};
 use crate::apply::ApplyError;
+use crate::event::WizardScreenContent;
+use crate::follower::SessionFollower;
 use crate::history::belief_track::BeliefSnapshot;
 use crate::history::comparison::{
     Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
 };
 use crate::settings::Condition;
-use crate::wizard_screen::WizardScreenContent;
 use crate::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;

@@ -2,10 +2,9 @@
 
 use serde::Serialize;
 
-use super::follower::SessionFollower;
-use crate::event::SignalEndReason;
+use crate::event::{SignalEndReason, WizardScreenContent};
+use crate::follower::SessionFollower;
 use crate::settings::ParticipantKind;
-use crate::wizard_screen::WizardScreenContent;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;

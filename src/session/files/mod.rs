@@ -2,26 +2,26 @@
 //! valid.
 
 pub mod file_error;
-pub mod known_settings;
-pub mod language;
 pub mod overwrite;
 pub mod parse;
-pub mod place;
 pub mod replace_file;
 pub mod rescue;
-pub mod wall_time;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use self::file_error::{FileError, FileResult, missing, read_regular, read_text};
-use self::language::read_words;
-use self::parse::parse;
-use self::place::place_of;
-use crate::SessionSpec;
+use jiff::Timestamp;
+use serde::Deserialize;
+
+use crate::files::file_error::{FileError, FileResult, missing, place_of, read_regular, read_text};
+use crate::files::parse::{FileKind, ParsedFile, parse};
 use crate::header::RecordedFile;
-use crate::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
-use crate::ranges;
+use crate::plan::{PlanSpec, QuestionnaireSpec, Study};
+use crate::questionnaire::Questionnaire;
 use crate::settings::SettingError;
+use crate::tutorial::Tutorial;
+use crate::wall_display::DisplaySpec;
+use crate::{SessionSpec, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
 use tomcom_core::kitchen::layout::LayoutSpec;
@@ -268,4 +268,64 @@ fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) 
     let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());
     let remedy = "a place about 0.2 to 0.75 m from the robot's base, and not beside or behind it".to_string();
     Err(FileError::at(path, text, place, found, remedy))
+}
+
+/// Translations of the display's texts, by the English originals.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct LanguageFile(pub BTreeMap<String, String>);
+
+impl ParsedFile for LanguageFile {
+    const KIND: FileKind = FileKind::Language;
+}
+
+/// Reads the texts of a session's display from a language file; texts in the session file take precedence.
+///
+/// # Errors
+/// The file does not exist, or contains no texts.
+pub(crate) fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<()> {
+    let language = &spec.display.language;
+    if DisplaySpec::LANGUAGES.contains(&language.as_str()) {
+        return Ok(());
+    }
+    let path = session.parent().unwrap_or(Path::new(".")).join(language);
+    if let Err(reason) = std::fs::metadata(&path) {
+        let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
+        return Err(missing(session, text, ("display.language", 0, language), reason, remedy));
+    }
+    let LanguageFile(mut words) = parse(&path, &read_text(&path)?)?;
+    words.append(&mut spec.display.words);
+    spec.display.words = words;
+    Ok(())
+}
+
+/// A date and time of the wall clock, in UTC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WallTime(Timestamp);
+
+impl WallTime {
+    /// The present wall clock time.
+    pub fn now() -> WallTime {
+        WallTime(Timestamp::now())
+    }
+
+    /// Milliseconds since the beginning of 1970.
+    pub fn millis(self) -> i64 {
+        self.0.as_millisecond()
+    }
+
+    /// The time this many milliseconds later.
+    pub fn after_millis(self, millis: i64) -> WallTime {
+        WallTime(self.0 + jiff::SignedDuration::from_millis(millis))
+    }
+
+    /// Date of the wall clock time, as in "2026-03-14".
+    pub fn date(self) -> String {
+        self.0.strftime("%F").to_string()
+    }
+
+    /// Date and time in UTC, as in "2026-03-14T09:26:53.589Z" (RFC 3339).
+    pub fn rfc3339(self) -> String {
+        self.0.strftime("%FT%T.%3fZ").to_string()
+    }
 }

@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
 
-use super::replace_file;
+use crate::files::replace_file;
 
 /// Number of bytes from the beginning of a file in which the file's kind is looked for.
 const HEAD: u64 = 1 << 16;

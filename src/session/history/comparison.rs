@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use super::belief_track::AspectBeliefSnapshot;
+use crate::event::WizardScreenContent;
+use crate::history::belief_track::AspectBeliefSnapshot;
 use crate::history::wording;
-use crate::wizard_screen::WizardScreenContent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::Signal;

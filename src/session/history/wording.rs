@@ -1,11 +1,11 @@
 //! Wording of buttons, locations, signals, phases and events as texts for screens and reports.
 
-use super::{press_wording, probe_wording};
-use crate::accuracy_check::GazeCheckEvent;
-use crate::answer_value::AnswerValue;
 use crate::event::{SignalEndReason, TrialEndReason};
+use crate::gaze_check::GazeCheckEvent;
 use crate::plan::PhaseSpec;
+use crate::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 use crate::protocol::ProtocolEvent;
+use crate::questionnaire::AnswerValue;
 use crate::tracker::{TrackerEvent, TrackerRecording};
 use crate::tutorial::TutorialEvent;
 use crate::wall_display::AnswerDevice;
@@ -213,7 +213,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Press { agent, button: id, before, after, no_effect } => {
             let did = match no_effect {
                 Some((why, about)) => Some(because(kitchen, *why, *about, "that")),
-                None => press_wording::effect(kitchen, *agent, *id, (*before, *after)),
+                None => press_effect(kitchen, *agent, *id, (*before, *after)),
             };
             let did = did.map_or(String::new(), |did| format!(": {did}"));
             (agent.name(), format!("{}{did}", button(kitchen, *agent, *id)))
@@ -239,7 +239,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Corrected { location } => {
             ("wizard", format!("corrected {}", kitchen.location(*location).label()))
         }
-        TimelineEvent::Probe(event) => ("", probe_wording::event(event)),
+        TimelineEvent::Probe(event) => ("", probe(event)),
         TimelineEvent::Excluded(reason) => ("trial", format!("excluded: {reason}")),
         TimelineEvent::Included => ("trial", "no longer excluded".to_string()),
         TimelineEvent::Focus(false) => ("console", "lost the keyboard focus".to_string()),
@@ -373,4 +373,74 @@ pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
         }
     };
     format!("error, costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
+}
+
+/// What a press with an effect took, put or made, in words: "takes cooked rice", "puts nori"; `None` where
+/// the button's name says it. The states are those before and after the press.
+pub(crate) fn press_effect(
+    kitchen: &Kitchen,
+    agent: Agent,
+    button: ButtonId,
+    (before, after): (State, State),
+) -> Option<String> {
+    let content = |state: State, at: LocationId| kitchen.content_label(state, at);
+    let hand = kitchen.hands[agent.index()];
+    match kitchen.button(agent, button).action {
+        ButtonAction::Take(_) => None,
+        ButtonAction::Use(_) if before.content(hand).is_empty() => Some(format!("takes {}", content(after, hand))),
+        ButtonAction::Use(place) if before.content(place).is_empty() => Some(format!("puts {}", content(before, hand))),
+        ButtonAction::Use(_) => Some(format!("stacks {}", content(before, hand))),
+        ButtonAction::Process(process) => {
+            let place = kitchen.processes[usize::from(process)].place.unwrap_or(hand);
+            Some(format!("makes {}", content(after, place)))
+        }
+        ButtonAction::Trash => Some(format!("discards {}", content(before, hand))),
+        ButtonAction::Serve(order) => Some(format!("serves {}", content(before, order))),
+    }
+}
+
+/// A name from the log as words on a screen, without underscores.
+fn said(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// The state aspect that a question of a freeze probe is about, in words: "cutting board", "recipe of tuna maki".
+pub fn probe_subject(about: &ProbeSubject) -> String {
+    match about {
+        ProbeSubject::Location { location } => said(location),
+        ProbeSubject::Recipe { dish } => format!("recipe of {}", said(dish)),
+        ProbeSubject::NextOrder => "the order that is served next".to_string(),
+        ProbeSubject::NextPress => "the robot's next press".to_string(),
+    }
+}
+
+/// An event of a freeze probe in words.
+pub fn probe(event: &ProbeEvent) -> String {
+    match event {
+        ProbeEvent::Requested => "the wizard requests a freeze probe".to_string(),
+        ProbeEvent::Delayed { probe, reason } => format!("freeze probe {probe} is delayed: {}", reason.words()),
+        ProbeEvent::Dropped { probe, reason } => format!("freeze probe {probe} is dropped: {}", reason.words()),
+        ProbeEvent::Begun { probe, origin, questions, .. } => {
+            let by = match origin {
+                ProbeOrigin::Schedule => "",
+                ProbeOrigin::Wizard => ", at the wizard's request",
+            };
+            let about: Vec<String> = questions.iter().map(|question| probe_subject(&question.about)).collect();
+            let questions = count(questions.len() as u64, "question", "questions");
+            format!("freeze probe {probe} begins{by}: the task stands still, {questions}: {}", about.join(", "))
+        }
+        ProbeEvent::Asked { probe, question } => format!("freeze probe {probe} asks question {question}"),
+        ProbeEvent::Answered { question, answer: Some(answer), confidence, .. } => {
+            let sure = confidence.map_or(String::new(), |step| format!(" (confidence {step} of 3)"));
+            format!("answer to probe question {question}: {}{sure}", said(answer))
+        }
+        ProbeEvent::Answered { question, answer: None, .. } => {
+            format!("answer to probe question {question}: I don't know")
+        }
+        ProbeEvent::Skipped { probe, reason } => {
+            format!("the wizard skips the other questions of freeze probe {probe}: {reason}")
+        }
+        ProbeEvent::Closed { probe, reason } => format!("freeze probe {probe} closes: {}", reason.words()),
+        ProbeEvent::Ended { probe } => format!("the task continues after freeze probe {probe}"),
+    }
 }

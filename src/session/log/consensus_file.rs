@@ -4,11 +4,11 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::RecordingWriteError;
-use super::decision_file::check_single;
-use super::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::files::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::files::replace_file;
+use crate::log::RecordingWriteError;
+use crate::log::decisions::check_single;
+use crate::log::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::person_code;
 use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode};
 use tomcom_core::measures::consensus::{ConsensusCode, RaterConsensus};

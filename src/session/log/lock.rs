@@ -4,8 +4,8 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use super::RecordingWriteError;
 use crate::files::file_error::open_regular;
+use crate::log::RecordingWriteError;
 
 /// Name of the lock file in the folder of a recording that is being written. The lock file contains the writing
 /// program's process id and the network address for viewers.

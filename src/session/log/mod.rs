@@ -3,11 +3,7 @@
 //! a further part in a folder beside it, whose header names the previous part.
 
 pub mod consensus_file;
-mod correcting;
-mod correction;
-mod decision_file;
-mod exclusion;
-mod guarded;
+mod decisions;
 mod lock;
 pub mod rater_codes;
 mod reader;
@@ -15,20 +11,17 @@ mod same_log;
 mod simulated_log;
 mod writer;
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use crate::TimestampedEvent;
 use crate::files::file_error::FileError;
-pub use correcting::correct;
-pub use correction::CORRECTION_NAME;
-pub use correction::corrected_code;
-pub use decision_file::DecisionError;
-pub use exclusion::{EXCLUSION_NAME, ExclusionRecord, rule, ruling};
+
+pub use decisions::{
+    CORRECTION_NAME, DecisionError, EXCLUSION_NAME, ExclusionRecord, correct, corrected_code, rule, ruling,
+};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
-pub use reader::{LogEnding, LogLine, LogPlace, LogReader, at_line};
-pub use reader::{MAX_LINE, first_line, read_header};
+pub use reader::{LogEnding, LogLine, LogPlace, LogReader, MAX_LINE, at_line, first_line, read_header};
 pub use same_log::{SameLogs, code_files, differing_codes, header_digest};
 pub use simulated_log::{SimulatedLogState, check_simulated};
 pub use writer::{LogWriter, check_continued, is_written_settings};

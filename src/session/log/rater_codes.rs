@@ -6,10 +6,9 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use super::RecordingWriteError;
 use crate::files::file_error::{FileError, FileResult, MAX_TEXT, open_regular, read_bytes};
-use crate::files::overwrite;
-use crate::files::replace_file;
+use crate::files::{overwrite, replace_file};
+use crate::log::RecordingWriteError;
 use crate::person_code;
 use tomcom_core::base::spreadsheet::SEPARATORS;
 use tomcom_core::base::words::count;

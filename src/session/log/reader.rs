@@ -6,13 +6,13 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::correction::correct_header;
-use super::lock::is_same;
-use super::{LOG_NAME, RecordingLock};
 use crate::apply::ApplyError;
 use crate::files::compile_kitchen;
 use crate::files::file_error::{FileError, FileResult, open_regular};
 use crate::header::{FORMAT, PreviousPart, VERSION};
+use crate::log::decisions::correct_header;
+use crate::log::lock::is_same;
+use crate::log::{LOG_NAME, RecordingLock};
 use crate::settings::SettingError;
 use crate::{Event, LogHeader, Session, TimestampedEvent};
 use tomcom_core::kitchen::Kitchen;

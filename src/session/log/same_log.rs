@@ -8,10 +8,10 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::consensus_file::CONSENSUS_NAME;
-use super::rater_codes::code_file_names;
-use super::reader::{MAX_LINE, first_line, is_blank};
 use crate::files::file_error::{FileError, FileResult, open_regular};
+use crate::log::consensus_file::CONSENSUS_NAME;
+use crate::log::rater_codes::code_file_names;
+use crate::log::reader::{MAX_LINE, first_line, is_blank};
 
 const REMEDY: &str = "a readable recording";
 

@@ -6,11 +6,11 @@ use std::fs;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use super::lock::RecordingLock;
-use super::reader::{ends_in_header, first_line};
-use super::writer::is_written_settings;
-use super::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::files::file_error::{open_regular, read_regular};
+use crate::log::lock::RecordingLock;
+use crate::log::reader::{ends_in_header, first_line};
+use crate::log::writer::is_written_settings;
+use crate::log::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::{Event, LogHeader, TimestampedEvent};
 
 /// Upper limit of the length of a complete log's last line, in bytes.

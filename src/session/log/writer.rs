@@ -1,18 +1,17 @@
 //! Writer of recordings: creates the folder, the settings file and the log, and appends events to the log.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
-use super::guarded::GuardedFile;
-use super::lock::{LOCK_NAME, RecordingLock, is_same};
-use super::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::files::file_error::read_regular;
 use crate::files::replace_file::{self, new_beside, replaced_name};
 use crate::files::rescue::{RescueNote, new_rescue_folder};
+use crate::log::lock::{LOCK_NAME, RecordingLock, is_same};
+use crate::log::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::{LogHeader, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 
@@ -264,5 +263,201 @@ struct FiniteNumbers;
 impl Formatter for FiniteNumbers {
     fn write_null<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
         Err(io::Error::new(io::ErrorKind::InvalidData, "a number in it is not finite"))
+    }
+}
+
+/// Length of the log's end that every check compares with the guarding copy, in bytes (some seconds of gaze).
+const TAIL: u64 = 64 << 10;
+/// Least length of the further stretch that every check compares with the guarding copy, in bytes.
+const STRETCH: u64 = 1 << 20;
+/// Largest number of checks whose stretches go through the whole log. With four checks a second, damage anywhere in the
+/// log is found within 10 s, also if the walk has just passed its place.
+const PASS: u64 = 18;
+/// Number of bytes of log and copy that are compared at a time.
+#[cfg(unix)]
+const COMPARED: usize = 64 << 10;
+
+/// A log file that is being written, with its guarding copy.
+#[derive(Debug)]
+pub(crate) struct GuardedFile {
+    file: File,
+    /// Guarding copy of the log, a file without a name; `None` if the log is not guarded or the copy could not be
+    /// written.
+    copy: Option<File>,
+    /// Number of bytes written to the log.
+    length: u64,
+    /// Position in the log at which the next check's stretch begins, in bytes.
+    next: u64,
+    /// Position in the log at which the present pass through the log ends, in bytes.
+    pass_end: u64,
+}
+
+impl Write for GuardedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.length += written as u64;
+        // An incomplete guarding copy is dropped, and the log continues without a copy.
+        self.copy = self.copy.take().filter(|mut copy| copy.write_all(&bytes[..written]).is_ok());
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl GuardedFile {
+    /// A log file without a guarding copy.
+    pub(crate) fn unguarded(file: File) -> GuardedFile {
+        GuardedFile { file, copy: None, length: 0, next: 0, pass_end: 0 }
+    }
+
+    /// A log file with a guarding copy, which is in the system's folder for temporary files, or else in this folder.
+    pub(crate) fn guarded(file: File, folder: &Path) -> GuardedFile {
+        let copy = tempfile::tempfile().or_else(|_| tempfile::tempfile_in(folder)).ok();
+        GuardedFile { copy, ..GuardedFile::unguarded(file) }
+    }
+
+    pub(crate) fn file(&self) -> &File {
+        &self.file
+    }
+
+    /// Compares the length, the end and the next stretch of the log with what was written, or the whole log; returns the
+    /// damage in words; `None` if no damage is found.
+    pub(crate) fn damage(&mut self, whole: bool) -> Option<String> {
+        let length = match self.file.metadata() {
+            Ok(data) => data.len(),
+            Err(reason) => return Some(format!("cannot be read to be checked: {reason}")),
+        };
+        if length != self.length {
+            let how = if length < self.length { "was cut" } else { "was written to" };
+            return Some(format!("{how} by another program: {length} bytes, {} were recorded", self.length));
+        }
+        let tail = self.length.saturating_sub(TAIL);
+        let stretch = if whole { 0..tail } else { self.next_stretch(tail) };
+        let at = self.difference(tail, self.length).or_else(|| self.difference(stretch.start, stretch.end))?;
+        Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
+    }
+
+    /// The stretch of the log that is compared next, between the log's beginning and `tail`. The end of a pass is fixed
+    /// where the pass begins: a walk that followed the growing log would never return to its beginning.
+    fn next_stretch(&mut self, tail: u64) -> std::ops::Range<u64> {
+        if self.next >= self.pass_end {
+            (self.next, self.pass_end) = (0, tail);
+        }
+        let length = STRETCH.max(self.pass_end.div_ceil(PASS));
+        let stretch = self.next..(self.next + length).min(self.pass_end);
+        self.next = stretch.end;
+        stretch
+    }
+
+    /// Position of the first byte in this range that differs between log and guarding copy; `None` if nothing differs
+    /// or there is no copy.
+    #[cfg(unix)]
+    fn difference(&mut self, from: u64, until: u64) -> Option<u64> {
+        use std::os::unix::fs::FileExt;
+        let (mut copied, mut found) = ([0; COMPARED], [0; COMPARED]);
+        let mut at = from;
+        while at < until {
+            let size = COMPARED.min((until - at) as usize);
+            let copy = self.copy.as_ref()?;
+            if copy.read_exact_at(&mut copied[..size], at).is_err() {
+                self.copy = None;
+                return None;
+            }
+            // The read failed: the log was cut meanwhile, or the disk is broken.
+            if self.file.read_exact_at(&mut found[..size], at).is_err() {
+                return Some(at);
+            }
+            if copied[..size] != found[..size] {
+                let index = copied.iter().zip(&found).position(|(copied, found)| copied != found);
+                return index.map(|index| at + index as u64);
+            }
+            at += size as u64;
+        }
+        None
+    }
+
+    /// Nothing differs on this operating system, on which logs have no guarding copies.
+    #[cfg(not(unix))]
+    fn difference(&mut self, _from: u64, _until: u64) -> Option<u64> {
+        None
+    }
+
+    /// Saves the log to another file: from the guarding copy, or from the log itself if the log is undamaged.
+    ///
+    /// # Errors
+    /// There is no undamaged source, or the other file cannot be written.
+    pub(crate) fn save(&mut self, is_damaged: bool, to: &mut File) -> io::Result<()> {
+        let from = match (&mut self.copy, is_damaged) {
+            (Some(copy), _) => copy,
+            (None, false) => &mut self.file,
+            (None, true) => return Err(io::Error::from(io::ErrorKind::NotFound)),
+        };
+        from.rewind()?;
+        io::copy(from, to)?;
+        to.sync_all()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Test: damages a guarded log of this length, and compares the reported damage and the saved log with the expected
+    /// ones.
+    fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let path = folder.join("log");
+        let file = File::options().read(true).write(true).create_new(true).open(&path).unwrap();
+        let mut log = GuardedFile::guarded(file, folder);
+        log.write_all(&vec![b'x'; bytes]).unwrap();
+        // Something is written to the log before every check, as in a live session; the checks have gone through most
+        // of the log when it is damaged.
+        let mut lines = Vec::new();
+        let mut check = |log: &mut GuardedFile| {
+            log.write_all(b"more\n").unwrap();
+            lines.extend_from_slice(b"more\n");
+            log.damage(false)
+        };
+        assert_eq!((0..5).find_map(|_| check(&mut log)), None);
+        harm(&path);
+        let damage = (0..2 * PASS).find_map(|_| check(&mut log));
+        assert_eq!(log.damage(true).is_some(), found.is_some(), "{name}: the whole log");
+        assert_eq!(damage.is_some(), found.is_some(), "{name}: {damage:?}");
+        assert!(damage.iter().all(|damage| damage.contains(found.unwrap_or_default())), "{name}: {damage:?}");
+        let saved = folder.join("saved");
+        log.save(damage.is_some(), &mut File::create(&saved).unwrap()).unwrap();
+        assert_eq!(std::fs::read(saved).unwrap(), [&vec![b'x'; bytes][..], &lines].concat(), "{name}");
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 2, "{name}: the copy has no name");
+    }
+
+    fn overwrite(path: &Path, at: u64, with: &[u8]) {
+        use std::os::unix::fs::FileExt;
+        File::options().write(true).open(path).unwrap().write_all_at(with, at).unwrap();
+    }
+
+    #[test]
+    fn what_another_program_does_to_a_log_is_noticed_and_what_was_recorded_is_saved() {
+        const LONG: usize = 5 << 20;
+        check("untouched", LONG, |_| (), None);
+        // Test: the next write restores the log's length, with zeros in between.
+        check(
+            "cut",
+            LONG,
+            |path| File::create(path).map(drop).unwrap(),
+            Some("overwritten by another program, at byte"),
+        );
+        check(
+            "longer",
+            100,
+            |path| overwrite(path, 125, b"other longer line"),
+            Some("was written to by another program"),
+        );
+        check("end", LONG, |path| overwrite(path, LONG as u64 - 9, b"y"), Some(&format!("at byte {}", LONG - 9)));
+        check("very long", 40 << 20, |path| overwrite(path, 30 << 20, b"y"), Some(&format!("at byte {}", 30 << 20)));
+        check("beginning", LONG, |path| overwrite(path, 3, b"y"), Some("at byte 3 of"));
+        check("middle", LONG, |path| overwrite(path, 3 << 20, b"y"), Some(&format!("at byte {}", 3 << 20)));
     }
 }

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use tomcom::run::simulate::SimulationRequest;
 use tomcom::run::sweep::{ParameterSweepAxis, TABLE_NAME, sweep, trials};
 use tomcom_session::Event;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::settings::Condition;
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::verify::verify;
 use tomcom_study::analysis::sweep_row::ParameterSweepRow;
 

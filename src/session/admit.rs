@@ -11,10 +11,7 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
 use tomcom_core::kitchen::{Agent, ContentId, LocationKind};
 
-/// Whether the session accepts this event now (admits it).
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
+/// Whether the session accepts this event now. The error says why not, in words for the wizard, as in every `admit`.
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let phase = session.phase;
@@ -75,9 +72,6 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
 }
 
 /// Whether the condition of the trial allows signals of this sender.
-///
-/// # Errors
-/// The reason for the refusal, in words.
 pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
     match (session.spec.trial.condition, by) {
         (Condition::None, _) => Err("nobody sends signals in the unassisted condition"),
@@ -108,11 +102,7 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     }
 }
 
-/// Rules for the wizard's keys, such as the cool-down between signals. The rules apply at the keyboard only, not to
-/// events in recordings.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
+/// Rules for the wizard's keys, such as the cool-down between signals; they do not apply to events in recordings.
 pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
     let Event::SignalShown { by: Sender::Wizard, signal, .. } = event else { return Ok(()) };
     if session.spec.scripts_wizard() {
@@ -131,7 +121,7 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
 }
 
-/// Whether a press of a person comes sooner after the person's previous press than the session setting `pace_s` allows.
+/// Whether a person presses sooner after the previous press than the setting `pace_s` allows.
 pub(crate) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     let spec = &session.spec;
     let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
@@ -199,10 +189,6 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
     }
 }
 
-/// Whether the session accepts a manual intervention of the experimenter now.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
 pub(crate) fn admit_intervention(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let (phase, robot) = (session.phase, &session.robot);

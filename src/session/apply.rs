@@ -15,31 +15,22 @@ use tomcom_core::kitchen::{
     Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, Press, State,
 };
 
-/// Error: the session cannot accept an event, because the log is damaged or was written by another program.
+/// The session cannot accept an event: the log is damaged or was written by another program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}; right would be {remedy}")]
 pub struct ApplyError {
-    /// Sequence number of the refused event.
     pub seq: u64,
-    /// What is invalid in the refused event.
     pub found: String,
-    /// What a valid event would contain in its place.
     pub remedy: String,
 }
 
-/// Result of applying an event: actions to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AppliedEvent {
-    /// The actions that the running session has to perform because of the event, in order.
     pub effects: Vec<SessionEffect>,
-    /// The change of the kitchen's state by the event.
     pub change: KitchenChange,
 }
 
-/// Applies an event to the session.
-///
-/// # Errors
-/// Unknown names, decreasing times, and events that the session does not accept now (see [`admit`]). The session is
+/// Applies an event. Unknown names, decreasing times and events that [`admit`] refuses are errors; the session is
 /// unchanged then.
 pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
     check(session, stamped)?;
@@ -153,7 +144,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
     Ok(AppliedEvent { effects, change })
 }
 
-/// Checks time and precondition of an event. Whoever reads a log checks the sequence number.
+/// Time and precondition; whoever reads a log checks the sequence number.
 fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
     if stamped.time < session.time {
         return Err(ApplyError {
@@ -170,7 +161,7 @@ fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError
     Ok(())
 }
 
-/// The locations, dishes and buttons that an event names, looked up in the session's kitchen.
+/// Looks up what an event names in the session's kitchen.
 struct Named<'a> {
     session: &'a Session,
     seq: u64,
@@ -211,7 +202,7 @@ impl Named<'_> {
     }
 }
 
-/// Changes the kitchen's state, records which locations changed, and returns the state before and after.
+/// Changes the kitchen's state and notes which locations changed; returns the state before and after.
 fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
     how(&mut session.state);
@@ -246,7 +237,6 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
     KitchenChange::TrialStarted { before, after }
 }
 
-/// Sets the timer for the event that the human has still not pressed after an unusually long time.
 fn await_press(session: &Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     let time = now + unusual_silence(session);
     effects.push(SessionEffect::At { time, timer: Timer::HumanWaits });
@@ -260,8 +250,7 @@ fn pause(session: &mut Session, now: SessionTime) {
     session.note(now, TimelineEvent::Trial(TrialPhase::Paused));
 }
 
-/// Resumes after a pause: pending times are postponed by its duration. After a pause during a freeze probe, the probe
-/// continues.
+/// Pending times are postponed by the pause. After a pause during a freeze probe, the probe continues.
 fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     if session.is_frozen() {
         return probes::resume(session, now);
@@ -315,7 +304,7 @@ fn show(
     session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
-/// Stores a recommendation as the latest, without a signal that was sent since the recommendation was requested.
+/// Stores a recommendation, without a signal that was sent since it was requested.
 fn advise(session: &mut Session, mut advice: Recommendation) {
     let shown = session.shown.as_ref().filter(|shown| shown.by == Sender::Wizard && shown.since >= advice.for_ns);
     if let Some(shown) = shown {
@@ -384,52 +373,35 @@ fn press(
 /// An action that the running session must perform after an event. A replay performs none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionEffect {
-    /// Set a timer; [`SessionEffect::Postpone`] can delay it.
-    At {
-        /// Session time at which the timer is due.
-        time: SessionTime,
-        /// What happens when the timer is due.
-        timer: Timer,
-    },
-    /// Cancel a timer that has been set.
+    At { time: SessionTime, timer: Timer },
     Cancel(Timer),
-    /// Cancel all timers, at the end of the trial.
     CancelAll,
-    /// Postpone all timers by the length of a pause.
     Postpone(SessionTime),
-    /// Close the recording, at the end of the session.
     Close,
 }
 
-/// A timer of a session: what happens when it is due.
+/// What happens when a timer is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Timer {
-    /// The order location stops showing `served` after a dish was served.
+    /// The location stops showing `served`.
     ClearOrder(LocationId),
-    /// A new order appears at this location; the running session draws the ordered dish.
+    /// A new order appears; the running session draws the dish.
     NewOrder(LocationId),
-    /// The display time of the shown signal is over.
     EndSignal,
-    /// The set duration of the trial is over.
     EndTrial,
-    /// The set number of presses that ends the trial was reached.
     EndTrialByPresses,
-    /// The set number of served orders that ends the trial was reached.
     EndTrialByOrders,
-    /// The rules of offers have to be asked whether an offer to the wizard opens or closes.
+    /// The rules of offers are asked whether an offer opens or closes.
     ReviewOffer,
-    /// The human has still not pressed after an unusually long time.
     HumanWaits,
 }
 
-/// Pauses the trial and stops its clock.
 pub(crate) fn pause_clock(session: &mut Session, now: SessionTime) {
     stop_clock(session, now);
     session.phase = TrialPhase::Paused;
     session.gaze.measured = None;
 }
 
-/// Stops the trial's clock, if it is running.
 pub(crate) fn stop_clock(session: &mut Session, now: SessionTime) {
     match session.phase {
         TrialPhase::Running => session.paused_at = now,
@@ -441,7 +413,7 @@ pub(crate) fn stop_clock(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Resumes the trial; returns for how long the trial stood still, by which all pending times have to be postponed.
+/// Returns for how long the trial stood still, by which all pending times have to be postponed.
 pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTime {
     let by = now - session.paused_at;
     session.pauses.push((session.paused_at, now));
@@ -457,7 +429,6 @@ pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTi
     by
 }
 
-/// Applies an event of the simulated arm to the session's state of the robot.
 pub(crate) fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
@@ -476,27 +447,25 @@ pub(crate) fn change_arm(session: &mut Session, now: SessionTime, event: &Event)
     }
 }
 
-/// Applies that the wizard stops the robot, or releases it.
 pub(crate) fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
     session.robot.stopped = stopped;
     session.robot.idle = None;
     session.note(now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
 }
 
-/// Applies that the wizard holds the robot, or lets it continue.
 pub(crate) fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
     session.robot.held = held;
     session.robot.idle = None;
     session.note(now, if held { TimelineEvent::RobotHeld } else { TimelineEvent::RobotReleased });
 }
 
-/// Number of the human's usual intervals between presses after which silence is unusual.
 const SILENT_INTERVALS: u64 = 3;
-/// Least unusual silence, in nanoseconds: 6 s, three usual intervals of the paper's participants.
+/// Three usual intervals of the paper's participants.
 const LEAST_SILENCE: SessionTime = SessionTime(6_000_000_000);
 
-/// The time without a press after which silence is unusual: three of the human's usual intervals in this trial (the
-/// median of the intervals between counted presses, without pauses), and at least 6 s.
+/// The time without a press after which silence is unusual, and the human may be stuck: three of the human's usual
+/// intervals in this trial (the median, without pauses), and at least 6 s. The timer is set at the trial's start, at
+/// each counted press of the human and at each `human_waits`, so this event comes once for every such time.
 pub(crate) fn unusual_silence(session: &Session) -> SessionTime {
     let times: Vec<SessionTime> = own_presses(session).collect();
     let mut intervals: Vec<SessionTime> = times.windows(2).map(|pair| session.age(pair[1], pair[0])).collect();
@@ -505,13 +474,12 @@ pub(crate) fn unusual_silence(session: &Session) -> SessionTime {
     SessionTime(SILENT_INTERVALS * usual.0).max(LEAST_SILENCE)
 }
 
-/// For how long the human has not pressed at `now`, without pauses; before the human's first press, the time since the
-/// trial's start.
+/// For how long the human has not pressed, without pauses; before the first press, since the trial's start.
 pub fn silence_so_far(session: &Session, now: SessionTime) -> SessionTime {
     session.age(own_presses(session).next().unwrap_or(session.trial_start), now)
 }
 
-/// Session times of the human's counted presses, the latest first.
+/// Times of the human's counted presses, the latest first.
 fn own_presses(session: &Session) -> impl Iterator<Item = SessionTime> + '_ {
     let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
     session.timeline.iter().rev().filter(move |entry| is_own(&entry.what)).map(|entry| entry.time)

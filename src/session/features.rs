@@ -5,26 +5,18 @@ use std::fmt;
 use crate::SessionSpec;
 use crate::settings::{ArmKind, ParticipantKind};
 
-/// An optional part of the crate; each is a Cargo feature of this name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
-    /// The wizard's console in the terminal.
     Console,
-    /// The server of the participant's display.
     Display,
-    /// Export of recordings as MCAP files.
     Mcap,
-    /// The simulated robot arm that presses buttons in a physics simulation, and its kinematics.
     Physics,
-    /// Streams of a session for Rerun's 3D viewers.
     Rerun,
 }
 
 impl Feature {
-    /// All optional parts of the crate.
     pub const ALL: [Feature; 5] = [Feature::Console, Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
 
-    /// Whether this build of the program contains the optional part.
     pub const fn is_built(self) -> bool {
         match self {
             Feature::Console => cfg!(feature = "console"),
@@ -35,7 +27,6 @@ impl Feature {
         }
     }
 
-    /// The name of the optional part's Cargo feature.
     pub const fn key(self) -> &'static str {
         match self {
             Feature::Console => "console",
@@ -46,7 +37,7 @@ impl Feature {
         }
     }
 
-    /// What a build without this optional part cannot do, in words.
+    /// What a build without it cannot do.
     pub const fn lacks(self) -> &'static str {
         match self {
             Feature::Console => "no session can be run or looked at in the terminal",
@@ -57,10 +48,6 @@ impl Feature {
         }
     }
 
-    /// Checks that this build contains the optional part.
-    ///
-    /// # Errors
-    /// This build does not contain the part.
     pub const fn require(self) -> Result<(), MissingFeature> {
         if self.is_built() { Ok(()) } else { Err(MissingFeature(self)) }
     }
@@ -78,24 +65,19 @@ impl fmt::Display for Feature {
     }
 }
 
-/// Error: this build does not contain the optional part (Cargo feature) that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("built without {0}: {lacks}", lacks = .0.lacks())]
 pub struct MissingFeature(pub Feature);
 
 impl MissingFeature {
-    /// How to get a build that contains the missing part, in words.
+    /// How to get a build that contains it.
     pub fn remedy(self) -> String {
         format!("cargo build --release --features {}, or a build with the default features", self.0.key())
     }
 }
 
 impl SessionSpec {
-    /// Checks that this build can run the session without a console; the simulated arm is an optional part of the
-    /// build.
-    ///
-    /// # Errors
-    /// The part of the program that this build lacks.
+    /// Whether this build can run the session without a console.
     pub const fn require_built(&self) -> Result<(), MissingFeature> {
         match self.robot.arm {
             ArmKind::Physics => Feature::Physics.require(),
@@ -103,10 +85,7 @@ impl SessionSpec {
         }
     }
 
-    /// Checks that this build can run the session at the console.
-    ///
-    /// # Errors
-    /// The part of the program that this build lacks.
+    /// Whether this build can run the session at the console.
     pub fn require_built_live(&self) -> Result<(), MissingFeature> {
         self.require_built()?;
         match self.participant.kind {

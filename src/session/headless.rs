@@ -7,7 +7,7 @@ use crate::protocol::ProtocolEvent;
 use crate::{Event, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
-/// Time after which a simulated attendant resumes an arm that has stopped by itself, in seconds.
+/// Time after which a simulated attendant resumes an arm that has stopped by itself.
 const LOOKS_S: f64 = 3.0;
 
 /// Stands in for a wizard in simulations: resumes an arm that has stopped by itself.
@@ -17,7 +17,7 @@ pub struct SimulatedRobotOperator {
 }
 
 impl SimulatedRobotOperator {
-    /// Raises the next internal event of a running session, and resumes the arm if it has been stopped for a while.
+    /// Raises the next internal event, and resumes the arm if it has been stopped for a while.
     pub fn step(&mut self, engine: &mut SessionEngine) -> Vec<TimestampedEvent> {
         let now = engine.next_due().unwrap_or(engine.session().time);
         let mut events = engine.fire();
@@ -29,10 +29,7 @@ impl SimulatedRobotOperator {
     }
 }
 
-/// Runs a whole session of one trial and passes every event to `record`.
-///
-/// # Errors
-/// The first error of `record`; the session stops there.
+/// Runs a session of one trial and passes every event to `record`, until its first error.
 pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
     let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
     if let Some(phase) = engine.session().next_phase() {
@@ -55,21 +52,17 @@ pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEve
     engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)
 }
 
-/// Largest number of shards of a simulation.
 const MAX_SHARDS: u64 = 100_000;
 
-/// A shard of a simulation's trials, so that several computers can share the simulation: number `number` (from 1) of
-/// `of` disjoint parts.
+/// Part `number` (from 1) of `of` disjoint parts of a simulation's trials, which several computers share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimulationShard {
-    /// Number of this shard, from 1.
     pub number: u64,
-    /// Number of shards into which the simulation is divided.
     pub of: u64,
 }
 
 impl SimulationShard {
-    /// The only shard of an undivided simulation, with all trials.
+    /// All trials.
     pub const WHOLE: SimulationShard = SimulationShard { number: 1, of: 1 };
 }
 

@@ -13,35 +13,30 @@ use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::mind::model::HumanModel;
 
-/// Verdict of a preflight check (a check before a trial).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreflightVerdict {
-    /// The preflight check found nothing wrong.
     Ok,
-    /// The checked part (such as the eye tracker) is usable with limitations.
+    /// Usable with limitations.
     Warning,
-    /// The checked part (such as the eye tracker) is not usable.
+    /// Not usable.
     Failed,
 }
 
-/// Result of a preflight check before a trial or a session.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreflightCheck {
-    /// What the preflight check is about: "display", "disk".
+    /// What it is about: "display", "disk".
     pub name: String,
-    /// The verdict of the preflight check.
     pub verdict: PreflightVerdict,
-    /// What the preflight check found, in words.
     pub found: String,
-    /// What the wizard can do about the finding; `None` if the verdict is ok.
+    /// What the wizard can do about it; `None` if the verdict is ok.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<String>,
 }
 
 impl PreflightCheck {
-    /// A preflight check with its result; a check with the verdict ok gets no remedy.
+    /// A check that is ok gets no remedy.
     pub fn new(
         name: &str,
         verdict: PreflightVerdict,
@@ -52,21 +47,19 @@ impl PreflightCheck {
         PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
     }
 
-    /// A preflight check with the verdict ok and this finding.
     pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
         PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
     }
 }
 
-/// Sampling rate of the gaze below which short looks are missed, in Hz.
+/// Rate below which short looks are missed.
 const SLOW_HZ: f64 = 20.0;
-/// Time without a usable gaze sample after which gaze counts as missing, in seconds.
+/// Time without a usable sample after which gaze counts as missing.
 const UNUSABLE_S: f64 = 1.0;
-/// Free disk space, in bytes, below which the preflight check warns, and below which it fails; a session of 15 min
-/// takes about 10 MB.
+/// Free bytes below which the check warns, and below which it fails; a session of 15 min takes about 10 MB.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 
-/// Checks the free disk space for a recording; `None` if the system does not report it.
+/// `None` if the system does not say.
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     let remedy = "free some space, or record elsewhere with --out";
     let Some(free) = free_bytes else {
@@ -85,7 +78,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     PreflightCheck::new("free space", verdict, format!("{} MB free on the disk", free / 1_000_000), remedy)
 }
 
-/// Checks whether the trial's settings are those of the study arm that the plan prescribes; `None` outside of plans.
+/// Whether the settings are those of the study arm that the plan prescribes.
 fn condition(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let planned = spec.step.as_ref()?.arm?;
@@ -102,23 +95,20 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Says which human model the session has, and what differs from the named model, unless it is the default.
+/// How it differs from the named model, unless it is the default.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
     let human = &session.spec.human;
     (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", human.named()))
 }
 
-/// A sender of gaze that was rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RejectedGaze {
-    /// Who was rejected, and why, in words.
+    /// Who was rejected, and why.
     pub told: String,
-    /// What to do, so that the sender is not rejected.
     pub remedy: String,
 }
 
-/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a
-/// gaze accuracy check, `rejected` the sender of gaze that was rejected since the last gaze sample arrived.
+/// `check_gaze`: key that starts a gaze accuracy check; `rejected`: since the last gaze sample arrived.
 pub fn participant(
     session: &Session,
     now: SessionTime,
@@ -158,8 +148,8 @@ pub fn participant(
     checks
 }
 
-/// Checks the gaze that the session replays from this file: one check of the numbers, and one for each remark about the
-/// file. A file without any sample is refused when it is read.
+/// One check of the numbers, and one for each remark about the file. A file without any sample is refused when it is
+/// read.
 pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCheck> {
     let look = "look at the line that is named; docs/tracker-recorded.md says what is read, and how";
     let (verdict, remedy) = match found {
@@ -238,8 +228,7 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
     checks
 }
 
-/// Checks how many samples of the gaze stream are faulty. Real gaze streams have some; they are ignored, and matter only
-/// if there are many.
+/// Real gaze streams have some faulty samples; they are ignored, and matter only if there are many.
 fn stream_faults(session: &Session) -> Option<PreflightCheck> {
     let faults = faults(session);
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
@@ -260,7 +249,6 @@ fn stream_faults(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("gaze stream", verdict, found, remedy))
 }
 
-/// Checks the connection to the eye tracker, and whether it detects the display.
 fn tracker(session: &Session) -> PreflightCheck {
     let spec = &session.spec.tracker;
     let name = "eye tracker";
@@ -298,7 +286,6 @@ fn tracker(session: &Session) -> PreflightCheck {
     }
 }
 
-/// Checks the gaze stream from the Lab Streaming Layer.
 fn stream(session: &Session) -> PreflightCheck {
     let wanted = session.spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()).map_or(String::new(), LslGazeSpec::title);
     if let streams @ [_, _, ..] = &session.tracker.several_streams[..] {
@@ -316,7 +303,6 @@ fn stream(session: &Session) -> PreflightCheck {
     PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 
-/// Checks the result of the last gaze accuracy check, if there was one.
 fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
     let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
     let verdict = match accuracy_deg {

@@ -15,40 +15,35 @@ use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Kitchen;
 
-/// Settings of freeze probes: how often the task stands still for questions about the participant's beliefs. A session
-/// file without these settings has no freeze probes.
+/// `[probes]` of a session file; without it there are no freeze probes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProbeSpec {
-    /// Number of freeze probes that are scheduled in a trial.
+    /// Number of scheduled probes.
     pub per_trial: u32,
-    /// Least time before the first freeze probe and between two probes, in seconds of the trial's clock.
+    /// Least time before the first probe and between two, on the trial's clock.
     pub apart_s: f64,
-    /// Time after a signal or a freeze probe in which no freeze probe begins, in seconds of the trial's clock.
+    /// Time after a signal or a probe in which none begins, on the trial's clock.
     pub after_signal_s: f64,
-    /// Longest time for which a freeze probe waits while it may not begin, in seconds of the trial's clock; afterwards
-    /// the probe is cancelled.
+    /// Longest time for which a probe waits while it may not begin, on the trial's clock; then it is cancelled.
     pub wait_s: f64,
-    /// Time limit for all questions of a freeze probe, in seconds.
+    /// Time for all questions of a probe.
     pub limit_s: f64,
-    /// Duration of the count-down after a freeze probe before the task continues, in seconds.
+    /// Count-down before the task continues.
     pub count_down_s: f64,
-    /// The least number of questions in a freeze probe.
     pub least_questions: u32,
-    /// The largest number of questions in a freeze probe.
     pub most_questions: u32,
-    /// Share of blind probes in a trial, whose questions are chosen without the belief estimate.
+    /// Share of blind probes, whose questions are chosen without the belief estimate.
     pub blind_share: f64,
-    /// The least inclusion probability of any question in a freeze probe.
+    /// Least inclusion probability of any question.
     pub least_inclusion: f64,
-    /// Probability that the participant looks at a place because a probe's question was about that place; the belief
-    /// filter uses this probability.
+    /// Probability, for the belief filter, that the participant looks at a place because a question was about it.
     pub teaches: f64,
     /// Whether the participant also reports the confidence in each answer.
     pub confidence: bool,
-    /// Whether a freeze probe can also ask what happens next (level 2 of situation awareness).
+    /// Whether a probe can also ask what happens next (level 2 of situation awareness).
     pub level_2: bool,
-    /// Names of locations, and recipes as "recipe of DISH", about which freeze probes ask no questions.
+    /// Names of locations, and recipes as "recipe of DISH", about which nothing is asked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub leave_out: Vec<String>,
 }
@@ -75,10 +70,6 @@ impl Default for ProbeSpec {
 }
 
 impl ProbeSpec {
-    /// Checks that the settings of freeze probes fit each other and a trial of this duration.
-    ///
-    /// # Errors
-    /// The first setting of freeze probes that does not fit.
     pub(crate) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
         let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
         if least_questions > most_questions {
@@ -97,10 +88,7 @@ impl ProbeSpec {
         Ok(())
     }
 
-    /// Checks that the kitchen has what the probe settings name, and enough state aspects for the questions.
-    ///
-    /// # Errors
-    /// The first setting of freeze probes that does not fit the kitchen.
+    /// The kitchen must have what the settings name, and enough state aspects for the questions.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
         let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
         if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
@@ -125,130 +113,106 @@ impl ProbeSpec {
         Ok(())
     }
 
-    /// Whether probes can ask about the state aspect with this name and number of possible values.
+    /// `values`: number of the aspect's possible values.
     pub fn asks_about(&self, aspect: &str, values: usize) -> bool {
         values > 1 && !self.leave_out.iter().any(|name| name == aspect)
     }
 }
 
-/// An event of a freeze probe. Probes have numbers from 1 within a trial, scheduled and requested ones together.
+/// The task stands still, and the participant answers questions about the participant's beliefs (SAGAT, Endsley 1988).
+/// Probes have numbers from 1 within a trial, scheduled and requested ones together; questions have numbers from 1
+/// within a probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum ProbeEvent {
-    /// The wizard requests a freeze probe.
     Requested,
-    /// A freeze probe is due but may not begin yet; it waits.
+    /// It is due but may not begin yet.
     Delayed {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Why the freeze probe has to wait.
         reason: ProbeDelayReason,
     },
-    /// A freeze probe has waited for the longest allowed time, and is cancelled.
+    /// It has waited for the longest allowed time, and is cancelled.
     Dropped {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Why the cancelled freeze probe still had to wait at the end.
+        /// Why it still had to wait at the end.
         reason: ProbeDelayReason,
     },
-    /// A freeze probe begins: the task stands still from now on. All questions of the probe are drawn.
+    /// The task stands still from now on; all questions are drawn.
     Begun {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Whether the schedule or the wizard caused the freeze probe.
         origin: ProbeOrigin,
-        /// Whether the belief estimate influenced the choice of the probe's questions.
+        /// Whether the belief estimate influenced the choice of questions.
         uses_estimate: bool,
-        /// The questions of the freeze probe, in the order in which they are asked.
+        /// In the order in which they are asked.
         questions: Vec<ProbeQuestion>,
     },
-    /// A question of the freeze probe is shown.
     Asked {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Number of the question in the freeze probe, from 1.
         question: u32,
     },
-    /// The participant answers the shown question of the freeze probe.
     Answered {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Number of the question in the freeze probe, from 1.
         question: u32,
-        /// The answer that the participant chose among the question's choices; `None`: "I don't know".
+        /// One of the question's choices; `None`: "I don't know".
         #[serde(default, skip_serializing_if = "Option::is_none")]
         answer: Option<String>,
-        /// The participant's confidence in the answer, from 1 to 3, if it was asked for.
+        /// From 1 to 3, if it was asked for.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         confidence: Option<u8>,
-        /// Where the answer to the probe was entered: on the display or at the console.
         on: AnswerDevice,
     },
-    /// The wizard skips the remaining questions of the freeze probe.
+    /// The wizard skips the remaining questions.
     Skipped {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// The wizard's reason for skipping the remaining questions.
         reason: String,
     },
-    /// No more questions of the freeze probe are asked: the count-down to the task begins, unless the trial is over.
+    /// No more questions are asked: the count-down begins, unless the trial is over.
     Closed {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Why no more questions of the freeze probe are asked.
         reason: ProbeEndReason,
     },
-    /// The freeze probe ends, and the task continues.
+    /// The task continues.
     Ended {
-        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
     },
 }
 
-/// A question of a freeze probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbeQuestion {
-    /// What the question of the freeze probe is about.
     pub about: ProbeSubject,
-    /// Possible answers to the probe's question, by their names in the log, in the order in which they are shown.
+    /// Possible answers, by their names in the log, in the order in which they are shown.
     pub choices: Vec<String>,
-    /// Inclusion probability: the probability with which this question was drawn for the probe, given the settings, the
-    /// session so far, and the number of questions.
+    /// Probability with which this question was drawn, given the settings, the session so far, and the number of
+    /// questions.
     pub inclusion: f64,
 }
 
-/// What a question of a freeze probe is about.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(tag = "asks", rename_all = "snake_case")]
 pub enum ProbeSubject {
-    /// The question is about the content of a location.
     Location {
-        /// Name of the location that the question is about.
         location: String,
     },
-    /// The question is about the recipe of a dish.
     Recipe {
-        /// Name of the dish that the question is about.
         dish: String,
     },
-    /// The question is about the order that will be served next.
+    /// Which order will be served next.
     NextOrder,
-    /// The question is about the robot's next press.
+    /// What the robot will press next.
     NextPress,
 }
 
-/// Why a freeze probe that is due cannot begin yet.
+/// Why a probe that is due cannot begin yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeDelayReason {
-    /// The freeze probe waits because a signal was shown a short time before.
+    /// A signal was shown a short time before.
     Signal,
-    /// The freeze probe waits because another freeze probe ended a short time before.
+    /// Another probe ended a short time before.
     Probe,
 }
 
 impl ProbeDelayReason {
-    /// The reason for the freeze probe's delay in words.
     pub fn words(self) -> &'static str {
         match self {
             ProbeDelayReason::Signal => "a signal was shown just before",
@@ -257,18 +221,14 @@ impl ProbeDelayReason {
     }
 }
 
-/// What caused a freeze probe: the schedule or the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeOrigin {
-    /// The freeze probe comes from the schedule, which was drawn before the trial.
     Schedule,
-    /// The freeze probe comes from a request of the wizard.
     Wizard,
 }
 
 impl ProbeOrigin {
-    /// Name of the freeze probe's origin in logs.
     pub fn name(self) -> &'static str {
         match self {
             ProbeOrigin::Schedule => "schedule",
@@ -277,22 +237,17 @@ impl ProbeOrigin {
     }
 }
 
-/// Why a freeze probe asks no more questions.
+/// Why a probe asks no more questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeEndReason {
-    /// All questions of the probe are answered.
     Answered,
-    /// The time limit of the probe was reached.
     TimeOver,
-    /// The wizard skipped the remaining questions.
     Skipped,
-    /// The trial ended during the probe.
     TrialEnded,
 }
 
 impl ProbeEndReason {
-    /// Name of the reason for which no more questions are asked, in logs.
     pub fn name(self) -> &'static str {
         match self {
             ProbeEndReason::Answered => "answered",
@@ -302,7 +257,6 @@ impl ProbeEndReason {
         }
     }
 
-    /// The reason for the end of the questions in words.
     pub fn words(self) -> &'static str {
         match self {
             ProbeEndReason::Answered => "all questions of the probe are answered",
@@ -313,129 +267,113 @@ impl ProbeEndReason {
     }
 }
 
-/// All freeze probes of a trial: the present one, past ones, and the schedule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialProbes {
-    /// The freeze probe for which the task stands still now, from its event `begun` to its event `ended`.
+    /// The probe for which the task stands still, from its `begun` to its `ended`.
     pub open: Option<StartedProbe>,
-    /// The freeze probes that have ended.
     pub over: Vec<StartedProbe>,
-    /// A freeze probe that is due and has not begun.
+    /// It is due and has not begun.
     pub waiting: Option<WaitingProbe>,
-    /// Numbers of the cancelled freeze probes, each with the reason for which the probe had to wait.
+    /// Numbers of the cancelled probes, each with why it had to wait.
     pub dropped: Vec<(u32, ProbeDelayReason)>,
-    /// The scheduled freeze probes of the trial, whose times were drawn at its start.
+    /// Drawn at the trial's start.
     pub schedule: Vec<ScheduledProbe>,
-    /// Number of scheduled freeze probes that have become due.
+    /// Number of scheduled probes that have become due.
     pub came_due: usize,
-    /// The highest number of a freeze probe so far.
+    /// The highest number of a probe so far.
     pub numbered: u32,
-    /// Session time at which the last signal was shown.
+    /// When the last signal was shown.
     pub signalled_at: Option<SessionTime>,
-    /// Session time at which the last freeze probe ended.
+    /// When the last probe ended.
     pub ended_at: Option<SessionTime>,
 }
 
-/// A freeze probe that is due and has not begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaitingProbe {
-    /// Number of the freeze probe within the trial, counted from 1.
     pub number: u32,
-    /// Whether the schedule or the wizard caused the probe.
     pub origin: ProbeOrigin,
-    /// Whether the belief estimate influences the choice of the probe's questions.
     pub uses_estimate: bool,
-    /// Time at which the probe became due, on the trial's clock.
+    /// When it became due, on the trial's clock.
     pub since: SessionTime,
-    /// Why the freeze probe has to wait, once its delay is recorded.
+    /// Why it has to wait, once that is recorded.
     pub reason: Option<ProbeDelayReason>,
 }
 
-/// A freeze probe that has begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartedProbe {
-    /// Number of the freeze probe within the trial, counted from 1.
     pub number: u32,
-    /// Whether the schedule or the wizard caused the probe.
     pub origin: ProbeOrigin,
-    /// Whether the belief estimate influenced the choice of the probe's questions.
     pub uses_estimate: bool,
-    /// The questions of the freeze probe.
     pub questions: Vec<ProbeQuestion>,
-    /// Index of the probe's question that is shown now.
+    /// Index of the shown question.
     pub shown: Option<usize>,
-    /// The participant's answers so far, one for each question of the probe.
+    /// One for each question.
     pub answers: Vec<Option<ProbeAnswer>>,
-    /// Session time at which the task was frozen.
+    /// When the task was frozen.
     pub begun: SessionTime,
-    /// Session time at which the shown question appeared.
+    /// When the shown question appeared.
     pub asked_at: SessionTime,
-    /// The wizard's reason for skipping the remaining questions, if the wizard did.
+    /// The wizard's reason for skipping the remaining questions.
     pub skipped: Option<String>,
-    /// Why and when the questions of the freeze probe ended.
+    /// Why and when the questions ended.
     pub closed: Option<(ProbeEndReason, SessionTime)>,
-    /// Session time at which the wizard paused the freeze probe, if the probe is paused.
     pub paused_since: Option<SessionTime>,
-    /// Session times of start and end of each finished pause of the freeze probe.
+    /// Start and end of each finished pause of the probe.
     pub pauses: Vec<(SessionTime, SessionTime)>,
 }
 
-/// The participant's answer to a question of a freeze probe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeAnswer {
-    /// The answer that the participant chose; `None`: "I don't know".
+    /// `None`: "I don't know".
     pub answer: Option<String>,
-    /// The participant's confidence in the answer, from 1 to 3.
+    /// From 1 to 3.
     pub confidence: Option<u8>,
-    /// Response time: from the appearance of the question to the answer, without pauses.
+    /// From the appearance of the question to the answer, without pauses.
     pub took: SessionTime,
-    /// Where the answer was entered: on the display or at the console.
     pub on: AnswerDevice,
 }
 
 impl StartedProbe {
-    /// Whether the wizard paused the freeze probe.
     pub fn is_paused(&self) -> bool {
         self.paused_since.is_some()
     }
 
-    /// The probe's shown question, which waits for an answer, with its index.
+    /// The shown question, which waits for an answer, with its index.
     pub fn question(&self) -> Option<(usize, &ProbeQuestion)> {
         let shown = self.shown.filter(|&shown| self.closed.is_none() && self.answers[shown].is_none())?;
         Some((shown, &self.questions[shown]))
     }
 
-    /// Time from `at` to `now` without the pauses of the freeze probe.
+    /// Time from `at` to `now` without the probe's pauses.
     pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
         let end = self.paused_since.unwrap_or(now).min(now);
         let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
         paused.fold(end - at, |age, pause| age - pause)
     }
 
-    /// Session time at which the duration `after` will have passed since `at`, if no further pause comes.
+    /// When `after` will have passed since `at`, if no further pause comes.
     pub fn when(&self, at: SessionTime, after: SessionTime) -> SessionTime {
         let paused = self.pauses.iter().map(|&(from, until)| until - from.max(at));
         paused.fold(at + after, |when, pause| when + pause)
     }
 }
 
-/// A freeze probe of the trial's schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduledProbe {
-    /// Time at which the freeze probe is due, on the trial's clock.
+    /// On the trial's clock.
     pub at: SessionTime,
-    /// Whether the belief estimate influences the choice of the probe's questions.
     pub uses_estimate: bool,
 }
 
-/// The settings of the freeze probes in this session's trial; none in a practice trial (familiarisation), in which
-/// there are no probes because a practice trial does not count.
+/// `None` in a practice trial, which does not count.
 pub fn of_trial(spec: &SessionSpec) -> Option<&ProbeSpec> {
     let counts = spec.step.as_ref().is_none_or(|step| step.period.is_some());
     spec.probes.as_ref().filter(|_| counts)
 }
 
-/// Draws the schedule of the freeze probes in a trial.
+/// Draws a trial's schedule from a random stream of its own. Each probe comes between once and twice `apart_s` after
+/// the previous one (the first: after the trial's start), so that nobody can foresee it; in a trial that is hardly long
+/// enough for all, intervals are closer to `apart_s`.
 pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
     let Some(probes) = of_trial(spec) else { return Vec::new() };
     let mut random = stream(spec.seed, "times of probes", trial);
@@ -453,8 +391,8 @@ pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
     times.into_iter().zip(blind).map(|(at, is_blind)| ScheduledProbe { at, uses_estimate: !is_blind }).collect()
 }
 
-/// Draws for each probe whether it ignores the belief estimate (is blind): `share` of the probes are blind, in random
-/// order. A fractional remainder of the number is the probability of one more blind probe.
+/// Which probes are blind: a share of them, in random order. A fractional remainder of the number is the probability of
+/// one more.
 fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
     let wanted = number as f64 * share;
     let count = wanted.floor() as usize + usize::from(random.random::<f64>() < wanted.fract());
@@ -463,34 +401,26 @@ fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
     blind
 }
 
-/// Whether a freeze probe that the wizard requested uses the belief estimate: drawn at random, as for scheduled probes.
+/// Drawn at random, as for scheduled probes.
 pub(crate) fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
     let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
     let name = format!("requested probes of trial {trial}");
     stream(spec.seed, &name, u64::from(number)).random::<f64>() >= share
 }
 
-/// Time between the freeze of the task and the first question, in seconds: the kitchen disappears from the display
-/// before any question is shown.
+/// Time between the freeze and the first question: the kitchen disappears before any question is shown.
 const BLANK_S: f64 = 1.0;
 
-/// What the rules of freeze probes require next.
+/// What the rules require next.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DueProbeEvent {
-    /// A freeze probe begins; its questions have to be drawn.
-    Begin {
-        /// Number of the freeze probe within the trial, counted from 1.
-        probe: u32,
-        /// Whether the schedule or the wizard caused the probe.
-        origin: ProbeOrigin,
-        /// Whether the belief estimate influences the choice of the probe's questions.
-        uses_estimate: bool,
-    },
-    /// Any event of a freeze probe except its beginning is due.
+    /// Its questions have to be drawn.
+    Begin { probe: u32, origin: ProbeOrigin, uses_estimate: bool },
+    /// Any event but the beginning.
     Event(ProbeEvent),
 }
 
-/// The next due event of freeze probes and its time; none without freeze probes, and while a probe is paused.
+/// The next due event and its time; `None` without freeze probes, and while a probe is paused.
 pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbeEvent)> {
     let spec = of_trial(&session.spec)?;
     match &session.probes.open {
@@ -558,13 +488,12 @@ fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProb
     })
 }
 
-/// Session time at which the running trial's clock will show `clock`; the present session time, if it shows more
-/// already.
+/// When the running trial's clock will show `clock`; now, if it shows more already.
 fn at_clock(session: &Session, clock: SessionTime) -> SessionTime {
     session.time + (clock - session.trial_clock(session.time))
 }
 
-/// Why a freeze probe cannot begin at session time `at`, and the session time until which it cannot.
+/// Why no probe can begin at `at`, and until when.
 fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeDelayReason, SessionTime)> {
     let after = SessionTime::from_secs_f64(spec.after_signal_s);
     let last =
@@ -576,10 +505,6 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeD
     blocks.max_by_key(|(_, until)| *until)
 }
 
-/// Whether the session accepts this event of a freeze probe now.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
 pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
     let spec = of_trial(&session.spec).ok_or("this trial has no freeze probes")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
@@ -636,7 +561,7 @@ pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
     }
 }
 
-/// The open freeze probe with this number, if its questions have not ended.
+/// The open probe with this number, if its questions have not ended.
 fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> {
     let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or(
         "this freeze probe is not \
@@ -649,30 +574,28 @@ fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> 
 }
 
 impl Session {
-    /// Duration of the freeze probe that this event, which was just applied, ended; `None` for every other event.
+    /// Duration of the probe that this event, which was just applied, ended.
     pub fn probe_pause(&self, stamped: &TimestampedEvent) -> Option<SessionTime> {
         let Event::Probe(ProbeEvent::Ended { .. }) = stamped.event else { return None };
         self.probes.over.last().map(|over| stamped.time - over.begun)
     }
 
-    /// Whether the task is frozen for a freeze probe: from the probe's beginning until the task continues.
+    /// Whether the task is frozen: from a probe's beginning until the task continues.
     pub fn is_frozen(&self) -> bool {
         self.probes.open.is_some()
     }
 
-    /// Whether the wizard can pause the trial or the open freeze probe now.
+    /// Whether the wizard can pause the trial or the open probe now.
     pub fn can_be_paused(&self) -> bool {
         self.is_running() || self.probes.open.as_ref().is_some_and(|open| !open.is_paused())
     }
 }
 
-/// Draws the schedule of freeze probes at the start of a trial.
 pub(crate) fn start(session: &mut Session) {
     session.probes = TrialProbes { schedule: draw(&session.spec, session.trial), ..TrialProbes::default() };
 }
 
-/// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if the event
-/// lets the task continue.
+/// Returns for how long the task stood still, if the event lets it continue.
 pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
     if !matches!(event, ProbeEvent::Asked { .. } | ProbeEvent::Answered { .. }) {
         session.note(now, TimelineEvent::Probe(event.clone()));
@@ -723,7 +646,6 @@ pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
     None
 }
 
-/// Applies an event of the open freeze probe, such as a question or an answer.
 fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     let is_over = matches!(session.phase, TrialPhase::Over(_));
     let Some(open) = &mut session.probes.open else { return };
@@ -750,7 +672,7 @@ fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     }
 }
 
-/// Removes the freeze probe that begins or is delayed: the waiting probe, or else the next one of the schedule.
+/// Removes the probe that begins or is delayed: the waiting one, or else the next one of the schedule.
 fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     let clock = session.trial_clock(now);
     let book = &mut session.probes;
@@ -765,14 +687,13 @@ fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     WaitingProbe { number, origin, uses_estimate, since: at, reason: None }
 }
 
-/// Stops the freeze probe's own time, because the wizard pauses.
+/// The wizard pauses: the probe's own time stops.
 pub(crate) fn pause(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open {
         open.paused_since = Some(now);
     }
 }
 
-/// Continues the freeze probe after a pause by the wizard.
 pub(crate) fn resume(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open
         && let Some(since) = open.paused_since.take()
@@ -781,8 +702,7 @@ pub(crate) fn resume(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Handles the end of the trial: a freeze probe in its count-down ends, too; a probe with remaining questions is closed
-/// by an event of its own.
+/// A probe in its count-down ends with the trial; one with remaining questions is closed by an event of its own.
 pub(crate) fn trial_ends(session: &mut Session, now: SessionTime) {
     resume(session, now);
     session.probes.waiting = None;
@@ -791,7 +711,6 @@ pub(crate) fn trial_ends(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Handles the end of the session: an open freeze probe ends with the session.
 pub(crate) fn session_ends(session: &mut Session, now: SessionTime) {
     trial_ends(session, now);
     if let Some(mut open) = session.probes.open.take() {

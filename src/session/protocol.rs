@@ -9,26 +9,19 @@ use crate::wall_display::AnswerDevice;
 use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
-/// A phase of a study, such as instruction, trial or questionnaire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StudyPhase {
-    /// The wizard instructs the participant.
     Instruction,
-    /// The participant goes through the tutorial on the display.
     Tutorial,
-    /// Practice trial (familiarisation), which does not count for the analysis.
+    /// Practice, which does not count.
     Familiarisation,
-    /// A trial that counts for the analysis.
     Trial,
-    /// The participant answers a questionnaire.
     Questionnaire,
-    /// The wizard debriefs the participant after the last trial.
     Debriefing,
 }
 
 impl StudyPhase {
-    /// The study phase's name in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
             StudyPhase::Instruction => "instruction",
@@ -40,130 +33,100 @@ impl StudyPhase {
         }
     }
 
-    /// Whether the study phase contains a trial (practice or counted).
+    /// Practice or counted.
     pub fn has_trial(self) -> bool {
         matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
     }
 }
 
-/// An event of the study protocol around a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ProtocolEvent {
-    /// The participant consented; without consent nothing is recorded. Older recordings contain only that consent was
-    /// given.
+    /// Without consent nothing is recorded.
     ConsentGiven {
-        /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
-        /// it on the console.
+        /// By holding a button on the display, or by telling the wizard, who confirmed it at the console.
         on: AnswerDevice,
-        /// The text to which the participant consented.
         text: String,
-        /// Digest of the consent text.
         digest: String,
     },
-    /// The next phase of the recording begins.
     PhaseStarted {
-        /// The kind of the study phase that begins.
         phase: StudyPhase,
-        /// Number of the phase in the recording, counted from 1.
+        /// In the recording, from 1.
         number: usize,
     },
-    /// The wizard ticked or unticked a step of an instruction or debriefing.
+    /// A step of an instruction or debriefing.
     Ticked {
-        /// Number of the step in the instruction or debriefing, counted from 1.
+        /// From 1.
         step: usize,
-        /// Whether the step of the instruction or debriefing is done now.
         done: bool,
     },
-    /// An event of the participant's tutorial.
     Tutorial(TutorialEvent),
-    /// An item of the questionnaire is shown.
     ItemShown {
-        /// Identifier of the questionnaire item.
         item: String,
     },
-    /// All answers to the questionnaire are shown, for the participant to confirm them.
+    /// All answers are shown, for the participant to confirm them.
     AnswersShown,
-    /// The participant answered the shown questionnaire item; a later answer replaces an earlier one. The next item
-    /// follows at once, except after sliders and choices of several options.
+    /// A later answer replaces an earlier one. The next item follows at once, except after sliders and choices of
+    /// several options.
     ItemAnswered {
-        /// Identifier of the questionnaire item.
         item: String,
-        /// The participant's answer to the questionnaire item.
         answer: AnswerValue,
     },
-    /// The shown item of the questionnaire is skipped, and the next item follows.
     ItemSkipped {
-        /// Identifier of the questionnaire item.
         item: String,
     },
-    /// The participant confirms the answers to the questionnaire, which become final.
+    /// The answers become final.
     AnswersConfirmed,
-    /// Result of the practice trial, and whether it meets the criterion.
+    /// Result of the practice trial.
     CriterionChecked {
-        /// Whether the practice trial meets the criterion.
         met: bool,
-        /// Number of orders served in the practice trial.
         orders: u32,
-        /// Number of the participant's presses in the practice trial.
+        /// Of the participant.
         presses: u32,
-        /// Number of errors among the participant's presses in the practice trial.
+        /// Among these presses.
         errors: u32,
     },
-    /// The wizard waives the criterion of the practice trial, for this reason.
     CriterionWaived {
-        /// The wizard's reason for waiving the criterion.
         reason: String,
     },
 }
 
-/// The answer to a questionnaire item, or that it was skipped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ItemAnswer {
-    /// The participant's answer to the questionnaire item.
     Given(AnswerValue),
-    /// The participant gave no answer to the questionnaire item.
     Skipped,
 }
 
-/// Result of the practice trial.
+/// Of the practice trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PracticeResult {
-    /// Whether the practice trial met the criterion.
     pub met: bool,
-    /// Number of orders served in the practice trial.
     pub orders: u32,
-    /// Number of the participant's presses in the practice trial.
     pub presses: u32,
-    /// Number of errors among the participant's presses in the practice trial.
     pub errors: u32,
-    /// The wizard's reason for waiving the criterion, if it was waived.
+    /// Why the criterion was waived, if it was.
     pub waived: Option<String>,
 }
 
-/// State of the study protocol in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyProtocolState {
-    /// Whether the participant consented to what the plan asks for.
     pub consent: bool,
-    /// Number of the recording's present phase, from 1; 0 before the first phase.
+    /// Number of the present phase, from 1; 0 before the first phase.
     pub number: usize,
-    /// Whether each step of the present instruction or debriefing is done.
+    /// Steps of the present instruction or debriefing.
     pub ticks: Vec<bool>,
-    /// Answers to the items of the present phase's questionnaire.
+    /// To the items of the present questionnaire.
     pub answers: Vec<Option<ItemAnswer>>,
-    /// Index of the shown questionnaire item; the number of items while all answers are shown for confirmation.
+    /// Index of the shown item; the number of items while all answers are shown for confirmation.
     pub item: usize,
-    /// Whether the participant has confirmed the answers to the phase's questionnaire.
+    /// Whether the answers are final.
     pub confirmed: bool,
-    /// Result of the practice trial, once it is over.
     pub practice: Option<PracticeResult>,
-    /// State of the tutorial, if the present phase is the tutorial.
     pub tutorial: Option<TutorialState>,
 }
 
 impl ItemAnswer {
-    /// The value that the participant answered; `None` if the questionnaire item was skipped.
+    /// `None` if the item was skipped.
     pub fn value(&self) -> Option<&AnswerValue> {
         match self {
             ItemAnswer::Given(value) => Some(value),
@@ -173,13 +136,12 @@ impl ItemAnswer {
 }
 
 impl StudyProtocolState {
-    /// The answer to the questionnaire item with this index, if the participant gave one.
     pub fn given(&self, index: usize) -> Option<&AnswerValue> {
         self.answers.get(index)?.as_ref()?.value()
     }
 
-    /// Records the answer to the shown questionnaire item and shows the next one, unless the shown item stays; after
-    /// the last item, the first unanswered one or all answers are shown.
+    /// Records the answer to the shown item and shows the next one, unless the shown one stays; after the last item,
+    /// the first unanswered one or all answers are shown.
     pub(crate) fn answer(&mut self, answer: ItemAnswer, stays: bool) {
         if let Some(place) = self.answers.get_mut(self.item) {
             *place = Some(answer);
@@ -195,32 +157,29 @@ impl StudyProtocolState {
         };
     }
 
-    /// Index of the first questionnaire item without an answer.
+    /// The first item without an answer.
     pub fn open_item(&self) -> Option<usize> {
         self.answers.iter().position(Option::is_none)
     }
 }
 
 impl Session {
-    /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.
+    /// `None` if the recording belongs to no plan.
     pub fn step(&self) -> Option<(&PlanPosition, &StudyProtocolState)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
 
-    /// The present phase of the study protocol.
     pub fn study_phase(&self) -> Option<&PhaseSpec> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number.checked_sub(1)?)
     }
 
-    /// The phase of the study protocol after the present one.
     pub fn next_phase(&self) -> Option<StudyPhase> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number).map(PhaseSpec::phase)
     }
 
-    /// The event that moves from the shown questionnaire item to the next one, or to the overview of all answers;
-    /// `None` if the overview is shown.
+    /// The event that moves to the next item, or to the overview of all answers; `None` in the overview.
     pub fn next_item(&self) -> Option<ProtocolEvent> {
         let (questionnaire, protocol) = (self.questionnaire()?, self.protocol.as_ref()?);
         questionnaire.items.get(protocol.item)?;
@@ -230,7 +189,7 @@ impl Session {
         })
     }
 
-    /// The questionnaire of the present phase, if it has one.
+    /// Of the present phase.
     pub fn questionnaire(&self) -> Option<&Questionnaire> {
         match self.study_phase()? {
             PhaseSpec::Questionnaire { questionnaire } => Some(questionnaire),
@@ -238,7 +197,7 @@ impl Session {
         }
     }
 
-    /// Why the present phase of the study protocol cannot be left yet; `None` if the phase can be left.
+    /// Why the present phase cannot be left yet.
     pub fn phase_lacks(&self) -> Option<&'static str> {
         let protocol = self.protocol.as_ref()?;
         if self.aborted.is_some() {
@@ -262,7 +221,7 @@ impl Session {
         }
     }
 
-    /// Whether all phases of the recording are done or the trial was aborted; true for a session without a plan.
+    /// Whether all phases are done or the trial was aborted; true without a plan.
     pub fn is_step_done(&self) -> bool {
         match &self.protocol {
             None => true,
@@ -272,10 +231,6 @@ impl Session {
     }
 }
 
-/// Whether the session accepts this event of the study protocol now.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
 pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
     let Some((step, protocol)) = session.step() else { return Err("the session has no study plan") };
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
@@ -335,10 +290,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
     }
 }
 
-/// Whether a trial may start; in a plan, only in the phase of the trial.
-///
-/// # Errors
-/// The reason for which the trial may not start, in words.
+/// In a plan, only in the phase of the trial.
 pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
     match session.protocol.is_none() || has_trial {
@@ -366,7 +318,6 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
     }
 }
 
-/// Applies an event of the study protocol that the session accepts, at the event's session time `now`.
 pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
     let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
     let (steps, items) = match event {
@@ -416,7 +367,7 @@ pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTi
     }
 }
 
-/// Numbers of steps to tick off and of questionnaire items in the phase with this number.
+/// Numbers of steps to tick off and of questionnaire items in a phase.
 fn sizes(step: Option<&PlanPosition>, number: usize) -> (usize, usize) {
     let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
     let items = match phase {

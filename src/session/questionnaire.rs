@@ -7,99 +7,90 @@ use serde::{Deserialize, Serialize};
 use crate::ranges;
 use crate::settings::{Condition, SettingError, is_code};
 
-/// Largest length of a text answer in characters, unless the item sets another one.
+/// Largest length of a text answer, unless the item sets another one.
 const LENGTH: u32 = 200;
 
-/// A questionnaire of a study, as its file has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Questionnaire {
-    /// Identifier of the questionnaire in the log and in tables.
+    /// In the log and in tables.
     pub name: String,
-    /// Heading above the questionnaire's items.
     pub title: String,
-    /// Language code of the items: "en".
+    /// Language code: "en".
     pub language: String,
-    /// How the questionnaire's score is computed from the answers; `None` if the questionnaire has no score.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub score: Option<ScoreRule>,
-    /// The rating scale of all items that do not name a rating scale.
+    /// Of all items that name none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<RatingScale>,
-    /// Further rating scales of the questionnaire, by name.
+    /// Further rating scales, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub scales: BTreeMap<String, RatingScale>,
-    /// The questionnaire's items, in the order in which they are asked.
     #[serde(rename = "item")]
     pub items: Vec<QuestionnaireItem>,
 }
 
-/// How a questionnaire's score is computed from its answers. Answers to reversed items are first reversed on their
-/// scale. There is no score if an item was left out.
+/// Answers to reversed items are first reversed on their scale. There is no score if an item was left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScoreRule {
-    /// Score: mean of the answers, as in the raw task load index of Hart (2006).
+    /// As in the raw task load index of Hart (2006).
     Mean,
-    /// Score of the system usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points
-    /// above the lowest, so from 0 to 100.
+    /// System usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points above the
+    /// lowest, so from 0 to 100.
     Sus,
 }
 
-/// An item of a questionnaire: a statement to be rated, or a question.
+/// A statement to be rated, or a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuestionnaireItem {
-    /// Identifier of the item in logs and tables.
+    /// In logs and tables.
     pub id: String,
-    /// The statement or question, as the participant reads it.
     pub text: String,
-    /// The kind of answer to the questionnaire item; by default a point of a rating scale.
+    /// By default a point of a rating scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<QuestionnaireItemKind>,
-    /// Name of the item's rating scale; by default the scale of all items.
+    /// Name of its rating scale; by default that of all items.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
-    /// The options of an item that is answered by choice.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<ItemOption>,
-    /// Whether the participant can choose several options of the item.
+    /// Whether several options can be chosen.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub several: bool,
-    /// The least number that the participant can answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<i64>,
-    /// The greatest number that the participant can answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<i64>,
-    /// Unit of the number that the participant answers: "years".
+    /// Of the number: "years".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// Largest length of a text answer, in characters.
+    /// Largest length of a text, in characters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<u32>,
-    /// Label at the slider's left end, position 0.
+    /// Label at the slider's position 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low: Option<String>,
-    /// Label at the slider's right end, position 100.
+    /// Label at the slider's position 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<String>,
-    /// Step of the slider: its positions are multiples of this number.
+    /// The slider's positions are multiples of this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u8>,
-    /// Construct that the questionnaire item measures; items with the same construct form a scale.
+    /// Construct that the item measures; items with the same construct form a scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
-    /// Whether the item is reverse coded: agreement means a low value of the construct.
+    /// Agreement means a low value of the construct.
     #[serde(default)]
     pub reversed: bool,
-    /// Conditions of a trial after which the questionnaire item is asked; all conditions by default.
+    /// Conditions of a trial after which it is asked; by default all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Vec<Condition>>,
 }
 
 impl Questionnaire {
-    /// The questionnaire as asked after a trial in this condition; `None` if no item is asked then.
+    /// As asked after a trial in this condition; `None` if no item is.
     pub fn after(&self, condition: Condition) -> Option<Questionnaire> {
         let is_asked =
             |item: &&QuestionnaireItem| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
@@ -107,16 +98,14 @@ impl Questionnaire {
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// The questionnaire as asked before the first trial, without items for certain conditions; `None` if no item is
-    /// left.
+    /// Without items for certain conditions; `None` if no item is left.
     pub fn before_trials(&self) -> Option<Questionnaire> {
         let items: Vec<QuestionnaireItem> =
             self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// The answer format of the questionnaire item with this index; `None` if there is no such item, or if the item
-    /// lacks settings that its kind needs.
+    /// `None` if there is no such item, or if it lacks settings that its kind needs.
     pub fn form(&self, index: usize) -> Option<AnswerFormat<'_>> {
         let item = self.items.get(index)?;
         Some(match item.kind.unwrap_or(QuestionnaireItemKind::Scale) {
@@ -136,20 +125,15 @@ impl Questionnaire {
         })
     }
 
-    /// Index of the questionnaire item with this identifier.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.items.iter().position(|item| item.id == id)
     }
 }
 
-/// Largest number of answer options of a questionnaire item: each option is chosen by a digit key.
+/// Each option is chosen by a digit key.
 const MOST_OPTIONS: usize = 9;
 
 impl Questionnaire {
-    /// Checks ranges and consistency of the questionnaire's settings.
-    ///
-    /// # Errors
-    /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &str, found, remedy| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
@@ -184,7 +168,7 @@ impl Questionnaire {
         }
     }
 
-    /// Checks that a questionnaire item has the settings that its kind needs, and no others.
+    /// An item has the settings that its kind needs, and no others.
     fn check_item(&self, item: &QuestionnaireItem) -> Result<(), WrongItem> {
         let kind = item.kind.unwrap_or(QuestionnaireItemKind::Scale);
         if let Some((key, owner)) = OWNED.into_iter().find(|(key, owner)| *owner != kind && has(item, key)) {
@@ -250,7 +234,7 @@ impl Questionnaire {
     }
 }
 
-/// Error in a questionnaire item: the setting, what was found, and what would be right.
+/// The setting, what was found, and what would be right.
 type WrongItem = (&'static str, String, &'static str);
 
 fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), WrongItem> {
@@ -271,7 +255,7 @@ fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), Wro
     }
 }
 
-/// The settings that only one kind of questionnaire item can have, each with that kind.
+/// Settings that only one kind of item can have.
 const OWNED: [(&str, QuestionnaireItemKind); 10] = [
     ("scale", QuestionnaireItemKind::Scale),
     ("options", QuestionnaireItemKind::Choice),
@@ -295,7 +279,7 @@ fn remedy_for(owner: QuestionnaireItemKind) -> &'static str {
     }
 }
 
-/// Whether the questionnaire item has this setting in the file.
+/// Whether the item has this setting in the file.
 fn has(item: &QuestionnaireItem, key: &str) -> bool {
     match key {
         "kind" => item.kind.is_some(),
@@ -313,84 +297,65 @@ fn has(item: &QuestionnaireItem, key: &str) -> bool {
     }
 }
 
-/// The greatest position of a slider in a questionnaire; the least is 0.
+/// The greatest position of a slider; the least is 0.
 pub const SLIDER_END: i64 = 100;
 
-/// The kinds of questionnaire items, by their answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum QuestionnaireItemKind {
-    /// Questionnaire item whose answer is a point of a rating scale.
     Scale,
-    /// Questionnaire item whose answer is one of its options, or several.
     Choice,
-    /// Questionnaire item whose answer is a whole number.
     Number,
-    /// Questionnaire item whose answer is a text.
     Text,
-    /// Questionnaire item whose answer is a slider's position from 0 to 100.
     Slider,
 }
 
-/// A rating scale of a questionnaire, with points from 1 to `points`.
+/// Its points are 1 to `points`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RatingScale {
-    /// Number of points of the rating scale.
     pub points: u8,
-    /// Label of the scale's lowest point, 1.
+    /// Label of the lowest point.
     pub low: String,
-    /// Label of the scale's highest point.
+    /// Label of the highest point.
     pub high: String,
 }
 
-/// An answer option of a questionnaire item.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ItemOption {
-    /// Identifier of the option in logs and tables, the same in all languages.
+    /// In logs and tables, the same in all languages.
     pub id: String,
-    /// Text of the answer option, as the participant reads it.
     pub text: String,
 }
 
-/// The answer format of a questionnaire item, with the settings of its kind.
+/// With the settings of the item's kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnswerFormat<'a> {
-    /// The answer is a point of this rating scale.
     Scale(&'a RatingScale),
-    /// The answer is one of these options, or several.
     Choice {
-        /// The answer options in their order on the page.
         options: &'a [ItemOption],
-        /// Whether the participant can choose several options.
         several: bool,
     },
-    /// The answer is a whole number.
     Number {
-        /// The least and the greatest number that the answer can be.
+        /// Least and greatest.
         range: [i64; 2],
-        /// The unit of the answered number; empty if the number has no unit.
+        /// Empty if there is none.
         unit: &'a str,
     },
-    /// The answer is a text.
     Text {
-        /// Largest length of the answered text, in characters.
+        /// Largest, in characters.
         length: u32,
     },
-    /// The answer is a slider's position from 0 to 100.
     Slider {
-        /// Label of the slider's position 0.
         low: &'a str,
-        /// Label of the slider's position 100.
         high: &'a str,
-        /// Slider positions are multiples of this number.
+        /// Positions are multiples of this.
         step: i64,
     },
 }
 
 impl QuestionnaireItemKind {
-    /// Name of the kind of questionnaire item in files and tables.
     pub fn name(self) -> &'static str {
         match self {
             QuestionnaireItemKind::Scale => "scale",
@@ -403,8 +368,7 @@ impl QuestionnaireItemKind {
 }
 
 impl<'a> AnswerFormat<'a> {
-    /// The least and the greatest answer on a rating scale or slider, needed to reverse an answer; `None` for other
-    /// kinds.
+    /// Least and greatest answer on a rating scale or slider, to reverse an answer.
     pub fn ends(&self) -> Option<[i64; 2]> {
         match self {
             AnswerFormat::Scale(scale) => Some([1, i64::from(scale.points)]),
@@ -413,16 +377,12 @@ impl<'a> AnswerFormat<'a> {
         }
     }
 
-    /// Whether the questionnaire item stays on the page after an answer, because participants are likely to change the
-    /// answer; the next item then follows only on request.
+    /// Whether the item stays on the page after an answer, because participants are likely to change it; the next one
+    /// then follows only on request.
     pub fn stays(&self) -> bool {
         matches!(self, AnswerFormat::Choice { several: true, .. } | AnswerFormat::Slider { .. })
     }
 
-    /// Whether a value is a valid answer to the questionnaire item.
-    ///
-    /// # Errors
-    /// Why the answer is invalid, in words for the wizard.
     pub fn admit(&self, answer: &AnswerValue) -> Result<(), &'static str> {
         let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
         let is_option = |options: &[ItemOption], id: &String| options.iter().any(|option| option.id == *id);
@@ -454,7 +414,7 @@ impl<'a> AnswerFormat<'a> {
         }
     }
 
-    /// The item's answer after the participant selects the option with this index, or deselects it.
+    /// The answer after the participant selects, or deselects, the option with this index.
     pub fn choose(&self, index: usize, given: Option<&AnswerValue>) -> Option<AnswerValue> {
         let AnswerFormat::Choice { options, several } = self else { return None };
         let chosen = &options.get(index)?.id;
@@ -468,7 +428,7 @@ impl<'a> AnswerFormat<'a> {
         Some(AnswerValue::Options(ids.cloned().collect()))
     }
 
-    /// The questionnaire answer in words: options by their texts, numbers with their unit.
+    /// Options by their texts, numbers with their unit.
     pub fn words(&self, answer: &AnswerValue) -> String {
         match (self, answer) {
             (AnswerFormat::Choice { options, .. }, _) => {
@@ -484,20 +444,20 @@ impl<'a> AnswerFormat<'a> {
     }
 }
 
-/// An answer to an item of a questionnaire; in JSON a number, a text, or a list of texts.
+/// The participant's answer to an item, as logs and the participant's page contain it; in JSON a number, a text, or a
+/// list of texts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum AnswerValue {
-    /// A numeric answer: a point of a rating scale, from 1; the position of a slider, from 0 to 100; or another number.
+    /// A point of a rating scale, from 1; the position of a slider, from 0 to 100; or another number.
     Number(i64),
-    /// A text answer: the participant's words, or the id of the chosen option.
+    /// The participant's words, or the id of the chosen option.
     Text(String),
-    /// The ids of the chosen options of a questionnaire item that allows several.
+    /// The ids of the chosen options, where several can be chosen.
     Options(Vec<String>),
 }
 
 impl AnswerValue {
-    /// The answer as a number; `None` if the answer is a text or a list.
     pub fn number(&self) -> Option<i64> {
         match self {
             AnswerValue::Number(number) => Some(*number),
@@ -505,7 +465,7 @@ impl AnswerValue {
         }
     }
 
-    /// The ids of the chosen options; a text answer counts as a single option.
+    /// A text answer counts as a single option.
     pub fn options(&self) -> &[String] {
         match self {
             AnswerValue::Number(_) => &[],
@@ -514,7 +474,7 @@ impl AnswerValue {
         }
     }
 
-    /// The questionnaire answer as one cell of a table: several options are separated by spaces.
+    /// Of a table: several options are separated by spaces.
     pub fn cell(&self) -> String {
         match self {
             AnswerValue::Number(number) => number.to_string(),

@@ -6,35 +6,22 @@ use serde::Serialize;
 
 use tomcom_core::base::number_range::{self, NumberRange, OutOfRange, numbers};
 
-/// The table of a session file that contains the parameters of the human model; a separate file of parameters has no
-/// such table.
+/// The table of a session file with the parameters of the human model; a file with them alone has no such table.
 pub const HUMAN: &str = "human";
 
-/// Allowed ranges of all numbers in session files.
 pub fn of_sessions() -> Vec<NumberRange> {
     [&OF_TRIALS[..], &OF_PEOPLE, &OF_HUMAN_MODEL].concat()
 }
 
-/// Checks that all numbers of a session file are in their allowed ranges.
-///
-/// # Errors
-/// The first number outside of its allowed range.
 pub fn check_session(spec: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&of_sessions(), &numbers(spec, "")?)
 }
 
-/// Checks that all parameters of the human model in a file are in their allowed ranges.
-///
-/// # Errors
-/// The first number outside of its allowed range; its path begins with [`HUMAN`].
+/// The path in the error begins with [`HUMAN`].
 pub fn check_human_model(model: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&OF_HUMAN_MODEL, &numbers(model, HUMAN)?)
 }
 
-/// Checks that all numbers of a questionnaire are in their allowed ranges.
-///
-/// # Errors
-/// The first number outside of its allowed range.
 pub fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&OF_QUESTIONNAIRES, &numbers(questionnaire, "")?)
 }
@@ -42,12 +29,10 @@ pub fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRa
 const SECONDS: &str = "s";
 const CHANCE: &str = "the setting is a probability";
 const PORT: &str = "ports of TCP and UDP have these numbers";
-/// Reason for the bounds of durations of presses and of intervals between them.
 const PRESS: &str = "a shorter time is no movement, a longer time no cooperation";
-/// Longest allowed trial, in seconds: a day.
 const DAY_S: f64 = 86_400.0;
 const LONGEST: &str = "no trial is longer than a day";
-/// Largest number that 32 bits hold, which is practically no limit for a count.
+/// The largest number of 32 bits: practically no limit.
 const COUNT: f64 = 4_294_967_295.0;
 
 const OF_TRIALS: [NumberRange; 51] = [
@@ -239,7 +224,6 @@ const OF_TRIALS: [NumberRange; 51] = [
     ),
 ];
 
-/// Allowed ranges of all numbers in questionnaires.
 pub const OF_QUESTIONNAIRES: [NumberRange; 6] = [
     NumberRange::whole("scale.points", [2.0, 9.0], "points", "each point of a scale has a key of its own"),
     NumberRange::whole("scales.*.points", [2.0, 9.0], "points", "each point of a scale has a key of its own"),
@@ -251,13 +235,13 @@ pub const OF_QUESTIONNAIRES: [NumberRange; 6] = [
 
 const LATE: &str = "a wizard who takes longer cannot help";
 
-/// Range of a probability that differs between people: its odds are drawn for each person, so 0 and 1 are not allowed.
+/// A probability that differs between people: its odds are drawn for each person, so neither 0 nor 1.
 const fn chance(path: &'static str) -> NumberRange {
     let reason = "the setting is a probability whose odds are drawn for each person, so neither 0 nor 1";
     NumberRange::real(path, [0.000_001, 0.999_999], "", reason)
 }
 
-/// Range of a probability that either differs between people, or is 0 for everybody.
+/// A probability that either differs between people, or is 0 for everybody.
 const fn rare_chance(path: &'static str) -> NumberRange {
     NumberRange::real(
         path,
@@ -426,10 +410,10 @@ const OF_PEOPLE: [NumberRange; 61] = [
     NumberRange::real("wizard.offers.reads_s", [0.0, 60.0], SECONDS, LATE),
 ];
 
-/// Range of rates of looks (how often people look at a location), per second.
+/// How often people look at a location, per second.
 const LOOKS: [f64; 2] = [0.0, 100.0];
 const FEW_LOOKS: &str = "eyes look at a few places in a second";
-/// Reason for the bounds of probabilities that must be neither 0 nor 1.
+/// Of probabilities that must be neither 0 nor 1.
 const UNSURE: &str = "a certain belief could not be corrected by any observation";
 const PRECISION: &str = "with a lower precision there is no belief, with a higher one the belief is certain";
 const DRAWS: &str = "larger samples take seconds to minutes for each press";

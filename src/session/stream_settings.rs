@@ -4,43 +4,40 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::SettingError;
 
-/// Settings of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LslSpec {
-    /// Path of the library liblsl, relative to the session file; `None`: the library that the system has.
+    /// Path of liblsl, relative to the session file; `None`: the one that the system has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub library: Option<String>,
-    /// The LSL streams that the program sends; none by default.
+    /// What the program sends.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub outlets: Vec<LslOutlet>,
-    /// The LSL stream from which gaze is received, with `gaze = "lsl"`.
+    /// The stream from which gaze is received, with `gaze = "lsl"`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaze: Option<LslGazeSpec>,
 }
 
-/// An LSL stream (outlet) that the program sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LslOutlet {
-    /// Stream of every event of the session except gaze and arm samples, each as a short text code.
+    /// Every event except gaze and arm samples, each as a short text code.
     Markers,
-    /// Stream of every event of the session except gaze and arm samples, each as JSON, as in the log.
+    /// Every event except gaze and arm samples, each as JSON, as in the log.
     Events,
-    /// Stream of the presses of both agents, with their effects.
+    /// Of both agents, with their effects.
     Presses,
-    /// Stream of the estimated probability of the true value for every state aspect.
+    /// The estimated probability of the true value, for every state aspect.
     Beliefs,
-    /// Stream of the estimated net benefit of every signal.
+    /// The estimated net benefit of every signal.
     NetBenefit,
-    /// Stream of the participant's gaze samples.
     Gaze,
-    /// Stream of the joint angles of the simulated robot arm.
+    /// The joint angles of the simulated arm.
     Arm,
 }
 
 impl LslOutlet {
-    /// All LSL streams, in the order of the documentation.
+    /// In the order of the documentation.
     pub const ALL: [LslOutlet; 7] = [
         LslOutlet::Markers,
         LslOutlet::Events,
@@ -51,7 +48,7 @@ impl LslOutlet {
         LslOutlet::Arm,
     ];
 
-    /// Name of the stream in settings, and part of its name in the Lab Streaming Layer.
+    /// In settings, and part of its name in the layer.
     pub fn name(self) -> &'static str {
         match self {
             LslOutlet::Markers => "markers",
@@ -65,71 +62,62 @@ impl LslOutlet {
     }
 }
 
-/// An LSL stream of gaze on the display: how the program finds it, and the meaning of its channels.
+/// How a stream of gaze on the display is found (`None`: whatever it is), and the meaning of its channels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LslGazeSpec {
-    /// Name of the gaze stream; `None`: a stream of any name is accepted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Content type of the gaze stream, such as "Gaze"; `None`: a stream of any type is accepted.
+    /// Content type, such as "Gaze".
     #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
-    /// Source of the gaze stream, as its sender names it; `None`: a stream of any source is accepted.
+    /// As its sender names it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source_id: Option<String>,
-    /// Name of the computer that offers the gaze stream; `None`: a stream of any computer is accepted.
+    /// Name of the computer that offers it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub host: Option<String>,
-    /// Channel of the gaze's horizontal coordinate: its label, or its number from 1.
+    /// Channel: its label, or its number from 1; so for `y` and `confidence`.
     pub x: String,
-    /// Channel of the gaze's vertical coordinate: its label, or its number from 1.
     pub y: String,
-    /// Channel of the gaze's confidence, from 0 to 1; `None` if the stream has none, in which case every gaze sample
-    /// counts as certain.
+    /// From 0 to 1; `None`: every sample counts as certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<String>,
-    /// Unit of the gaze coordinates.
     #[serde(default)]
     pub unit: GazeUnit,
-    /// Point at which the gaze coordinates are 0, and the direction of y.
+    /// Where the coordinates are 0, and the direction of y.
     #[serde(default)]
     pub origin: GazeOrigin,
-    /// Width and height of the display in the unit of the coordinates. By default 1 and 1 for normalised coordinates,
-    /// and the layout's size for metres.
+    /// Width and height of the display in the unit. By default 1 and 1 for normalised coordinates, and the layout's
+    /// size for metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<[f64; 2]>,
 }
 
-/// Unit of gaze coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeUnit {
-    /// Gaze coordinates are fractions of the display.
+    /// Fractions of the display.
     #[default]
     Normalised,
-    /// Gaze coordinates are pixels of the display.
     Pixels,
-    /// Gaze coordinates are metres on the display.
     Metres,
 }
 
-/// Origin of gaze coordinates on the display, and the direction of y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeOrigin {
-    /// Origin at the display's top left corner, y points down.
+    /// y points down.
     #[default]
     TopLeft,
-    /// Origin at the display's bottom left corner, y points up.
+    /// y points up.
     BottomLeft,
-    /// Origin at the display's centre, y points up.
+    /// y points up.
     Centre,
 }
 
 impl LslGazeSpec {
-    /// Converts a point of the gaze stream to fractions of the display, origin at the top left, for a display of
-    /// `display_m` metres.
+    /// To fractions of the display, origin at the top left, for a display of `display_m` metres.
     pub fn to_display(&self, [x, y]: [f64; 2], display_m: [f64; 2]) -> [f64; 2] {
         let [width, height] = self.size.unwrap_or(match self.unit {
             GazeUnit::Metres => display_m,
@@ -143,8 +131,7 @@ impl LslGazeSpec {
         }
     }
 
-    /// How messages call the gaze stream: by its name, or by its type if the settings have no name; and by its source and
-    /// its computer if the settings have them.
+    /// How messages call the stream: by its name, or else its type; and by its source and computer if they are set.
     pub fn title(&self) -> String {
         let title = match (&self.name, &self.content) {
             (Some(name), _) => format!("\"{name}\""),
@@ -191,7 +178,7 @@ impl LslGazeSpec {
     }
 }
 
-/// Whether a text can be a name in an LSL query for streams; such a query has names in quotation marks.
+/// In an LSL query, names stand in quotation marks.
 fn is_name(text: &str) -> bool {
     let is_plain = |sign: char| !sign.is_control() && !matches!(sign, '\'' | '"');
     (1..=100).contains(&text.chars().count()) && text.chars().all(is_plain)
@@ -212,15 +199,14 @@ impl LslSpec {
     }
 }
 
-/// Settings of the stream to the 3D viewer Rerun.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RerunSpec {
-    /// Whether Rerun's viewers can connect while the session runs.
+    /// Whether viewers can connect while the session runs.
     pub live: bool,
-    /// Whether the stream to Rerun is also written to `recording.rrd` beside the log.
+    /// Whether the stream is also written to `recording.rrd` beside the log.
     pub record: bool,
-    /// Network address at which Rerun's viewers connect; if its port is taken, one of the next ports is used.
+    /// Where viewers connect; if its port is taken, one of the next ports is used.
     pub address: String,
 }
 
@@ -231,7 +217,7 @@ impl Default for RerunSpec {
 }
 
 impl RerunSpec {
-    /// Whether the session has a stream to Rerun at all, live or recorded.
+    /// Live or recorded.
     pub fn is_on(&self) -> bool {
         self.live || self.record
     }

@@ -9,28 +9,28 @@ use tomcom_core::communication::concept::ConceptName;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StudyArm {
-    /// Unassisted: nobody sends signals.
+    /// Nobody sends signals.
     #[default]
     None,
-    /// The wizard sends signals and does not see the assistant's recommendations, as in the paper.
+    /// The wizard does not see recommendations, as in the paper.
     Wizard,
-    /// The wizard sends signals and sees the estimated belief and the recommendations.
+    /// The wizard sees the estimated belief and the recommendations.
     #[serde(rename = "wizard+advice")]
     WizardWithAdvice,
-    /// ToM-Com: the assistant sends signals by theory of mind with communication planning.
+    /// The assistant sends signals by theory of mind with communication planning.
     TomCom,
-    /// ToM: the assistant sends signals by theory of mind without planning.
+    /// The assistant sends signals by theory of mind without planning.
     Tom,
-    /// DEV: the assistant proposes the next presses after an error.
+    /// The assistant proposes the next presses after an error.
     Dev,
 }
 
 impl StudyArm {
-    /// All study arms, in the order of tables.
+    /// In the order of tables.
     pub const ALL: [StudyArm; 6] =
         [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom, StudyArm::Dev];
 
-    /// Name of the study arm in files.
+    /// In files.
     pub fn name(self) -> &'static str {
         match self {
             StudyArm::None => "none",
@@ -42,7 +42,7 @@ impl StudyArm {
         }
     }
 
-    /// Name of the study arm in texts.
+    /// In texts.
     pub fn title(self) -> &'static str {
         match self {
             StudyArm::None => "unassisted",
@@ -54,7 +54,6 @@ impl StudyArm {
         }
     }
 
-    /// Who sends signals in the study arm.
     pub fn condition(self) -> Condition {
         match self {
             StudyArm::None => Condition::None,
@@ -63,7 +62,7 @@ impl StudyArm {
         }
     }
 
-    /// The communication concept that sends signals in the study arm; `None` without an assistant.
+    /// `None` without an assistant.
     pub fn concept(self) -> Option<ConceptName> {
         match self {
             StudyArm::None | StudyArm::Wizard | StudyArm::WizardWithAdvice => None,
@@ -73,9 +72,7 @@ impl StudyArm {
         }
     }
 
-    /// The study arm that a trial with these settings belongs to; `saw_advice` says whether the wizard saw the
-    /// assistant's
-    /// recommendations.
+    /// `saw_advice`: whether the wizard saw recommendations.
     pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
         match (condition, concept) {
             (Condition::None, _) | (Condition::Assistant, ConceptName::None) => StudyArm::None,

@@ -9,103 +9,93 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::no_effect::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
-/// Longest time for which a tutorial may show the recipe cards, in seconds.
+/// For recipe cards, in seconds.
 const LONGEST_S: f64 = 3600.0;
-/// Largest number of choices of a tutorial question: each is chosen by a digit key.
+/// Each is chosen by a digit key.
 const MOST_CHOICES: usize = 9;
 
-/// A tutorial for participants, as its file has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tutorial {
-    /// Identifier of the tutorial in the log.
+    /// In the log.
     pub name: String,
-    /// Language code of the tutorial's texts: "en".
+    /// Language code: "en".
     pub language: String,
-    /// The steps of the tutorial in order; each is a page.
+    /// Each is a page.
     #[serde(rename = "step")]
     pub steps: Vec<TutorialStep>,
 }
 
-/// The kind of a tutorial step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialStepKind {
-    /// Step with a text; places on the display that the text is about are framed.
+    /// What the text is about is framed.
     Text,
-    /// Step in which the participant presses buttons one after another; each button is marked in turn.
+    /// The participant presses buttons one after another; each is marked in turn.
     Press,
-    /// Step with the recipe cards of all dishes, for the participant to learn.
+    /// The recipe cards of all dishes, to learn.
     Recipes,
-    /// Step with a signal on the display, shown as in a trial.
+    /// A signal, shown as in a trial.
     Signal,
-    /// Step with a guided order: as `press`, but with a dish to prepare and hints that fade.
+    /// A guided order: as `press`, but with a dish to prepare and hints that fade.
     Order,
-    /// Step with a question that has one right choice.
+    /// It has one right choice.
     Question,
 }
 
-/// A step of a tutorial: one page on the participant's display.
+/// One page on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TutorialStep {
-    /// Identifier of the tutorial step in the log.
+    /// In the log.
     pub id: String,
-    /// The kind of the tutorial step.
     pub kind: TutorialStepKind,
-    /// Heading of the tutorial page.
     pub title: String,
-    /// Text of the tutorial page; for the kind `question`, the question.
+    /// With `question`, the question.
     pub text: String,
-    /// Names of what the tutorial page frames: locations, the human's buttons, or "human" and "robot" for their areas.
+    /// What the page frames: locations, the human's buttons, or "human" and "robot" for their areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point_at: Vec<String>,
-    /// For the kinds `press` and `order`: the human's buttons, in the order in which the participant has to press them.
+    /// With `press` and `order`: the human's buttons, in the order in which the participant has to press them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
-    /// For the kind `order`, for a signal that shows a recipe, and for a text that explains orders: name of the ordered
-    /// dish.
+    /// With `order`, with a signal that shows a recipe, and with a text that explains orders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dish: Option<String>,
-    /// For the kind `signal`: the highlighted location; without a location, the signal shows the recipe of `dish`.
+    /// With `signal`: the highlighted location; without it, the signal shows the recipe of `dish`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub highlight: Option<String>,
-    /// For the kind `order`: number of presses whose button is marked at once; the buttons of later presses are marked
-    /// after `hint_after_s`.
+    /// With `order`: number of presses whose button is marked at once; later ones are marked after `hint_after_s`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<usize>,
-    /// For the kind `order`: time without the right press after which the button is marked, in seconds.
+    /// With `order`: time without the right press after which its button is marked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint_after_s: Option<f64>,
-    /// For the kind `recipes`: time for which the recipe cards are shown, in seconds; 0: until the participant turns
-    /// the page.
+    /// With `recipes`: for how long the cards are shown; 0: until the participant turns the page.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// For the kind `question`: the texts of the choices.
+    /// With `question`, as the next two.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<String>,
-    /// For the kind `question`: the number of the right choice, counted from 1.
+    /// Number of the right choice, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub right: Option<u8>,
-    /// For the kind `question`: text after a wrong choice, before the question is asked again.
+    /// Shown after a wrong choice, before the question is asked again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
 }
 
 impl TutorialStep {
-    /// Whether the participant presses buttons in this step.
     pub fn has_presses(&self) -> bool {
         matches!(self.kind, TutorialStepKind::Press | TutorialStepKind::Order)
     }
 
-    /// Whether this step's recipe cards disappear after a set time.
+    /// Whether the recipe cards disappear after a set time.
     pub fn is_timed(&self) -> bool {
         self.kind == TutorialStepKind::Recipes && self.seconds.is_some_and(|seconds| seconds > 0.0)
     }
 
-    /// How long the step waits without the right press before it marks the button of the press with this index (from
-    /// 0), in
-    /// seconds.
+    /// How long the step waits without the right press before it marks the button of the press with this index.
     pub fn hint_after_s(&self, press: usize) -> f64 {
         match self.kind {
             TutorialStepKind::Order if press >= self.hints.unwrap_or(3) => self.hint_after_s.unwrap_or(8.0),
@@ -115,17 +105,16 @@ impl TutorialStep {
 }
 
 impl Tutorial {
-    /// Whether this step is the first one in which the participant presses buttons.
+    /// Whether this is the first step with presses.
     pub fn has_first_presses(&self, step: usize) -> bool {
         self.steps.iter().position(TutorialStep::has_presses) == Some(step)
     }
 
-    /// Index of the tutorial step with this identifier.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.steps.iter().position(|step| step.id == id)
     }
 
-    /// The state of the tutorial's kitchen at the beginning of a step: after all presses of the steps before.
+    /// The kitchen at the beginning of a step: after all presses of the steps before.
     pub fn state_at(&self, kitchen: &Kitchen, step: usize) -> State {
         let mut state = kitchen.empty_state();
         for (nth, one) in self.steps.iter().enumerate().take(step + 1) {
@@ -143,10 +132,7 @@ impl Tutorial {
         state
     }
 
-    /// Checks the tutorial's settings as far as possible without a kitchen.
-    ///
-    /// # Errors
-    /// An error names the first invalid setting.
+    /// As far as possible without a kitchen.
     pub fn check(&self) -> Result<(), SettingError> {
         if !is_code(&self.name) {
             let remedy = "a short name of letters, digits, - and _, such as \"sushi\"";
@@ -171,11 +157,8 @@ impl Tutorial {
         Ok(())
     }
 
-    /// Checks the names of locations, buttons and dishes in the tutorial, and that every press of the tutorial has an
-    /// effect when its turn comes.
-    ///
-    /// # Errors
-    /// The first name or press that does not fit the kitchen.
+    /// Names of locations, buttons and dishes must be the kitchen's, and every press must have an effect when its turn
+    /// comes.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
         for (nth, step) in self.steps.iter().enumerate() {
             check_names(kitchen, step).map_err(|error| placed(error, nth, step))?;
@@ -202,18 +185,17 @@ impl Tutorial {
     }
 }
 
-/// The state of the kitchen after the human's press; `None` if the press has no effect.
+/// `None` if the press has no effect.
 fn pressed(kitchen: &Kitchen, state: State, button: ButtonId) -> Option<State> {
     let press = kitchen.try_press(state, Agent::Human, button);
     press.effective.then_some(press.after)
 }
 
-/// The dish that a tutorial step's first order wants.
 fn dish_of(kitchen: &Kitchen, step: &TutorialStep) -> Option<DishId> {
     kitchen.dish_named(step.dish.as_ref()?)
 }
 
-/// Places the error of a tutorial step at the step's id in the file, which every step has exactly once.
+/// At the step's id in the file, which every step has exactly once.
 fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError {
     let found = format!("step \"{}\": {}", step.id, error.found);
     SettingError { nth, found, path: "step.id".to_string(), ..error }
@@ -294,19 +276,17 @@ fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingErro
     }
 }
 
-/// An element of the display that a tutorial step can frame.
+/// What a step can frame on the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TutorialTarget {
-    /// The area of human or robot on the display.
     Area(Agent),
-    /// A location on the display.
     Location(LocationId),
-    /// A button of the human on the display.
+    /// Of the human.
     Button(ButtonId),
 }
 
 impl TutorialTarget {
-    /// The element of the display that has this name in a tutorial file.
+    /// By its name in a tutorial file.
     pub fn named(kitchen: &Kitchen, name: &str) -> Option<TutorialTarget> {
         match name {
             "human" => Some(TutorialTarget::Area(Agent::Human)),
@@ -319,18 +299,16 @@ impl TutorialTarget {
     }
 }
 
-/// Who turned a page of a tutorial: participant or wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialPageTurner {
-    /// The participant, who can turn the tutorial's page only when its step is done.
+    /// Only when the step is done.
     Participant,
-    /// The wizard, who may skip a step of the tutorial.
+    /// May skip a step.
     Wizard,
 }
 
 impl TutorialPageTurner {
-    /// Name of the one who turned the tutorial's page (participant or wizard) in logs.
     pub fn name(self) -> &'static str {
         match self {
             TutorialPageTurner::Participant => "participant",
@@ -339,87 +317,72 @@ impl TutorialPageTurner {
     }
 }
 
-/// An event of a tutorial. Presses in a tutorial act on a kitchen of the tutorial's own: such presses are no presses of
-/// a trial, and no evidence of beliefs.
+/// Presses act on a kitchen of the tutorial's own: they are no presses of a trial, and no evidence of beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum TutorialEvent {
-    /// A step of the tutorial is shown.
     Shown {
-        /// Identifier of the tutorial step.
         step: String,
-        /// Who turned the tutorial's page.
         by: TutorialPageTurner,
     },
-    /// The participant pressed a button in the shown step of the tutorial.
     Pressed {
-        /// Name of the pressed button.
         button: String,
     },
-    /// The set time of the tutorial's recipe cards is over: they disappear.
+    /// The set time of the recipe cards is over: they disappear.
     CardsHidden {
-        /// Identifier of the tutorial step.
         step: String,
     },
-    /// The participant answered the question of the tutorial step.
     Answered {
-        /// Identifier of the tutorial step.
         step: String,
-        /// Number of the participant's choice, counted from 1.
+        /// From 1.
         choice: u8,
     },
-    /// The tutorial is over: the participant read its last step, or the wizard skipped the rest.
+    /// The participant read the last step, or the wizard skipped the rest.
     Ended {
-        /// Who ended the tutorial.
         by: TutorialPageTurner,
     },
 }
 
-/// A press of the participant in a tutorial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TutorialPress {
-    /// Number of the press in the tutorial, from 1.
+    /// In the tutorial, from 1.
     pub number: u32,
-    /// The button that the participant pressed.
     pub button: ButtonId,
-    /// Whether the pressed button is the button that the tutorial step asks for.
+    /// Whether the step asks for this button.
     pub is_right: bool,
-    /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; `None` if
-    /// the press has an effect.
+    /// Why, by the rules of the kitchen, and the location that the reason is about.
     pub no_effect: Option<(NoEffectReason, LocationId)>,
 }
 
-/// State of the participant's tutorial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TutorialState {
-    /// Index of the shown tutorial step.
+    /// Index of the shown step.
     pub step: usize,
-    /// Session time since which the tutorial step is shown.
+    /// Since when it is shown.
     pub shown_since: SessionTime,
-    /// Total time for which each step of the tutorial was shown before it was last left.
+    /// For how long each step was shown before it was last left.
     pub shown_before: Vec<SessionTime>,
-    /// The state of the tutorial's own kitchen: the content of every location.
+    /// The tutorial's own kitchen.
     pub kitchen: State,
-    /// Number of the presses requested by the tutorial step that are done.
+    /// Number of the step's presses that are done.
     pub presses: usize,
-    /// The participant's last press in the shown tutorial step.
+    /// In the shown step.
     pub last: Option<TutorialPress>,
     /// Number of presses in the tutorial so far.
     pub pressed: u32,
-    /// Whether the recipe cards of the step were shown for their set time.
+    /// The cards of the step were shown for their set time.
     pub are_cards_hidden: bool,
-    /// The participant's wrong choice in the step's question, counted from 1, until the participant chooses again.
+    /// Wrong choice in the step's question, from 1, until the participant chooses again.
     pub wrong: Option<u8>,
-    /// Whether each step of the tutorial was done.
+    /// By step.
     pub done: Vec<bool>,
-    /// Number of wrong answers to each step's question.
+    /// By step.
     pub wrong_answers: Vec<u32>,
-    /// Whether the tutorial is over.
     pub is_over: bool,
 }
 
 impl TutorialState {
-    /// A tutorial at its first step, which is shown from session time `now`.
+    /// At the first step, which is shown from `now`.
     pub fn new(tutorial: &Tutorial, kitchen: &Kitchen, now: SessionTime) -> TutorialState {
         let steps = tutorial.steps.len();
         let mut state = TutorialState {
@@ -440,7 +403,6 @@ impl TutorialState {
         state
     }
 
-    /// Shows a tutorial step from its beginning, at session time `now`.
     pub(crate) fn show(&mut self, tutorial: &Tutorial, kitchen: &Kitchen, step: usize, now: SessionTime) {
         if let Some(before) = self.shown_before.get_mut(self.step) {
             *before = *before + (now - self.shown_since);
@@ -460,32 +422,30 @@ impl TutorialState {
         self.finish(needs_nothing);
     }
 
-    /// Time for which the recipe cards of a step with a set time are still shown, in seconds, counted from when the
-    /// step was last shown: the time continues where the participant left the step. `None` if no cards with a set time
-    /// are shown.
+    /// For how long timed recipe cards are still shown, from when the step was last shown: the time continues where the
+    /// participant left the step.
     pub fn cards_left_s(&self, step: &TutorialStep) -> Option<f64> {
         let seconds = step.seconds.filter(|_| step.is_timed() && !self.are_cards_hidden)?;
         let before = self.shown_before.get(self.step).copied().unwrap_or_default();
         Some((seconds - before.as_secs_f64()).max(0.0))
     }
 
-    /// Whether the participant's last press was not the press that the tutorial step still asks for.
+    /// Whether the last press was not the one that the step still asks for.
     pub fn is_missed(&self, step: &TutorialStep) -> bool {
         self.wanted(step).is_some() && self.last.is_some_and(|last| !last.is_right)
     }
 
-    /// Whether the participant may continue from the shown tutorial step.
+    /// Whether the participant may continue from the shown step.
     pub fn is_done(&self) -> bool {
         self.done.get(self.step) == Some(&true)
     }
 
-    /// The button that the tutorial step asks for now.
+    /// The button that the step asks for now.
     pub fn wanted<'a>(&self, step: &'a TutorialStep) -> Option<&'a String> {
         step.presses.get(self.presses)
     }
 
-    /// Applies a press of the participant in the tutorial. Only the button that the step asks for changes the
-    /// tutorial's kitchen, so that hints remain correct.
+    /// Only the button that the step asks for changes the tutorial's kitchen, so that hints remain correct.
     pub(crate) fn press(&mut self, step: &TutorialStep, kitchen: &Kitchen, button: ButtonId) {
         self.pressed += 1;
         let is_right =
@@ -499,7 +459,6 @@ impl TutorialState {
         }
     }
 
-    /// Applies the participant's answer to the tutorial step's question.
     pub(crate) fn answer(&mut self, step: &TutorialStep, choice: u8) {
         let is_right = step.right == Some(choice);
         self.wrong = (!is_right).then_some(choice);
@@ -509,7 +468,7 @@ impl TutorialState {
         self.finish(is_right);
     }
 
-    /// Hides the recipe cards of the tutorial step, because the cards were shown for their set time.
+    /// They were shown for their set time.
     pub(crate) fn hide_cards(&mut self) {
         self.are_cards_hidden = true;
         self.finish(true);
@@ -523,7 +482,7 @@ impl TutorialState {
 }
 
 impl Session {
-    /// The tutorial of the present phase and the tutorial's state; `None` if the phase has no tutorial.
+    /// Of the present phase.
     pub fn tutorial(&self) -> Option<(&Tutorial, &TutorialState)> {
         let (_, protocol) = self.step()?;
         match self.study_phase()? {
@@ -532,17 +491,13 @@ impl Session {
         }
     }
 
-    /// The shown step of the tutorial; `None` if the tutorial is over.
+    /// The shown step; `None` if the tutorial is over.
     pub fn tutorial_step(&self) -> Option<(&TutorialStep, &TutorialState)> {
         let (tutorial, state) = self.tutorial().filter(|(_, state)| !state.is_over)?;
         Some((tutorial.steps.get(state.step)?, state))
     }
 }
 
-/// Whether the session accepts this event of the tutorial now.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
 pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
     let (tutorial, _) = session.tutorial().ok_or("no tutorial is shown now")?;
     let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
@@ -584,7 +539,7 @@ pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
     }
 }
 
-/// Begins the tutorial of the study phase that has just begun, at session time `now`, if the phase has a tutorial.
+/// Of the study phase that has just begun, if it has a tutorial.
 pub(crate) fn begin(session: &mut Session, now: SessionTime) {
     let begun = match session.study_phase() {
         Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen, now)),
@@ -595,7 +550,6 @@ pub(crate) fn begin(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Applies an event of the tutorial that the session accepts, at the event's session time `now`.
 pub(crate) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTime) {
     let Some((tutorial, state)) = session.tutorial() else { return };
     let Some(step) = tutorial.steps.get(state.step) else { return };

@@ -32,8 +32,7 @@ use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
 use tomcom_people::participant::population::Experience;
 use tomcom_people::wizard::ScriptedWizard;
 
-/// The simulated participant of a trial. In a study plan, one simulated participant has several trials and improves
-/// with practice.
+/// In a study plan, one simulated participant has several trials and improves with practice.
 pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
     let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
     let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
@@ -43,7 +42,6 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
     SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
 }
 
-/// The scripted wizard of a trial, if it has one; the script reads offers where the session shows offers.
 pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
     let (highlights, seed) = (spec.highlights(kitchen), spec.seed);
     let script = spec
@@ -52,15 +50,13 @@ pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial:
     Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 
-/// Schedule of the gaps in the data of the simulated eye tracker in a trial.
 pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeDropoutSchedule> {
     let GazeGapSpec { every_s, shortest_s, longest_s } = *spec.tracker.gaps.as_ref()?;
     Some(GazeDropoutSchedule::new(every_s, [shortest_s, longest_s], stream(spec.seed, "tracker's gaps", trial)))
 }
 
-/// The robot of a trial, with the kind of arm that the settings name.
-///
 /// # Panics
+///
 /// The settings ask for an arm with simulated physics, and this build has none.
 pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> RobotTaskExecutor {
     let RobotSpec { press_s, press_spread, initiative_s, .. } = spec.robot;
@@ -86,7 +82,7 @@ fn with_physics(_: RobotTaskExecutor, _: &Kitchen, _: &SessionSpec, _: u64) -> R
 }
 
 impl SessionEngine {
-    /// The session's robot, for experiments with the robot's arm.
+    /// For experiments with the robot's arm.
     pub fn robot(&mut self) -> &mut RobotTaskExecutor {
         &mut self.robot
     }
@@ -120,8 +116,7 @@ impl SessionEngine {
         self.record_own(now, event);
     }
 
-    /// Tells the robot about an applied event (an intervention of the wizard, or a press of the human); returns the
-    /// robot's reactions.
+    /// Returns the robot's reactions.
     pub(crate) fn tell_robot(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) -> Vec<RobotEvent> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
@@ -157,7 +152,7 @@ impl SessionEngine {
         reaction.into_iter().collect()
     }
 
-    /// Starts the hand motion of a simulated participant in time for the participant's next press.
+    /// Moves a simulated participant's hand in time for the next press.
     pub(crate) fn let_hand_follow(&mut self, now: SessionTime) {
         if let Some((button, at)) = self.participant.as_ref().and_then(SimulatedParticipant::next_press) {
             let button_m = self.session().kitchen.button(Agent::Human, button).at_m;
@@ -167,7 +162,7 @@ impl SessionEngine {
 }
 
 impl SessionEngine {
-    /// Tells the simulated participant the part of an applied event that a participant can notice.
+    /// Only what a participant can notice.
     pub(crate) fn tell_participant(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(participant) = &mut self.participant else { return };
         let session = &self.follower.session;
@@ -190,7 +185,6 @@ impl SessionEngine {
         }
     }
 
-    /// Records the event by which an offer to the wizard opens or closes, if one is due.
     pub(crate) fn review_offer(&mut self, now: SessionTime) {
         while let Some(mut event) = offers::due(self.session(), now) {
             // A recommendation states a reason for its first option only; if two orders want the same dish, the offer
@@ -205,8 +199,7 @@ impl SessionEngine {
         }
     }
 
-    /// Tells a scripted wizard the part of an applied event that a wizard sees: kitchen, presses, gaze, and offers if
-    /// they are shown.
+    /// Only what a wizard sees: kitchen, presses, gaze, and offers if they are shown.
     pub(crate) fn tell_wizard(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;
@@ -241,13 +234,11 @@ impl SessionEngine {
 }
 
 impl SessionEngine {
-    /// Session time of the next event of a freeze probe.
     pub(crate) fn probe_due(&self) -> Option<SessionTime> {
         let rule = upcoming(self.session()).map(|(due, _)| due);
         [rule, self.answer_due()].into_iter().flatten().min()
     }
 
-    /// Session time at which the simulated participant answers the shown question.
     fn answer_due(&self) -> Option<SessionTime> {
         let (participant, session) = (self.participant.as_ref()?, self.session());
         let open = session.probes.open.as_ref().filter(|open| !open.is_paused())?;
@@ -256,7 +247,7 @@ impl SessionEngine {
         Some(open.when(open.asked_at, SessionTime::from_secs_f64(after_s)).max(session.time))
     }
 
-    /// Records the events of a freeze probe that are due. An answer at the last possible time still counts.
+    /// An answer at the last possible time still counts.
     pub(crate) fn review_probe(&mut self, now: SessionTime) {
         loop {
             let rule = upcoming(self.session()).filter(|(due, _)| *due <= now);
@@ -284,7 +275,7 @@ impl SessionEngine {
         self.record_own(now, Event::Probe(ProbeEvent::Begun { probe, origin, uses_estimate, questions }));
     }
 
-    /// For each state aspect, whether the estimate says that the participant's belief about it is false now.
+    /// For each state aspect, whether the estimate says that the belief about it is false.
     fn believed_wrong(&mut self, now: SessionTime) -> Vec<bool> {
         let belief = self.follower.belief_at(now);
         let session = self.session();

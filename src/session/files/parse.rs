@@ -14,31 +14,21 @@ use tomcom_core::kitchen::layout::LayoutSpec;
 use tomcom_core::kitchen::recipe::RecipesSpec;
 use tomcom_core::mind::model::HumanModel;
 
-/// Kind of a file that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// A session file: the settings of a session.
     Session,
-    /// A layout file of a kitchen: places, buttons and the display.
     Layout,
-    /// A recipe file of a kitchen: dishes and their ingredients.
     Recipes,
-    /// A parameter file of the human model (beliefs and choices of simulated people).
     HumanModel,
-    /// A key file, which changes keys of the console.
     Keys,
-    /// A file with a questionnaire for participants.
     Questionnaire,
-    /// A file with a tutorial for participants.
     Tutorial,
-    /// A file with the texts of the participant's display in a language.
     Language,
-    /// A file with a battery of cohorts of simulated participants.
     Battery,
 }
 
 impl FileKind {
-    /// The kind of file to which a text belongs, judged by the tables in it; `None` if unknown.
+    /// The kind of file that a text is, by the tables in it.
     fn from_text(text: &str) -> Option<FileKind> {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
@@ -87,7 +77,6 @@ impl FileKind {
 
 /// A type into which files of one kind are parsed.
 pub trait ParsedFile: DeserializeOwned {
-    /// The kind of file from which this type is parsed.
     const KIND: FileKind;
 }
 
@@ -119,7 +108,7 @@ impl ParsedFile for HumanModel {
     const KIND: FileKind = FileKind::HumanModel;
 }
 
-/// Parses TOML into `T`; if the text is a file of another kind, the error says so.
+/// If the text is a file of another kind, the error says so.
 pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
@@ -196,7 +185,6 @@ fn type_name(expected: &str) -> String {
     name.to_string()
 }
 
-/// A name that no setting has.
 const NOBODY: &str = "no_setting_has_this_name";
 /// Number of tables within tables that are looked into.
 const DEEPEST: usize = 3;
@@ -204,7 +192,8 @@ const DEEPEST: usize = 3;
 const MOST_PLACES: usize = 3;
 
 /// Where files that are parsed into `T` have a setting of this name, in words: "under [human.decision]". `None` if no
-/// table has it, or too many have it.
+/// table has it, or too many. The parser of `T` is asked: it refuses a setting that no file has, and names those that
+/// the table could have.
 pub(crate) fn places_of<T: DeserializeOwned>(setting: &str) -> Option<String> {
     let mut tables = Vec::new();
     collect::<T>("", setting, DEEPEST, &mut tables);
@@ -219,7 +208,6 @@ pub(crate) fn places_of<T: DeserializeOwned>(setting: &str) -> Option<String> {
     Some(tables.iter().map(place).collect::<Vec<_>>().join(", or "))
 }
 
-/// Collects the tables from this one on, up to a depth, that have a setting of this name.
 fn collect<T: DeserializeOwned>(table: &str, setting: &str, depth: usize, tables: &mut Vec<String>) {
     let Some(names) = settings_of::<T>(table) else { return };
     if names.iter().any(|name| name == setting) {
@@ -234,7 +222,7 @@ fn joined(table: &str, name: &str) -> String {
     if table.is_empty() { name.to_string() } else { format!("{table}.{name}") }
 }
 
-/// Names of the settings in this table; `None` if it is no table.
+/// `None` if it is no table.
 fn settings_of<T: DeserializeOwned>(table: &str) -> Option<Vec<String>> {
     let header = if table.is_empty() { String::new() } else { format!("[{table}]\n") };
     let error = toml::from_str::<T>(&format!("{header}{NOBODY} = 0\n")).err()?;

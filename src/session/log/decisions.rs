@@ -14,26 +14,18 @@ use crate::header::CodeCorrection;
 use crate::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued, first_line, read_header};
 use crate::{Event, LogHeader, person_code};
 
-/// Why a decision about a recording cannot be recorded.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum DecisionError {
-    /// The recording, or an earlier decision, cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// The decision about the recording cannot be written to its folder.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
     /// The decision cannot be made about this recording, or not like this.
     #[error("found {found}")]
     #[diagnostic(help("{remedy}"))]
-    Unfit {
-        /// What is wrong with the decision, in words.
-        found: String,
-        /// What would be right instead.
-        remedy: String,
-    },
+    Unfit { found: String, remedy: String },
 }
 
 impl From<FileError> for DecisionError {
@@ -42,7 +34,6 @@ impl From<FileError> for DecisionError {
     }
 }
 
-/// Checks the reason that somebody gave for a decision; an empty one only where it `may_be_empty`.
 pub(crate) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), DecisionError> {
     let length = reason.chars().count();
     let found = if reason.chars().any(char::is_control) {
@@ -57,7 +48,7 @@ pub(crate) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), Decis
     Err(DecisionError::Unfit { found, remedy: "a reason of 1 to 200 characters, on one line".to_string() })
 }
 
-/// Checks that no later part continues the recording in a folder: decisions are about the whole recording.
+/// Decisions are about the whole recording, so no later part may continue it.
 pub(crate) fn check_last_part(folder: &Path) -> Result<(), DecisionError> {
     let mut last = folder.to_path_buf();
     while let Err(RecordingWriteError::Continued { part, .. }) = check_continued(&last) {
@@ -70,7 +61,7 @@ pub(crate) fn check_last_part(folder: &Path) -> Result<(), DecisionError> {
     Err(DecisionError::Unfit { found, remedy: format!("the last part of the recording: {}", last.display()) })
 }
 
-/// Reads a file with decisions; empty decisions if there is no such file. `remedy`: what the file should contain.
+/// Empty decisions if there is no such file. `remedy`: what the file should contain.
 pub(crate) fn read_decisions<Decisions: DeserializeOwned + Default>(
     path: &Path,
     remedy: &str,
@@ -88,11 +79,8 @@ pub(crate) fn read_decisions<Decisions: DeserializeOwned + Default>(
         .map_err(|error| FileError::at(path, &text, error.span(), error.message().to_string(), remedy.to_string()))
 }
 
-/// Checks that the folder of a recording has no copy of the file with this name, such as those that file managers and
-/// sync programs make: it could have another content, and what it says would be lost.
-///
-/// # Errors
-/// There is such a copy.
+/// The folder must have no copy of this file, such as file managers and sync programs make: it could have another
+/// content, which would be lost.
 pub(crate) fn check_single(folder: &Path, name: &str) -> FileResult<()> {
     // A folder that cannot be read is reported by the reader of the file.
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
@@ -109,26 +97,24 @@ pub(crate) fn check_single(folder: &Path, name: &str) -> FileResult<()> {
     Ok(())
 }
 
-/// Writes a file with decisions, completely or not at all.
 pub(crate) fn write_decisions(path: &Path, decisions: &impl Serialize) -> Result<(), RecordingWriteError> {
     let failed = |reason| RecordingWriteError::unwritable(path, reason);
     let text = toml::to_string(decisions).map_err(|error| failed(std::io::Error::other(error)))?;
     replace_file::replace(path, text.as_bytes()).map_err(failed)
 }
 
-/// Name of the exclusion file in the folder of a recording.
+/// Whether the trial is excluded from the analysis, and why. Exclusions at the console are events in the log instead.
 pub const EXCLUSION_NAME: &str = "exclusion.toml";
 
-/// Decision to exclude a closed recording from the analysis, or to include it again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExclusionRecord {
-    /// Whether the recording is excluded from the analysis; false if it is included again.
+    /// False if it is included again.
     pub excluded: bool,
-    /// Reason of the decision; may be empty if the decision includes the recording again.
+    /// May be empty for an inclusion.
     #[serde(default)]
     pub reason: String,
-    /// Time of the decision about the recording (UTC, RFC 3339).
+    /// UTC, RFC 3339.
     pub at: String,
 }
 
@@ -139,10 +125,7 @@ struct Rulings {
     ruling: Vec<ExclusionRecord>,
 }
 
-/// The last decision about the recording in this folder, if there is any.
-///
-/// # Errors
-/// The file exists but cannot be read, or has other content.
+/// The last decision about the recording in this folder.
 pub fn ruling(folder: &Path) -> FileResult<Option<ExclusionRecord>> {
     Ok(rulings(folder)?.ruling.pop())
 }
@@ -152,11 +135,8 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
     read_decisions(&folder.join(EXCLUSION_NAME), remedy)
 }
 
-/// Records a decision about whether analyses count a closed recording, and returns the decision.
-///
-/// # Errors
-/// The folder is not a recording, the recording is being written or is continued by a later part, or its folder cannot
-/// be written to; or a recording is to be included again that is not excluded.
+/// Records whether analyses count a closed recording. It is an error if the recording is being written or is continued
+/// by a later part, or if it is to be included although it is not excluded.
 pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
     check_reason(reason, !excluded)?;
     let mut log = LogReader::open(recording)?;
@@ -184,7 +164,7 @@ pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionR
     Ok(ruling)
 }
 
-/// Name of the file with corrections in the folder of a recording.
+/// To which participant the recording belongs, if the code was typed wrong when the session began.
 pub const CORRECTION_NAME: &str = "correction.toml";
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -194,20 +174,12 @@ pub(crate) struct Corrections {
     pub correction: Vec<CodeCorrection>,
 }
 
-/// All corrections in the folder of a log; none if there is no file with corrections.
-///
-/// # Errors
-/// The file exists but cannot be read, or has other content.
 pub(crate) fn corrections(folder: &Path) -> FileResult<Corrections> {
     let remedy = "[[correction]] with before, after, why, by and at, as tomcom correct writes it";
     read_decisions(&folder.join(CORRECTION_NAME), remedy)
 }
 
-/// The participant's code in a log's header after the corrections in the folder of the log, and the correction that
-/// holds; `None` if the recorded code is right.
-///
-/// # Errors
-/// The file with corrections exists but cannot be read, or has other content.
+/// The correction that holds for the log in this folder; `None` if the recorded code is right.
 pub fn corrected_code(folder: &Path, recorded: &str) -> FileResult<Option<CodeCorrection>> {
     let last = corrections(folder)?.correction.pop();
     // A correction that was taken back leads to the recorded code.
@@ -215,7 +187,6 @@ pub fn corrected_code(folder: &Path, recorded: &str) -> FileResult<Option<CodeCo
     Ok(last.map(|last| CodeCorrection { before: recorded.to_string(), ..last }))
 }
 
-/// Applies the corrections in the folder of a log to the log's header.
 pub(crate) fn correct_header(folder: &Path, header: &mut LogHeader) -> FileResult<()> {
     let code = &mut header.session.participant.code;
     header.correction = corrected_code(folder, code)?;
@@ -225,14 +196,10 @@ pub(crate) fn correct_header(folder: &Path, header: &mut LogHeader) -> FileResul
     Ok(())
 }
 
-/// Records that a closed recording belongs to the participant with another code; `None`: to that with the code in its
-/// log, after all. The correction is written beside the log of each part, since each part says whose it is. Returns the
-/// correction.
-///
-/// # Errors
-/// The folder is not a recording, the recording is being written or is continued by a later part, its folder cannot be
-/// written to; the code is no code of a participant, is the present one, or differs from that of a recording in the same
-/// folder in capital letters only.
+/// Records that a closed recording belongs to the participant with another code; `None`: to that in its log, after all.
+/// The correction stands beside the log of each part, since each part says whose it is. It is an error if the recording
+/// is being written or is continued by a later part, and if the code is no code of a participant, is the present one,
+/// or differs from that of a recording beside it in capital letters only.
 pub fn correct(recording: &Path, code: Option<&str>, why: &str) -> Result<CodeCorrection, DecisionError> {
     check_reason(why, code.is_none())?;
     let log = LogReader::open(recording)?;
@@ -270,8 +237,8 @@ pub fn correct(recording: &Path, code: Option<&str>, why: &str) -> Result<CodeCo
     Ok(correction)
 }
 
-/// A recording beside this one whose participant's code differs from a code in capital letters only, with its code.
-/// Neighbours whose headers cannot be read are reported when they are read.
+/// A recording beside this one whose participant's code differs in capital letters only, with its code. Neighbours
+/// whose headers cannot be read are reported when they are read.
 fn differing_neighbour(recording: &Path, own: &[&Path], code: &str) -> Option<(String, String)> {
     let recording = recording.canonicalize().ok()?;
     let is_own = |folder: &Path| {
@@ -287,14 +254,14 @@ fn differing_neighbour(recording: &Path, own: &[&Path], code: &str) -> Option<(S
     })
 }
 
-/// The account on this computer that runs the program, by its name, or else by its number; empty if neither is known.
+/// The account that runs the program, by its name, or else by its number; empty if neither is known.
 fn account() -> String {
     let is_named = |name| std::env::var(name).ok().filter(|name| !name.is_empty());
     let named = ["USER", "LOGNAME", "USERNAME"].into_iter().find_map(is_named);
     named.or_else(account_number).unwrap_or_default()
 }
 
-/// The number of the account: that of the owner of a file that the program makes.
+/// That of the owner of a file that the program makes.
 #[cfg(unix)]
 fn account_number() -> Option<String> {
     use std::os::unix::fs::MetadataExt;

@@ -32,43 +32,38 @@ use crate::wall_display::AnswerDevice;
 use tomcom_core::base::rng::{shuffle, stream};
 use tomcom_core::base::words::count;
 
-/// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
+/// `[plan]` of a session file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanSpec {
-    /// Name of the study plan, by which recordings of the plan are recognised.
+    /// By which recordings of the plan are recognised.
     pub name: String,
-    /// The participants of the study.
     pub participants: Participants,
-    /// Study arms that the study compares; each participant has one trial in each arm, in counterbalanced order.
+    /// Each participant has one trial in each, in counterbalanced order.
     pub conditions: Vec<StudyArm>,
-    /// The primary outcome of the study, and its margin of non-inferiority.
     #[serde(default, skip_serializing_if = "StudyAims::are_default")]
     pub aims: StudyAims,
-    /// Size of a permuted block, in participants; by default each order of the conditions occurs twice in a block.
+    /// Size of a permuted block, in participants; by default each order of the conditions occurs twice in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub block: Option<u32>,
-    /// Consent text, which is shown before anything is recorded.
+    /// Shown before anything is recorded.
     #[serde(default = "default_consent")]
     pub consent: String,
-    /// How the participant consents: by holding a button on the display, or by telling the wizard, who confirms the
-    /// consent at the console.
+    /// By holding a button on the display, or by telling the wizard, who confirms it at the console.
     #[serde(default = "on_console")]
     pub consent_on: AnswerDevice,
-    /// Steps of the wizard's instruction to the participant.
+    /// Steps of the wizard.
     #[serde(default)]
     pub instruction: Vec<String>,
-    /// File of the tutorial that the participant sees on the display after the instruction, relative to the session
-    /// file.
+    /// File, relative to the session file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<String>,
-    /// Practice trial before the first trial, if the plan has a practice trial.
+    /// Practice before the first trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiarisation: Option<FamiliarisationSpec>,
-    /// The questionnaires, and after which trials the participant answers them.
     #[serde(default)]
     pub questionnaire: Vec<QuestionnaireSpec>,
-    /// Steps of the wizard's debriefing after the last trial.
+    /// Steps of the wizard after the last trial.
     #[serde(default)]
     pub debriefing: Vec<String>,
 }
@@ -81,59 +76,52 @@ fn on_console() -> AnswerDevice {
     AnswerDevice::Console
 }
 
-/// The participants of a plan: their number, from which codes follow (P01, P02, …), or a list of their codes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number of participants, or a list of their codes")]
 pub enum Participants {
-    /// The number of participants; their codes are P01, P02, …
+    /// Their codes are P01, P02, …
     Count(u32),
-    /// The codes of the participants, in a list.
     Codes(Vec<String>),
 }
 
-/// Practice trial (familiarisation) before the first trial, repeated until the participant meets a criterion.
+/// Practice trial, repeated until the participant meets a criterion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamiliarisationSpec {
-    /// The study arm of the practice trial: who may send signals.
     #[serde(default)]
     pub condition: StudyArm,
-    /// Number of presses of both agents at which the practice trial ends, unless time or orders end it earlier.
+    /// Of both agents, at which it ends, unless time or orders end it earlier.
     pub presses: u32,
-    /// Duration after which the practice trial ends, in seconds on the trial's clock.
+    /// On the trial's clock.
     pub seconds: f64,
-    /// Criterion of the practice trial: least number of served orders.
+    /// Criterion: least number of served orders.
     pub orders: u32,
-    /// Criterion of the practice trial: largest share of errors among the human's presses.
+    /// Criterion: largest share of errors among the human's presses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
 
-/// A questionnaire of a plan, with the trials after which the participant answers it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuestionnaireSpec {
-    /// The questionnaire's file, relative to the session file.
+    /// Relative to the session file.
     pub file: String,
-    /// Numbers of the trials after which the participant answers the questionnaire, from 1; by default after each
-    /// trial.
+    /// Numbers of the trials after which it is asked, from 1; by default after each.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<Vec<u32>>,
-    /// Whether the participant answers the questionnaire once before the first trial; after trials it is then asked
-    /// only if `after` says so.
+    /// Whether it is asked once before the first trial; after trials it is then asked only if `after` says so.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub before: bool,
 }
 
 impl QuestionnaireSpec {
-    /// Whether the questionnaire is asked after the trial with this number.
     pub fn is_asked_after(&self, period: u32) -> bool {
         self.after.as_ref().map_or(!self.before, |after| after.contains(&period))
     }
 }
 
 impl PlanSpec {
-    /// Participant codes in the order of the plan.
+    /// In the order of the plan.
     pub fn codes(&self) -> Vec<String> {
         match &self.participants {
             Participants::Count(count) => (1..=*count).map(|number| numbered(number, *count)).collect(),
@@ -141,7 +129,7 @@ impl PlanSpec {
         }
     }
 
-    /// Code of the participant with this index in the plan; empty beyond the last participant.
+    /// Empty beyond the last participant.
     pub fn code(&self, participant: usize) -> String {
         match &self.participants {
             Participants::Count(count) if participant < *count as usize => numbered(participant as u32 + 1, *count),
@@ -150,10 +138,6 @@ impl PlanSpec {
         }
     }
 
-    /// Checks ranges and consistency of the study plan.
-    ///
-    /// # Errors
-    /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &'static str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
@@ -185,10 +169,7 @@ impl PlanSpec {
         Ok(())
     }
 
-    /// Checks that the study arms agree with what the wizard sees in the session.
-    ///
-    /// # Errors
-    /// The plan has a wizard without advice, but the settings show recommendations.
+    /// A wizard without advice must not see recommendations.
     pub fn check_visibility(&self, visibility: WizardVisibility) -> Result<(), SettingError> {
         let practice = self.familiarisation.iter().map(|practice| practice.condition);
         let is_blind = self.conditions.iter().copied().chain(practice).any(|arm| arm == StudyArm::Wizard);
@@ -228,20 +209,20 @@ impl PlanSpec {
     }
 }
 
-/// The code of a participant with this number: "P07" if there are up to 99 participants.
+/// "P07" if there are up to 99 participants.
 fn numbered(number: u32, count: u32) -> String {
     let digits = count.to_string().len().max(2);
     format!("P{number:0digits$}")
 }
 
-/// The aims of a study, which are set before the study begins.
+/// Set before the study begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StudyAims {
-    /// The outcome that the analysis compares first between the conditions.
+    /// What the analysis compares first between the conditions.
     pub outcome: PrimaryOutcome,
     /// Margin of non-inferiority: the assistant counts as not worse than the wizard if the ratio of their rates is
-    /// below the margin.
+    /// below it.
     pub margin: f64,
 }
 
@@ -257,21 +238,19 @@ impl StudyAims {
     }
 }
 
-/// The primary outcome of a study: a number of events in a trial, compared as a rate per press of the human.
+/// Compared as a rate per press of the human.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PrimaryOutcome {
-    /// Primary outcome: all errors of the human.
     #[default]
     Errors,
-    /// Primary outcome: errors that a false belief caused; for people these are known from two raters' codes.
+    /// Errors that a false belief caused; for people known from two raters' codes.
     BeliefRelatedErrors,
-    /// Primary outcome: error sequences (related errors); for people these are known from two raters' codes.
+    /// Sequences of related errors; for people known from two raters' codes.
     Sequences,
 }
 
 impl PrimaryOutcome {
-    /// Name of the primary outcome in texts.
     pub fn title(self) -> &'static str {
         match self {
             PrimaryOutcome::Errors => "errors",
@@ -281,12 +260,12 @@ impl PrimaryOutcome {
     }
 }
 
-/// A starting group: an order of the study's conditions.
+/// An order of the study's conditions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StartingGroup {
-    /// Name of the starting group: "AB" if the first condition of the plan comes first.
+    /// "AB" if the first condition of the plan comes first.
     pub name: String,
-    /// The study arm of each trial of a participant in this group, in order.
+    /// Of each trial, in order.
     pub conditions: Vec<StudyArm>,
 }
 
@@ -310,7 +289,8 @@ pub fn orders(count: usize) -> Vec<Vec<usize>> {
 }
 
 impl PlanSpec {
-    /// The starting group of the participant with this index: a function of plan and seed alone.
+    /// By permuted blocks (Pocock 1983, Clinical Trials, ch. 5): groups are equal after every block, and the next
+    /// assignment is unpredictable. A function of plan and seed alone.
     pub fn group(&self, seed: u64, participant: usize) -> StartingGroup {
         let orders = orders(self.conditions.len());
         let block = self.block.map_or(2 * orders.len(), |block| block as usize);
@@ -329,87 +309,70 @@ impl PlanSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanPosition {
-    /// The name of the study plan to which the recording belongs.
     pub plan: String,
-    /// Digest of the plan, its settings and questionnaires, by which another version of the plan is recognised.
+    /// By which another version of the plan is recognised.
     pub digest: String,
-    /// Index of the participant in the plan, from 0.
+    /// Index in the plan, from 0.
     pub participant: u32,
-    /// Name of the participant's starting group: "AB".
+    /// Name of the starting group: "AB".
     pub group: String,
     /// Number of the trial, from 1; `None` for the familiarisation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<u32>,
     /// Number of counted trials per participant.
     pub periods: u32,
-    /// The study arm that the plan assigns to the trial; `None` for a recording of the tutorial alone.
+    /// `None` for a recording of the tutorial alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arm: Option<StudyArm>,
-    /// The aims of the study, if they are not the default.
     #[serde(default, skip_serializing_if = "StudyAims::are_default")]
     pub aims: StudyAims,
-    /// Number of the attempt at this trial, from 1.
+    /// From 1.
     pub attempt: u32,
-    /// Criterion that the participant has to meet in the practice trial (familiarisation).
+    /// Of the familiarisation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub criterion: Option<PracticeCriterion>,
-    /// The phases of the recording, in order, such as instruction, trial and questionnaire.
     #[serde(rename = "phase")]
     pub phases: Vec<PhaseSpec>,
 }
 
-/// Criterion of the practice trial (familiarisation): a least number of served orders, and a largest share of errors
-/// among the human's presses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PracticeCriterion {
-    /// The least number of served orders in the practice trial.
+    /// Least number of served orders.
     pub orders: u32,
-    /// The largest share of errors among the human's presses, 0 to 1; `None`: errors do not matter.
+    /// Largest share of errors among the human's presses, 0 to 1; `None`: errors do not matter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
 
 impl PracticeCriterion {
-    /// Whether a practice trial with these numbers of served orders, human presses and errors meets the criterion.
     pub fn is_met(&self, orders: u32, presses: u32, errors: u32) -> bool {
         let share = f64::from(errors) / f64::from(presses.max(1));
         orders >= self.orders && self.error_rate.is_none_or(|most| share <= most)
     }
 }
 
-/// A phase of a study recording, such as instruction or trial, with its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PhaseSpec {
-    /// The wizard instructs the participant.
     Instruction {
-        /// The wizard's instructions, step by step.
         steps: Vec<String>,
     },
-    /// The participant goes through a tutorial on the display.
     Tutorial {
-        /// The tutorial, with all its texts.
         tutorial: Tutorial,
     },
-    /// A practice trial, which does not count.
+    /// Practice, which does not count.
     Familiarisation,
-    /// A trial that counts for the analysis.
     Trial,
-    /// The participant answers a questionnaire.
     Questionnaire {
-        /// The questionnaire, with the items that are asked in this phase.
         questionnaire: Questionnaire,
     },
-    /// The participant is debriefed.
     Debriefing {
-        /// The steps of the debriefing.
         steps: Vec<String>,
     },
 }
 
 impl PhaseSpec {
-    /// The kind of the phase, without its content.
     pub fn phase(&self) -> StudyPhase {
         match self {
             PhaseSpec::Instruction { .. } => StudyPhase::Instruction,
@@ -421,7 +384,7 @@ impl PhaseSpec {
         }
     }
 
-    /// The steps of an instruction or debriefing that the wizard ticks off.
+    /// Steps that the wizard ticks off.
     pub fn steps(&self) -> &[String] {
         match self {
             PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => steps,
@@ -431,12 +394,11 @@ impl PhaseSpec {
 }
 
 impl PlanPosition {
-    /// Whether the recording has only the participant's tutorial, without a trial.
     pub fn is_tutorial_alone(&self) -> bool {
         matches!(self.phases[..], [PhaseSpec::Tutorial { .. }])
     }
 
-    /// Position of the recording in the participant's series, in words: "trial 1/2", "familiarisation".
+    /// "trial 1/2", "familiarisation".
     pub fn label(&self) -> String {
         let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
         match self.period {

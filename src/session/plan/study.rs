@@ -16,47 +16,42 @@ use tomcom_core::base::rng::mix;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::settings::WizardKind;
 
-/// A planned trial in a participant's series (familiarisation or counted trial): it needs one complete recording.
+/// It needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PlannedTrial {
-    /// Number of the trial, from 1; `None` for the familiarisation.
+    /// From 1; `None` for the familiarisation.
     pub period: Option<u32>,
-    /// The study arm of the trial.
     pub condition: StudyArm,
 }
 
-/// A study: its plan with session settings and questionnaires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The plan from the session file.
     pub plan: PlanSpec,
-    /// Questionnaires in the order of the plan.
+    /// In the order of the plan.
     pub questionnaires: Vec<Questionnaire>,
-    /// The participant's tutorial, if the plan has one.
     pub tutorial: Option<Tutorial>,
     /// Settings that all sessions of the study share.
     pub session: SessionSpec,
-    /// A checksum of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with
-    /// another checksum belong to another study.
+    /// Of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with another
+    /// digest belong to another study.
     pub digest: String,
 }
 
-/// Identifies a recording of a study that is to be made.
+/// A recording of a study that is to be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WantedRecording {
-    /// Index of the participant in the plan.
+    /// Index in the plan.
     pub participant: usize,
     /// Index of the planned trial in the participant's series.
     pub slot: usize,
-    /// Number of the attempt at this trial, from 1.
+    /// From 1.
     pub attempt: u32,
     /// Whether the participant has completed the instruction.
     pub instructed: bool,
 }
 
 impl Study {
-    /// The study of a session file, with the questionnaires of its plan in order, its tutorial, and the texts of the
-    /// kitchen's files; `None` if the session file has no plan.
+    /// `None` if the session file has no plan. `kitchen`: the texts of the kitchen's files.
     pub fn new(
         session: &SessionSpec,
         questionnaires: Vec<Questionnaire>,
@@ -76,18 +71,15 @@ impl Study {
         Some(Study { plan, questionnaires, tutorial, session, digest })
     }
 
-    /// The starting group of the participant with this index in the plan.
     pub fn group(&self, participant: usize) -> StartingGroup {
         self.plan.group(self.session.seed, participant)
     }
 
-    /// The event that the participant consented to the plan's text, at the display or at the console.
     pub fn consent_given(&self, on: AnswerDevice) -> ProtocolEvent {
         let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
         ProtocolEvent::ConsentGiven { on, text, digest }
     }
 
-    /// The planned trials of a participant, in order.
     pub fn slots(&self, participant: usize) -> Vec<PlannedTrial> {
         let practice = self.plan.familiarisation.as_ref().map(|practice| (None, practice.condition));
         let trials = self.group(participant).conditions.into_iter().enumerate();
@@ -95,7 +87,7 @@ impl Study {
         practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
     }
 
-    /// The settings of a recording with people, and the number of the recording's trial.
+    /// Of a recording with people, and the number of its trial.
     pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
         let slots = self.slots(wanted.participant);
         let slot = slots[wanted.slot];
@@ -124,8 +116,8 @@ impl Study {
         (spec, trial_number(wanted))
     }
 
-    /// The settings of a simulated trial of the study, and the trial's number. A simulated trial has no instruction and
-    /// no questionnaire; without a scripted wizard, the wizard conditions are unassisted.
+    /// Of a simulated trial, and its number. It has no instruction and no questionnaire; without a scripted wizard, the
+    /// wizard conditions are unassisted.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
@@ -140,7 +132,7 @@ impl Study {
         (spec, trial)
     }
 
-    /// The settings of a recording that has only the tutorial; `None` if the study has no tutorial.
+    /// `None` if the study has no tutorial.
     pub fn tutorial_alone(&self, code: &str) -> Option<SessionSpec> {
         let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
         let mut spec = self.session.clone();
@@ -190,7 +182,6 @@ impl Study {
     }
 }
 
-/// Sets the settings of a trial to those of its study arm.
 fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     spec.trial.condition = arm.condition();
     if let Some(concept) = arm.concept() {
@@ -209,9 +200,9 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     }
 }
 
-/// The session settings without those that cannot change a trial: addresses, viewers, appearance and texts of the
-/// wizard's console. Who takes part in a recording and which device its gaze comes from are not part of the plan
-/// either; both are chosen at the start of a recording and written to its header.
+/// Without addresses, viewers, appearance and texts of the wizard's console. Who takes part in a recording and which
+/// device its gaze comes from are not part of the plan either: both are chosen at the start of a recording and written
+/// to its header.
 fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
     let ParticipantSpec { population, .. } = session.participant.clone();
     let TrackerSpec { surface, corners, distance_m, .. } = session.tracker.clone();
@@ -229,94 +220,73 @@ fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
     }
 }
 
-/// A unique trial number for every recording of a plan; its decimal digits encode participant, planned trial and
-/// attempt.
+/// Unique to a recording of a plan; its decimal digits encode participant, planned trial and attempt.
 fn trial_number(wanted: WantedRecording) -> u64 {
     (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
 }
 
-/// A digest of a text, as sixteen hexadecimal digits.
+/// Sixteen hexadecimal digits.
 fn digest(text: &str) -> String {
     let sum = text.bytes().fold(text.len() as u64, |sum, byte| mix(sum ^ u64::from(byte)));
     format!("{sum:016x}")
 }
 
-/// State of a recording of a plan: complete, open, excluded or void.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum RecordingOutcome {
-    /// The recording is complete: all its phases are done.
+    /// All its phases are done.
     Complete,
-    /// The recording is unfinished: cut off or left early, so that it can be continued.
+    /// Cut off or left early, so that it can be continued.
     Open,
-    /// A program is making the recording at present.
+    /// A program is making it at present.
     Running,
-    /// The recording is finished and excluded from the analysis, but not repeated.
-    Excluded {
-        /// Why the recording is excluded.
-        reason: String,
-    },
-    /// The recording is finished and invalid: it must be repeated.
-    Void {
-        /// Why the recording is invalid.
-        reason: String,
-    },
+    /// Finished and excluded from the analysis, but not repeated.
+    Excluded { reason: String },
+    /// Finished and invalid: it must be repeated.
+    Void { reason: String },
 }
 
-/// Facts about one recording of a study plan, over all its parts.
+/// Facts about one recording, over all its parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRecording {
-    /// Name of the recording's folder; the last part's, if the recording has several.
+    /// Name of its folder; of several parts, the last one's.
     pub recording: String,
-    /// The participant's code.
     pub code: String,
-    /// The participant's code in the log, if it was corrected afterwards.
+    /// The code in the log, if it was corrected afterwards.
     pub recorded_as: Option<String>,
-    /// Position of the recording in the study plan; of a corrected recording, that of the other participant.
+    /// Of a corrected recording, that of the other participant.
     pub step: PlanPosition,
-    /// Whether the participant consented to being recorded.
     pub consent: bool,
-    /// Whether the participant completed the instruction, if there is one.
     pub instructed: bool,
-    /// Number of presses of both agents in the trial.
+    /// Of both agents in the trial.
     pub presses: u32,
-    /// Whether the recording is complete, open, excluded or void.
     pub outcome: RecordingOutcome,
 }
 
-/// The recording that a participant of a study needs next.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum NextRecording {
-    /// A new recording begins at a planned trial.
     Begin {
-        /// The index of the planned trial in the participant's series.
+        /// Index of the planned trial in the participant's series.
         slot: usize,
-        /// The number of the attempt at this trial, counted from 1.
+        /// From 1.
         attempt: u32,
     },
-    /// There is an unfinished recording: the experimenter continues it, or repeats its trial as a new attempt.
+    /// It is unfinished: the experimenter continues it, or repeats its trial as a new attempt.
     Choose {
-        /// Name of the unfinished recording's folder.
         recording: String,
-        /// The index of the planned trial in the participant's series.
         slot: usize,
-        /// The number of the new attempt if the trial is repeated, counted from 1.
+        /// If the trial is repeated.
         attempt: u32,
     },
-    /// A program is making this recording at present.
-    Running {
-        /// Name of the folder of the recording that is being made.
-        recording: String,
-        /// The index of the planned trial in the participant's series.
-        slot: usize,
-    },
-    /// No recording is needed: the participant has completed the series.
+    /// A program is making it at present.
+    Running { recording: String, slot: usize },
+    /// The participant has completed the series.
     Finished,
 }
 
 impl NextRecording {
-    /// Index of the planned trial that comes next; `None` when all trials are done.
+    /// `None` when all trials are done.
     pub fn slot(&self) -> Option<usize> {
         match self {
             NextRecording::Begin { slot, .. }
@@ -327,65 +297,50 @@ impl NextRecording {
     }
 }
 
-/// A planned trial of a participant's series, with the attempts at it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlannedTrialProgress {
-    /// The planned trial of the participant's series.
     #[serde(flatten)]
     pub slot: PlannedTrial,
-    /// Whether the planned trial has a valid recording.
+    /// Whether it has a valid recording.
     pub is_done: bool,
-    /// The attempts at the planned trial, in order.
+    /// In order.
     pub recordings: Vec<TrialAttempt>,
 }
 
-/// One attempt at a planned trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialAttempt {
-    /// The name of the attempt's recording folder; the last part's, if the recording has several.
+    /// Name of its folder; of several parts, the last one's.
     pub recording: String,
-    /// Number of this attempt at the planned trial, from 1.
     pub attempt: u32,
-    /// Number of presses of both agents in the attempt's trial.
+    /// Of both agents in the trial.
     pub presses: u32,
-    /// Whether the attempt's recording is complete, open, excluded or void.
     pub outcome: RecordingOutcome,
-    /// Whether the attempt was recorded under another version of the plan.
+    /// Whether it was recorded under another version of the plan.
     pub other_version: bool,
-    /// The participant's code in the attempt's log, if it was corrected afterwards.
+    /// The code in the log, if it was corrected afterwards.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded_as: Option<String>,
-    /// The study arm in which the attempt was carried out, if it is not that of the plan for this participant.
+    /// If it is not that of the plan for this participant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_arm: Option<StudyArm>,
 }
 
-/// Progress of one participant through the study plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParticipantProgress {
-    /// The participant's code.
     pub code: String,
-    /// Index of the participant in the plan.
+    /// Index in the plan.
     #[serde(skip)]
     pub participant: usize,
-    /// Name of the participant's starting group.
     pub group: String,
-    /// Whether the participant consented to being recorded.
     pub consent: bool,
-    /// Whether the participant completed the instruction, if there is one.
     #[serde(skip)]
     pub instructed: bool,
-    /// The planned trials of the participant's series, in order, with their attempts.
     pub steps: Vec<PlannedTrialProgress>,
-    /// The recording that the participant needs next.
     pub next: NextRecording,
 }
 
 impl ParticipantProgress {
-    /// Progress of a participant through the plan; `made` contains all recordings of the plan in any order.
-    ///
-    /// # Errors
-    /// A recording that does not belong to this plan, named in words.
+    /// `made`: all recordings of the plan, in any order. The error names one that does not belong to it.
     pub fn from_recordings(
         study: &Study,
         participant: usize,
@@ -409,19 +364,18 @@ impl ParticipantProgress {
         Ok(ParticipantProgress { code, participant, group, consent, instructed, steps, next })
     }
 
-    /// Identifies the recording to make for a new attempt at a planned trial.
     pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
         WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
     }
 
-    /// Makes this planned trial the participant's next one, even if the trial is done.
+    /// Makes this planned trial the next one, even if it is done.
     pub fn redo(&mut self, slot: Option<usize>) {
         if let Some((slot, stand)) = slot.and_then(|slot| Some((slot, self.steps.get(slot)?))) {
             self.next = NextRecording::Begin { slot, attempt: stand.attempts() + 1 };
         }
     }
 
-    /// Number of completed trials of the participant's series.
+    /// Number of completed trials.
     pub fn done(&self) -> usize {
         self.steps.iter().filter(|stand| stand.is_done).count()
     }
@@ -448,12 +402,12 @@ impl PlannedTrialProgress {
         PlannedTrialProgress { slot, is_done, recordings: here.iter().map(attempt).collect() }
     }
 
-    /// The number of the last attempt at the planned trial.
+    /// Number of the last attempt.
     fn attempts(&self) -> u32 {
         self.recordings.last().map_or(0, |last| last.attempt)
     }
 
-    /// The recording that this planned trial still needs; `None` if the trial is done.
+    /// `None` if the trial is done.
     fn next(&self, slot: usize) -> Option<NextRecording> {
         let attempt = self.attempts() + 1;
         match self.recordings.last() {

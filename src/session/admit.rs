@@ -41,8 +41,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::Calibration(event) => gaze_check::admit(session, event),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
             session.spec.robot.arm == ArmKind::Timed,
-            "the robot's arm is timed in this session: it is not \
-                                                                 simulated physically",
+            "the robot's arm is timed in this session: it is not simulated physically",
         ),
         Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
@@ -113,10 +112,9 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
     let (cool_down_s, since) = (session.spec.signals.cool_down_s, session.signalled_at);
     match since.map(|since| now.secs_since(since)).filter(|&age_s| age_s < cool_down_s) {
-        Some(age_s) => Err(format!(
-            "too soon: the last signal is {age_s:.1} s ago, signals need {cool_down_s} s \
-                                    between them"
-        )),
+        Some(age_s) => {
+            Err(format!("too soon: the last signal is {age_s:.1} s ago, signals need {cool_down_s} s between them"))
+        }
         None => Ok(()),
     }
 }
@@ -222,8 +220,7 @@ fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
     if by == Sender::Wizard {
         Ok(())
     } else {
-        Err("only the wizard can hold the robot, skip its presses and choose \
-                                                   them")
+        Err("only the wizard can hold the robot, skip its presses and choose them")
     }
 }
 

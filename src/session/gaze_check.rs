@@ -161,19 +161,15 @@ pub(crate) fn admit(session: &Session, event: &GazeCheckEvent) -> Result<(), &'s
             let open = check.filter(|check| !check.are_hidden);
             unless(
                 open.is_some_and(|check| *target < check.targets.len()),
-                "there is no gaze target with this number \
-                                                                             to be shown",
+                "there is no gaze target with this number to be shown",
             )
         }
-        GazeCheckEvent::TargetsHidden => unless(
-            check.is_some_and(|check| check.shown.is_some()),
-            "no gaze target is \
-                                                                                                   shown",
-        ),
+        GazeCheckEvent::TargetsHidden => {
+            unless(check.is_some_and(|check| check.shown.is_some()), "no gaze target is shown")
+        }
         GazeCheckEvent::Measured { .. } => unless(
             check.is_some_and(|check| check.are_hidden && check.result.is_none()),
-            "no gaze target was shown, \
-                                                                                           so nothing can be measured",
+            "no gaze target was shown, so nothing can be measured",
         ),
         GazeCheckEvent::Accepted { .. } => {
             let found = check.and_then(|check| check.result.as_ref()?.found.as_ref());

@@ -169,9 +169,9 @@ pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCh
 fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start the program that sends gaze to port {}", session.spec.participant.gaze_port),
-        GazeSource::Pupil => "let the participant look at the wall display; Pupil Capture needs a \
-                              calibration"
-            .to_string(),
+        GazeSource::Pupil => {
+            "let the participant look at the wall display; Pupil Capture needs a calibration".to_string()
+        }
         GazeSource::Lsl => "let the participant look at the display: the stream has no gaze".to_string(),
         GazeSource::Mouse | GazeSource::Simulated | GazeSource::File | GazeSource::None => {
             "move the pointer over the kitchen".to_string()
@@ -263,8 +263,7 @@ fn tracker(session: &Session) -> PreflightCheck {
                 None => (
                     format!("{device}, does not see \"{}\"", spec.surface),
                     format!(
-                        "keep the display tags in view and lit; define a surface \"{}\" in Capture's Surface \
-                             Tracker",
+                        "keep the display tags in view and lit; define a surface \"{}\" in Capture's Surface Tracker",
                         spec.surface
                     ),
                 ),

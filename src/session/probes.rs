@@ -551,10 +551,8 @@ pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
         }
         ProbeEvent::Closed { probe, .. } => opened(session, *probe).map(drop),
         ProbeEvent::Ended { probe } => {
-            let open = book.open.as_ref().filter(|open| open.number == *probe).ok_or(
-                "this freeze probe is not \
-                                                                                      running",
-            )?;
+            let open =
+                book.open.as_ref().filter(|open| open.number == *probe).ok_or("this freeze probe is not running")?;
             unless(open.closed.is_some() && session.phase == TrialPhase::Paused, "the probe's questions are not over")?;
             unless(!open.is_paused(), "the probe is paused")
         }
@@ -563,10 +561,8 @@ pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
 
 /// The open probe with this number, if its questions have not ended.
 fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> {
-    let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or(
-        "this freeze probe is not \
-                                                                                       running",
-    )?;
+    let open =
+        session.probes.open.as_ref().filter(|open| open.number == probe).ok_or("this freeze probe is not running")?;
     match open.closed.is_some() {
         true => Err("the probe's questions are over"),
         false => Ok(open),

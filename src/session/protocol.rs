@@ -214,10 +214,9 @@ impl Session {
             PhaseSpec::Trial | PhaseSpec::Familiarisation => {
                 (!matches!(self.phase, TrialPhase::Over(_))).then_some("the trial is not over")
             }
-            PhaseSpec::Questionnaire { .. } => (!protocol.confirmed).then_some(
-                "the answers to the questionnaire are \
-                                                                                not confirmed",
-            ),
+            PhaseSpec::Questionnaire { .. } => {
+                (!protocol.confirmed).then_some("the answers to the questionnaire are not confirmed")
+            }
         }
     }
 
@@ -247,8 +246,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let is_done = step.checked_sub(1).and_then(|index| protocol.ticks.get(index));
             unless(
                 is_done.is_some_and(|is_done| is_done != done),
-                "the phase has no step with this number to be \
-                                                                    ticked",
+                "the phase has no step with this number to be ticked",
             )
         }
         ProtocolEvent::Tutorial(event) => tutorial::admit(session, event),
@@ -258,10 +256,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let questionnaire = shown_item(session, item)?;
             questionnaire
                 .form(protocol.item)
-                .ok_or(
-                    "the questionnaire's item lacks a setting that its kind \
-                                                     needs",
-                )?
+                .ok_or("the questionnaire's item lacks a setting that its kind needs")?
                 .admit(answer)
         }
         ProtocolEvent::ItemSkipped { item } => shown_item(session, item).map(drop),
@@ -269,8 +264,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             unless(is_open(session), "no questionnaire is being answered")?;
             unless(
                 protocol.answers.iter().all(Option::is_some),
-                "not every item of the questionnaire is answered or \
-                                                                  skipped",
+                "not every item of the questionnaire is answered or skipped",
             )
         }
         ProtocolEvent::CriterionChecked { .. } => {
@@ -278,8 +272,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let is_over = matches!(session.phase, TrialPhase::Over(_));
             unless(
                 is_practice && is_over && protocol.practice.is_none(),
-                "no practice has been completed that could \
-                                                                           be judged",
+                "no practice has been completed that could be judged",
             )
         }
         ProtocolEvent::CriterionWaived { reason } => {

@@ -509,8 +509,7 @@ pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
             let to = tutorial.position(step).ok_or("the tutorial has no such step")?;
             unless(
                 to + 1 == state.step || to == state.step + 1,
-                "only the next step of the tutorial or the one \
-                                                                  before can be shown",
+                "only the next step of the tutorial or the one before can be shown",
             )?;
             unless(to < state.step || may_leave(*by), "the participant has not done this step of the tutorial yet")
         }
@@ -522,8 +521,7 @@ pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
             is_shown(id)?;
             unless(
                 step.is_timed() && !state.are_cards_hidden,
-                "the tutorial shows no recipe cards that could be \
-                                                                hidden",
+                "the tutorial shows no recipe cards that could be hidden",
             )
         }
         TutorialEvent::Answered { step: id, choice } => {

@@ -91,10 +91,7 @@ impl FileError {
         let remedy = format!("{}{instead}", missing.remedy());
         FileError::from_finding(
             what,
-            format!(
-                "a session that needs another build of tomcom; this build is \
-                                               {missing}"
-            ),
+            format!("a session that needs another build of tomcom; this build is {missing}"),
             remedy,
         )
     }

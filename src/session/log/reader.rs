@@ -110,9 +110,8 @@ impl LogReader {
         let line = first_line(&mut input).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         if ends_in_header(&line) {
             let found = "a log that ends before the end of its header, which happens in a power failure".to_string();
-            let remedy = "a recording with a whole header; tomcom simulate makes a simulated recording \
-                          again"
-                .to_string();
+            let remedy =
+                "a recording with a whole header; tomcom simulate makes a simulated recording again".to_string();
             return Err(at_line(&path, 1, &String::from_utf8_lossy(&line), line.len(), found, remedy));
         }
         let text = String::from_utf8_lossy(&line).into_owned();
@@ -156,8 +155,7 @@ impl LogReader {
             let (found, wanted) = (before.events(), self.next_seq);
             return line.map(Some).ok_or_else(|| {
                 let found = format!(
-                    "the log's end after {found} events, although a later part continues it after \
-                                     {wanted} events"
+                    "the log's end after {found} events, although a later part continues it after {wanted} events"
                 );
                 before.wrong("", 0, &found)
             });
@@ -318,8 +316,7 @@ fn open_before(
     if parts == 0 {
         return Err(wrong(
             format!("more than {MAX_PARTS} parts"),
-            "parts of a recording that lead back to a first \
-                                                                  part",
+            "parts of a recording that lead back to a first part",
         ));
     }
     // The path is resolved, so that the folder of the previous part is also found from a path like `.`.
@@ -334,9 +331,7 @@ fn open_before(
     if !folder.join(LOG_NAME).exists() {
         return Err(wrong(
             format!("a part that continues {name}, a recording that is not there"),
-            "that recording, in \
-                                                                                                  a folder beside \
-                                                                                                  this",
+            "that recording, in a folder beside this",
         ));
     }
     let first = LogReader::open_part(&folder, parts - 1)?;

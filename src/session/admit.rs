@@ -11,9 +11,17 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
 use tomcom_core::kitchen::{Agent, ContentId, LocationKind};
 
+/// What a precondition says: nothing, or the reason for which it does not hold.
+pub(crate) fn unless(holds: bool, reason: &'static str) -> Result<(), &'static str> {
+    if holds { Ok(()) } else { Err(reason) }
+}
+
+fn refuse_if(refused: bool, reason: &'static str) -> Result<(), &'static str> {
+    unless(!refused, reason)
+}
+
 /// Whether the session accepts this event now. The error says why not, in words for the wizard, as in every `admit`.
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
-    let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let phase = session.phase;
     refuse_if(phase == TrialPhase::Closed, "the session is over")?;
     match event {
@@ -187,8 +195,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
     }
 }
 
-pub(crate) fn admit_intervention(session: &Session, event: &Event) -> Result<(), &'static str> {
-    let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
+fn admit_intervention(session: &Session, event: &Event) -> Result<(), &'static str> {
     let (phase, robot) = (session.phase, &session.robot);
     match event {
         Event::KitchenCorrected { location, content } => admit_correction(session, location, content),
@@ -217,11 +224,7 @@ pub(crate) fn admit_intervention(session: &Session, event: &Event) -> Result<(),
 }
 
 fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
-    if by == Sender::Wizard {
-        Ok(())
-    } else {
-        Err("only the wizard can hold the robot, skip its presses and choose them")
-    }
+    unless(by == Sender::Wizard, "only the wizard can hold the robot, skip its presses and choose them")
 }
 
 fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {

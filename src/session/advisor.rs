@@ -1,5 +1,4 @@
-//! The assistant of a session: answers a request for advice after every press and every order change, and at the other
-//! times that the session's settings name.
+//! The assistant of a session: when it is asked for advice, with what, and its answer.
 
 use crate::follower::SessionFollower;
 use crate::{Event, Session};

@@ -1,4 +1,5 @@
-//! `apply(&mut Session, &TimestampedEvent)`: the only function that changes a session, by applying one event.
+//! `apply(&mut Session, &TimestampedEvent)`: the only function that changes a session, by applying one event; and the
+//! effects that a running session then has to perform.
 
 use crate::admit::{admit, is_too_early};
 use crate::event::{SignalEndReason, TrialEndReason};
@@ -402,7 +403,7 @@ pub(crate) fn pause_clock(session: &mut Session, now: SessionTime) {
     session.gaze.measured = None;
 }
 
-pub(crate) fn stop_clock(session: &mut Session, now: SessionTime) {
+fn stop_clock(session: &mut Session, now: SessionTime) {
     match session.phase {
         TrialPhase::Running => session.paused_at = now,
         TrialPhase::Ready => {
@@ -429,7 +430,7 @@ pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTi
     by
 }
 
-pub(crate) fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
+fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
         Event::RobotTouched { force_n } => session.note(now, TimelineEvent::ArmTouched { force_n: *force_n }),
@@ -466,7 +467,7 @@ const LEAST_SILENCE: SessionTime = SessionTime(6_000_000_000);
 /// The time without a press after which silence is unusual, and the human may be stuck: three of the human's usual
 /// intervals in this trial (the median, without pauses), and at least 6 s. The timer is set at the trial's start, at
 /// each counted press of the human and at each `human_waits`, so this event comes once for every such time.
-pub(crate) fn unusual_silence(session: &Session) -> SessionTime {
+fn unusual_silence(session: &Session) -> SessionTime {
     let times: Vec<SessionTime> = own_presses(session).collect();
     let mut intervals: Vec<SessionTime> = times.windows(2).map(|pair| session.age(pair[1], pair[0])).collect();
     intervals.sort_unstable();

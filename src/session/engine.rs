@@ -345,7 +345,7 @@ impl SessionEngine {
 }
 
 impl SessionEngine {
-    pub(crate) fn perform(&mut self, effect: SessionEffect) {
+    fn perform(&mut self, effect: SessionEffect) {
         match effect {
             SessionEffect::At { time, timer } => self.timers.set(time, timer),
             SessionEffect::Cancel(timer) => self.timers.cancel(timer),
@@ -367,7 +367,7 @@ impl SessionEngine {
         }
     }
 
-    pub(crate) fn fire_timer(&mut self, now: SessionTime) {
+    fn fire_timer(&mut self, now: SessionTime) {
         let Some(timer) = self.timers.take_first() else { return };
         let kitchen = self.session().kitchen.clone();
         let event = match timer {
@@ -388,7 +388,7 @@ impl SessionEngine {
 }
 
 impl SessionEngine {
-    pub(crate) fn check_criterion(&mut self, now: SessionTime) {
+    fn check_criterion(&mut self, now: SessionTime) {
         let session = self.session();
         let Some((step, protocol)) = session.step() else { return };
         let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
@@ -401,13 +401,13 @@ impl SessionEngine {
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
-    pub(crate) fn end_outdated_proposal(&mut self, now: SessionTime) {
+    fn end_outdated_proposal(&mut self, now: SessionTime) {
         if self.session().is_running() && proposals::is_outdated(self.session()) {
             self.record_own(now, Event::SignalEnded { reason: SignalEndReason::Outdated });
         }
     }
 
-    pub(crate) fn measure_calibration(&mut self, now: SessionTime) {
+    fn measure_calibration(&mut self, now: SessionTime) {
         let session = self.session();
         let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
         if let Some(event) = event {
@@ -417,7 +417,7 @@ impl SessionEngine {
 
     /// The signal that the assistant sends because of its recommendation. An error gets one proposal, as long as it is
     /// the human's last press.
-    pub(crate) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
+    fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
         let is_last = |error: u64| self.judged().last().is_some_and(|press| press.seq == error);
         let proposal =
             advice.proposal.as_ref().filter(|one| is_last(one.error) && !proposals::was_made(self.session()));
@@ -430,35 +430,35 @@ impl SessionEngine {
 
 /// Pending timers in the order in which they are due; timers due at once keep the order in which they were set.
 #[derive(Clone, Debug, Default)]
-pub struct TimerQueue {
+struct TimerQueue {
     pending: BTreeSet<(SessionTime, u64, Timer)>,
     set_so_far: u64,
 }
 
 impl TimerQueue {
-    pub fn set(&mut self, time: SessionTime, timer: Timer) {
+    fn set(&mut self, time: SessionTime, timer: Timer) {
         self.pending.insert((time, self.set_so_far, timer));
         self.set_so_far += 1;
     }
 
-    pub fn cancel(&mut self, timer: Timer) {
+    fn cancel(&mut self, timer: Timer) {
         self.pending.retain(|(_, _, pending)| *pending != timer);
     }
 
-    pub fn cancel_all(&mut self) {
+    fn cancel_all(&mut self) {
         self.pending.clear();
     }
 
-    pub fn postpone(&mut self, by: SessionTime) {
+    fn postpone(&mut self, by: SessionTime) {
         let pending = std::mem::take(&mut self.pending);
         self.pending = pending.into_iter().map(|(time, serial, timer)| (time + by, serial, timer)).collect();
     }
 
-    pub fn next_due(&self) -> Option<SessionTime> {
+    fn next_due(&self) -> Option<SessionTime> {
         self.pending.first().map(|(time, _, _)| *time)
     }
 
-    pub fn take_first(&mut self) -> Option<Timer> {
+    fn take_first(&mut self) -> Option<Timer> {
         self.pending.pop_first().map(|(_, _, timer)| timer)
     }
 }

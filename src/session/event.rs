@@ -36,10 +36,9 @@ pub struct TimestampedEvent {
     pub event: Event,
 }
 
-/// Buttons, locations, contents and dishes by their names. A witness is only recorded: it changes nothing in the
-/// session.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(tag = "kind", rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Event {
     Preflight {
         checks: Vec<PreflightCheck>,
@@ -208,59 +207,13 @@ impl Event {
 
     /// Name of the event in the log.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Event::Preflight { .. } => "preflight",
-            Event::TrialStarted => "trial_started",
-            Event::TrialPaused => "trial_paused",
-            Event::TrialResumed => "trial_resumed",
-            Event::TrialEnded { .. } => "trial_ended",
-            Event::TrialAborted { .. } => "trial_aborted",
-            Event::TrialExcluded { .. } => "trial_excluded",
-            Event::TrialIncluded => "trial_included",
-            Event::Gaze(_) => "gaze",
-            Event::Tracker(_) => "tracker",
-            Event::Calibration(_) => "calibration",
-            Event::Press { .. } => "press",
-            Event::OrderShown { .. } => "order_shown",
-            Event::OrderCleared { .. } => "order_cleared",
-            Event::HumanWaits { .. } => "human_waits",
-            Event::RobotIntends { .. } => "robot_intends",
-            Event::RobotAborts { .. } => "robot_aborts",
-            Event::RobotIdles { .. } => "robot_idles",
-            Event::RobotMoves(_) => "robot_moves",
-            Event::RobotSafety { .. } => "robot_safety",
-            Event::RobotTouched { .. } => "robot_touched",
-            Event::RobotStopped => "robot_stopped",
-            Event::RobotResumed => "robot_resumed",
-            Event::RobotHeld { .. } => "robot_held",
-            Event::RobotReleased { .. } => "robot_released",
-            Event::RobotSkipped { .. } => "robot_skipped",
-            Event::RobotDriven { .. } => "robot_driven",
-            Event::KitchenCorrected { .. } => "kitchen_corrected",
-            Event::Advised(_) => "advised",
-            Event::OfferOpened(_) => "offer_opened",
-            Event::OfferClosed { .. } => "offer_closed",
-            Event::SignalShown { .. } => "signal_shown",
-            Event::SignalDrawn { .. } => "signal_drawn",
-            Event::SignalEnded { .. } => "signal_ended",
-            Event::Marker { .. } => "marker",
-            Event::Probe(_) => "probe",
-            Event::Protocol(_) => "protocol",
-            Event::ClockJumped { .. } => "clock_jumped",
-            Event::Display(_) => "display",
-            Event::Screen(_) => "screen",
-            Event::Unblinded { .. } => "unblinded",
-            Event::FocusLost => "focus_lost",
-            Event::FocusRegained => "focus_regained",
-            Event::ParticipantBelieves(_) => "participant_believes",
-            Event::BeliefEstimated(_) => "belief_estimated",
-            Event::SessionEnded => "session_ended",
-        }
+        self.into()
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum TrialEndReason {
     Presses,
     Time,
@@ -272,13 +225,7 @@ pub enum TrialEndReason {
 
 impl TrialEndReason {
     pub fn name(self) -> &'static str {
-        match self {
-            TrialEndReason::Presses => "presses",
-            TrialEndReason::Time => "time",
-            TrialEndReason::Orders => "orders",
-            TrialEndReason::Wizard => "wizard",
-            TrialEndReason::Aborted => "aborted",
-        }
+        self.into()
     }
 }
 

@@ -17,51 +17,50 @@ pub enum Feature {
 impl Feature {
     pub const ALL: [Feature; 5] = [Feature::Console, Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
 
-    pub const fn is_built(self) -> bool {
+    /// Name in Cargo, whether this build has it, name in words, and what a build without it cannot do.
+    const fn about(self) -> (&'static str, bool, &'static str, &'static str) {
         match self {
-            Feature::Console => cfg!(feature = "console"),
-            Feature::Display => cfg!(feature = "display"),
-            Feature::Mcap => cfg!(feature = "mcap"),
-            Feature::Physics => cfg!(feature = "physics"),
-            Feature::Rerun => cfg!(feature = "rerun"),
-        }
-    }
-
-    pub const fn key(self) -> &'static str {
-        match self {
-            Feature::Console => "console",
-            Feature::Display => "display",
-            Feature::Mcap => "mcap",
-            Feature::Physics => "physics",
-            Feature::Rerun => "rerun",
+            Feature::Console => (
+                "console",
+                cfg!(feature = "console"),
+                "the console",
+                "no session can be run or looked at in the terminal",
+            ),
+            Feature::Display => (
+                "display",
+                cfg!(feature = "display"),
+                "the participant's display",
+                "the participant's display cannot be served",
+            ),
+            Feature::Mcap => ("mcap", cfg!(feature = "mcap"), "MCAP", "no recording is exported as MCAP"),
+            Feature::Physics => (
+                "physics",
+                cfg!(feature = "physics"),
+                "physics",
+                "the arm cannot be simulated, and nothing checks that it reaches its buttons",
+            ),
+            Feature::Rerun => {
+                ("rerun", cfg!(feature = "rerun"), "Rerun", "no stream for Rerun's viewers is written or served")
+            }
         }
     }
 
     /// What a build without it cannot do.
     pub const fn lacks(self) -> &'static str {
-        match self {
-            Feature::Console => "no session can be run or looked at in the terminal",
-            Feature::Display => "the participant's display cannot be served",
-            Feature::Mcap => "no recording is exported as MCAP",
-            Feature::Physics => "the arm cannot be simulated, and nothing checks that it reaches its buttons",
-            Feature::Rerun => "no stream for Rerun's viewers is written or served",
-        }
+        let (.., lacks) = self.about();
+        lacks
     }
 
     pub const fn require(self) -> Result<(), MissingFeature> {
-        if self.is_built() { Ok(()) } else { Err(MissingFeature(self)) }
+        let (_, is_built, ..) = self.about();
+        if is_built { Ok(()) } else { Err(MissingFeature(self)) }
     }
 }
 
 impl fmt::Display for Feature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Feature::Console => "the console",
-            Feature::Display => "the participant's display",
-            Feature::Mcap => "MCAP",
-            Feature::Physics => "physics",
-            Feature::Rerun => "Rerun",
-        })
+        let (_, _, title, _) = self.about();
+        formatter.write_str(title)
     }
 }
 
@@ -72,7 +71,8 @@ pub struct MissingFeature(pub Feature);
 impl MissingFeature {
     /// How to get a build that contains it.
     pub fn remedy(self) -> String {
-        format!("cargo build --release --features {}, or a build with the default features", self.0.key())
+        let (key, ..) = self.0.about();
+        format!("cargo build --release --features {key}, or a build with the default features")
     }
 }
 

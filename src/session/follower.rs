@@ -123,13 +123,13 @@ impl SessionFollower {
     }
 
     /// Updated by the time of unknown gaze since the last event.
-    pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
+    pub(crate) fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
         self.filter.at(now, &mut self.cost)
     }
 
     /// The estimate from which a request for advice starts: as expected once the participant has read the signal on the
     /// display. Most requests follow an event that has just updated the estimate.
-    pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
+    pub(crate) fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         let is_current = self.updated_at.is_some_and(|updated| updated >= now);
         self.filter.foreseen(now, is_current, &mut self.cost)
     }

@@ -1,7 +1,9 @@
-//! The gaze accuracy check of an eye tracker: its events, its running state, and its accepted result.
+//! The gaze accuracy check of an eye tracker: targets are shown one after another on the display, and the measured
+//! gaze is compared with them. It runs only while the trial does not.
 
 use serde::{Deserialize, Serialize};
 
+use crate::admit::unless;
 use crate::settings::GazeSource;
 use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
@@ -99,7 +101,7 @@ impl RunningGazeCheck {
     }
 
     /// Once all targets have been shown.
-    pub fn to_measure(&self, viewing: &ViewingGeometry) -> Option<GazeCheckEvent> {
+    pub(crate) fn to_measure(&self, viewing: &ViewingGeometry) -> Option<GazeCheckEvent> {
         let is_due = self.are_hidden && self.result.is_none();
         is_due.then(|| GazeCheckEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
     }
@@ -147,7 +149,6 @@ impl Session {
 }
 
 pub(crate) fn admit(session: &Session, event: &GazeCheckEvent) -> Result<(), &'static str> {
-    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let check = session.calibration.as_ref();
     match event {
         GazeCheckEvent::Begun { targets } => {

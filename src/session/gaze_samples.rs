@@ -1,4 +1,5 @@
-//! The stream of gaze samples in a session: how a sample changes the session's state, and faults of the stream.
+//! The participant's gaze in a session: how a sample changes its state (sampling rate, faults, the locations looked
+//! at).
 
 use crate::{Session, gaze_check};
 use tomcom_core::base::time::SessionTime;
@@ -79,7 +80,7 @@ pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
 
 impl Session {
     /// Whether a sample taken at `taken` can be a look at the kitchen: during a freeze probe it is not on the display.
-    pub fn had_kitchen_on_display(&self, taken: SessionTime) -> bool {
+    pub(crate) fn had_kitchen_on_display(&self, taken: SessionTime) -> bool {
         !self.is_frozen() && self.probes.ended_at.is_none_or(|ended| taken >= ended)
     }
 

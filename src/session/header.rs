@@ -1,4 +1,5 @@
-//! The header of a log: its first line, with everything that a replay needs.
+//! The header of a log: its first line, with everything that a replay needs; and the correction of a code that was
+//! typed wrong when the session began.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
-//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
+//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next; and the shards of a
+//! simulation.
 
 use std::str::FromStr;
 

@@ -1,6 +1,6 @@
 //! The rules of offers to the wizard: when one opens and closes, and which one the key `enter` takes.
 //!
-//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](super::Timer), and records the event
+//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](crate::Timer), and records the event
 //! of an offer that `due` returns; a replay applies the recorded events. Ages of offers are measured on the trial's
 //! clock, so offers do not grow older in a pause.
 
@@ -168,7 +168,7 @@ pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), Str
 }
 
 /// If `enter` would refer to the offer with this sequence number.
-pub fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<Event> {
+pub(crate) fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<Event> {
     meant(session, now).ok().filter(|meant| meant.seq == offer).and_then(take)
 }
 

@@ -1,12 +1,13 @@
-//! The rules of freeze probes: when one is due, which of its events a session accepts, and what they change.
+//! Freeze probes: when one is due, which of its events a session accepts, and what they change.
 //!
-//! A running session asks [`upcoming`] after every event and records the event of a probe that is due; a replay applies
-//! the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which stands
-//! still while the wizard pauses the probe.
+//! A running session asks [`upcoming`] after every event and records the event of a probe that is due; a replay
+//! applies the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which
+//! stands still while the wizard pauses the probe.
 
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
+use crate::admit::unless;
 use crate::apply::{pause_clock, resume_clock};
 use crate::settings::SettingError;
 use crate::wall_display::AnswerDevice;
@@ -114,7 +115,7 @@ impl ProbeSpec {
     }
 
     /// `values`: number of the aspect's possible values.
-    pub fn asks_about(&self, aspect: &str, values: usize) -> bool {
+    pub(crate) fn asks_about(&self, aspect: &str, values: usize) -> bool {
         values > 1 && !self.leave_out.iter().any(|name| name == aspect)
     }
 }
@@ -221,8 +222,9 @@ impl ProbeDelayReason {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum ProbeOrigin {
     Schedule,
     Wizard,
@@ -230,16 +232,14 @@ pub enum ProbeOrigin {
 
 impl ProbeOrigin {
     pub fn name(self) -> &'static str {
-        match self {
-            ProbeOrigin::Schedule => "schedule",
-            ProbeOrigin::Wizard => "wizard",
-        }
+        self.into()
     }
 }
 
 /// Why a probe asks no more questions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum ProbeEndReason {
     Answered,
     TimeOver,
@@ -249,12 +249,7 @@ pub enum ProbeEndReason {
 
 impl ProbeEndReason {
     pub fn name(self) -> &'static str {
-        match self {
-            ProbeEndReason::Answered => "answered",
-            ProbeEndReason::TimeOver => "time_over",
-            ProbeEndReason::Skipped => "skipped",
-            ProbeEndReason::TrialEnded => "trial_ended",
-        }
+        self.into()
     }
 
     pub fn words(self) -> &'static str {
@@ -402,7 +397,7 @@ fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
 }
 
 /// Drawn at random, as for scheduled probes.
-pub(crate) fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
+fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
     let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
     let name = format!("requested probes of trial {trial}");
     stream(spec.seed, &name, u64::from(number)).random::<f64>() >= share
@@ -421,7 +416,7 @@ pub enum DueProbeEvent {
 }
 
 /// The next due event and its time; `None` without freeze probes, and while a probe is paused.
-pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbeEvent)> {
+pub(crate) fn upcoming(session: &Session) -> Option<(SessionTime, DueProbeEvent)> {
     let spec = of_trial(&session.spec)?;
     match &session.probes.open {
         Some(open) => in_probe(session, spec, open),
@@ -507,7 +502,6 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeD
 
 pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
     let spec = of_trial(&session.spec).ok_or("this trial has no freeze probes")?;
-    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let book = &session.probes;
     let is_next = |probe: u32| probe == book.waiting.as_ref().map_or(book.numbered + 1, |waiting| waiting.number);
     match event {

@@ -30,7 +30,7 @@ pub fn is_outdated(session: &Session) -> bool {
 }
 
 /// Whether presses were proposed since the human's last press: an error gets one proposal only.
-pub fn was_made(session: &Session) -> bool {
+pub(crate) fn was_made(session: &Session) -> bool {
     let newest = session.timeline.iter().rev().find(|entry| match &entry.what {
         TimelineEvent::Press { agent, .. } => *agent == Agent::Human,
         TimelineEvent::Signal { signal, .. } => matches!(signal, Signal::Propose(_)),

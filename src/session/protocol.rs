@@ -1,7 +1,8 @@
-//! The study protocol: rules for the phases of a plan's recording, which follow one after another.
+//! The study protocol: the phases of a plan's recording, which follow one after another.
 
 use serde::{Deserialize, Serialize};
 
+use crate::admit::unless;
 use crate::plan::{PhaseSpec, PlanPosition};
 use crate::questionnaire::{AnswerValue, Questionnaire};
 use crate::tutorial::{self, TutorialEvent, TutorialState};
@@ -9,8 +10,9 @@ use crate::wall_display::AnswerDevice;
 use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum StudyPhase {
     Instruction,
     Tutorial,
@@ -23,14 +25,7 @@ pub enum StudyPhase {
 
 impl StudyPhase {
     pub fn name(self) -> &'static str {
-        match self {
-            StudyPhase::Instruction => "instruction",
-            StudyPhase::Tutorial => "tutorial",
-            StudyPhase::Familiarisation => "familiarisation",
-            StudyPhase::Trial => "trial",
-            StudyPhase::Questionnaire => "questionnaire",
-            StudyPhase::Debriefing => "debriefing",
-        }
+        self.into()
     }
 
     /// Practice or counted.
@@ -232,7 +227,6 @@ impl Session {
 
 pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
     let Some((step, protocol)) = session.step() else { return Err("the session has no study plan") };
-    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     match event {
         ProtocolEvent::ConsentGiven { .. } => {
             unless(!protocol.consent && protocol.number == 0, "consent is given once, before everything else")
@@ -284,7 +278,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
 }
 
 /// In a plan, only in the phase of the trial.
-pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
+pub(crate) fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
     match session.protocol.is_none() || has_trial {
         true => Ok(()),

@@ -1,9 +1,11 @@
-//! Questionnaires: items that participants answer on a rating scale (Likert 1932) or in another format.
+//! Questionnaires: items that participants answer on a rating scale (Likert 1932) or in another format, and the
+//! answers.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::admit::unless;
 use crate::ranges;
 use crate::settings::{Condition, SettingError, is_code};
 
@@ -92,16 +94,16 @@ pub struct QuestionnaireItem {
 impl Questionnaire {
     /// As asked after a trial in this condition; `None` if no item is.
     pub fn after(&self, condition: Condition) -> Option<Questionnaire> {
-        let is_asked =
-            |item: &&QuestionnaireItem| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
-        let items: Vec<QuestionnaireItem> = self.items.iter().filter(is_asked).cloned().collect();
-        (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
+        self.with(|item| item.conditions.as_ref().is_none_or(|only| only.contains(&condition)))
     }
 
     /// Without items for certain conditions; `None` if no item is left.
-    pub fn before_trials(&self) -> Option<Questionnaire> {
-        let items: Vec<QuestionnaireItem> =
-            self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
+    pub(crate) fn before_trials(&self) -> Option<Questionnaire> {
+        self.with(|item| item.conditions.is_none())
+    }
+
+    fn with(&self, is_asked: impl Fn(&QuestionnaireItem) -> bool) -> Option<Questionnaire> {
+        let items: Vec<QuestionnaireItem> = self.items.iter().filter(|item| is_asked(item)).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
@@ -300,8 +302,9 @@ fn has(item: &QuestionnaireItem, key: &str) -> bool {
 /// The greatest position of a slider; the least is 0.
 pub const SLIDER_END: i64 = 100;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum QuestionnaireItemKind {
     Scale,
     Choice,
@@ -357,13 +360,7 @@ pub enum AnswerFormat<'a> {
 
 impl QuestionnaireItemKind {
     pub fn name(self) -> &'static str {
-        match self {
-            QuestionnaireItemKind::Scale => "scale",
-            QuestionnaireItemKind::Choice => "choice",
-            QuestionnaireItemKind::Number => "number",
-            QuestionnaireItemKind::Text => "text",
-            QuestionnaireItemKind::Slider => "slider",
-        }
+        self.into()
     }
 }
 
@@ -384,7 +381,6 @@ impl<'a> AnswerFormat<'a> {
     }
 
     pub fn admit(&self, answer: &AnswerValue) -> Result<(), &'static str> {
-        let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
         let is_option = |options: &[ItemOption], id: &String| options.iter().any(|option| option.id == *id);
         match (self, answer) {
             (AnswerFormat::Scale(scale), AnswerValue::Number(point)) => {

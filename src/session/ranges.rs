@@ -22,7 +22,7 @@ pub fn check_human_model(model: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&OF_HUMAN_MODEL, &numbers(model, HUMAN)?)
 }
 
-pub fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRange> {
+pub(crate) fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&OF_QUESTIONNAIRES, &numbers(questionnaire, "")?)
 }
 

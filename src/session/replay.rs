@@ -130,22 +130,20 @@ impl SameKitchenCheck {
 }
 
 /// Kind of event to which a replay can jump.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum ReplayLandmark {
     Error,
     Signal,
+    #[strum(serialize = "note")]
     Marker,
     /// It begins in the belief estimate.
+    #[strum(serialize = "false belief")]
     FalseBelief,
 }
 
 impl ReplayLandmark {
     pub fn name(self) -> &'static str {
-        match self {
-            ReplayLandmark::Error => "error",
-            ReplayLandmark::Signal => "signal",
-            ReplayLandmark::Marker => "note",
-            ReplayLandmark::FalseBelief => "false belief",
-        }
+        self.into()
     }
 }

@@ -1,4 +1,4 @@
-//! The state of a session, computed from its events.
+//! The state of a session, computed from its events: trial, robot, timeline, and the state of each feature.
 
 use std::sync::Arc;
 
@@ -152,8 +152,9 @@ impl Session {
         match self.phase {
             TrialPhase::Ready => SessionTime::ZERO,
             TrialPhase::Running => now - self.trial_start - self.paused_total,
-            TrialPhase::Paused => self.paused_at - self.trial_start - self.paused_total,
-            TrialPhase::Over(_) | TrialPhase::Closed => self.paused_at - self.trial_start - self.paused_total,
+            TrialPhase::Paused | TrialPhase::Over(_) | TrialPhase::Closed => {
+                self.paused_at - self.trial_start - self.paused_total
+            }
         }
     }
 

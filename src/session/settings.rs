@@ -1,4 +1,4 @@
-//! The settings of a session file, all together.
+//! The settings of a session file, and the errors of invalid ones.
 
 use core::net::{IpAddr, Ipv4Addr};
 use std::borrow::Cow;
@@ -73,16 +73,20 @@ fn default_seed() -> u64 {
 }
 
 impl SessionSpec {
+    /// Missing settings get their defaults; other files to which the session file refers are not read.
+    pub fn from_toml(text: &str) -> Result<SessionSpec, SettingError> {
+        let wrong = |error: toml::de::Error| SettingError::new("", error.to_string(), "settings of a session");
+        let spec: SessionSpec = toml::from_str(text).map_err(wrong)?;
+        spec.check().map(|()| spec)
+    }
+
     /// Ranges, the participant's code, and settings that exclude each other.
     pub fn check(&self) -> Result<(), SettingError> {
         ranges::check_session(self)?;
         let code = &self.participant.code;
         if let Some(fault) = person_code::fault(code) {
-            return Err(SettingError::new(
-                "participant.code",
-                format!("code = \"{code}\": {fault}"),
-                person_code::REMEDY,
-            ));
+            let found = format!("code = \"{code}\": {fault}");
+            return Err(SettingError::new("participant.code", found, person_code::REMEDY));
         }
         if let Some(plan) = &self.plan {
             plan.check()?;
@@ -109,9 +113,7 @@ impl SessionSpec {
             None => Ok(()),
         }
     }
-}
 
-impl SessionSpec {
     fn check_lsl(&self) -> Result<(), SettingError> {
         if self.participant.gaze == GazeSource::Lsl && self.lsl.as_ref().is_none_or(|lsl| lsl.gaze.is_none()) {
             let found = "gaze = \"lsl\", and no stream".to_string();
@@ -162,7 +164,7 @@ impl SessionSpec {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == ShadowMode::On
     }
 
-    pub fn scripts_wizard(&self) -> bool {
+    pub(crate) fn scripts_wizard(&self) -> bool {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
     }
 
@@ -221,15 +223,6 @@ impl Default for SignalSpec {
     }
 }
 
-impl SessionSpec {
-    /// Missing settings get their defaults; other files to which the session file refers are not read.
-    pub fn from_toml(text: &str) -> Result<SessionSpec, SettingError> {
-        let wrong = |error: toml::de::Error| SettingError::new("", error.to_string(), "settings of a session");
-        let spec: SessionSpec = toml::from_str(text).map_err(wrong)?;
-        spec.check().map(|()| spec)
-    }
-}
-
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
 pub struct SettingError {
@@ -266,8 +259,9 @@ pub fn is_code(text: &str) -> bool {
 }
 
 /// Who sends signals in a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Condition {
     None,
     Wizard,
@@ -276,11 +270,7 @@ pub enum Condition {
 
 impl Condition {
     pub fn name(self) -> &'static str {
-        match self {
-            Condition::None => "none",
-            Condition::Wizard => "wizard",
-            Condition::Assistant => "assistant",
-        }
+        self.into()
     }
 }
 
@@ -323,7 +313,7 @@ impl Default for ParticipantSpec {
 }
 
 impl ParticipantSpec {
-    pub fn simulates_gaze(&self) -> bool {
+    pub(crate) fn simulates_gaze(&self) -> bool {
         self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
     }
 }
@@ -412,7 +402,7 @@ impl Default for ConsoleSpec {
 }
 
 impl ConsoleSpec {
-    pub(crate) fn check(&self) -> Result<(), SettingError> {
+    fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &str, texts: &[String], most: usize, remedy| {
             let is_text = |text: &String| {
                 let length = text.chars().count();
@@ -438,8 +428,9 @@ pub enum ColourTheme {
 }
 
 /// How much the wizard's console shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum WizardVisibility {
     /// Kitchen and gaze only, as in the paper.
     State,
@@ -451,11 +442,7 @@ pub enum WizardVisibility {
 
 impl WizardVisibility {
     pub fn name(self) -> &'static str {
-        match self {
-            WizardVisibility::State => "state",
-            WizardVisibility::Belief => "belief",
-            WizardVisibility::Recommendation => "recommendation",
-        }
+        self.into()
     }
 
     pub fn title(self) -> &'static str {
@@ -469,8 +456,9 @@ impl WizardVisibility {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum ArmKind {
     /// Presses have a random duration; the arm's motion is only displayed.
     #[default]
@@ -481,10 +469,7 @@ pub enum ArmKind {
 
 impl ArmKind {
     pub fn name(self) -> &'static str {
-        match self {
-            ArmKind::Timed => "timed",
-            ArmKind::Physics => "physics",
-        }
+        self.into()
     }
 }
 

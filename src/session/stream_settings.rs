@@ -1,4 +1,4 @@
-//! Settings of the stream to the 3D viewer Rerun in a session file.
+//! Settings of streams in a session file: the Lab Streaming Layer (LSL) and the 3D viewer Rerun.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +18,9 @@ pub struct LslSpec {
     pub gaze: Option<LslGazeSpec>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum LslOutlet {
     /// Every event except gaze and arm samples, each as a short text code.
     Markers,
@@ -50,15 +51,7 @@ impl LslOutlet {
 
     /// In settings, and part of its name in the layer.
     pub fn name(self) -> &'static str {
-        match self {
-            LslOutlet::Markers => "markers",
-            LslOutlet::Events => "events",
-            LslOutlet::Presses => "presses",
-            LslOutlet::Beliefs => "beliefs",
-            LslOutlet::NetBenefit => "net_benefit",
-            LslOutlet::Gaze => "gaze",
-            LslOutlet::Arm => "arm",
-        }
+        self.into()
     }
 }
 

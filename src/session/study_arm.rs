@@ -6,8 +6,11 @@ use crate::settings::Condition;
 use tomcom_core::communication::concept::ConceptName;
 
 /// An arm of a study. A wizard who sees the assistant's recommendations is another arm than a wizard who does not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum StudyArm {
     /// Nobody sends signals.
     #[default]
@@ -16,6 +19,7 @@ pub enum StudyArm {
     Wizard,
     /// The wizard sees the estimated belief and the recommendations.
     #[serde(rename = "wizard+advice")]
+    #[strum(serialize = "wizard+advice")]
     WizardWithAdvice,
     /// The assistant sends signals by theory of mind with communication planning.
     TomCom,
@@ -32,14 +36,7 @@ impl StudyArm {
 
     /// In files.
     pub fn name(self) -> &'static str {
-        match self {
-            StudyArm::None => "none",
-            StudyArm::Wizard => "wizard",
-            StudyArm::WizardWithAdvice => "wizard+advice",
-            StudyArm::TomCom => "tom-com",
-            StudyArm::Tom => "tom",
-            StudyArm::Dev => "dev",
-        }
+        self.into()
     }
 
     /// In texts.

@@ -1,8 +1,10 @@
-//! The participant's tutorial, a phase of a study plan: which tutorial events a session accepts, and what they change.
+//! The participant's tutorial, a phase of a study plan: pages on the display before the first practice, which the
+//! participant turns.
 
 use serde::{Deserialize, Serialize};
 
 use crate::Session;
+use crate::admit::unless;
 use crate::plan::PhaseSpec;
 use crate::settings::{SettingError, is_code};
 use tomcom_core::base::time::SessionTime;
@@ -115,7 +117,7 @@ impl Tutorial {
     }
 
     /// The kitchen at the beginning of a step: after all presses of the steps before.
-    pub fn state_at(&self, kitchen: &Kitchen, step: usize) -> State {
+    fn state_at(&self, kitchen: &Kitchen, step: usize) -> State {
         let mut state = kitchen.empty_state();
         for (nth, one) in self.steps.iter().enumerate().take(step + 1) {
             for &order in &kitchen.orders {
@@ -299,8 +301,9 @@ impl TutorialTarget {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum TutorialPageTurner {
     /// Only when the step is done.
     Participant,
@@ -310,10 +313,7 @@ pub enum TutorialPageTurner {
 
 impl TutorialPageTurner {
     pub fn name(self) -> &'static str {
-        match self {
-            TutorialPageTurner::Participant => "participant",
-            TutorialPageTurner::Wizard => "wizard",
-        }
+        self.into()
     }
 }
 
@@ -469,7 +469,7 @@ impl TutorialState {
     }
 
     /// They were shown for their set time.
-    pub(crate) fn hide_cards(&mut self) {
+    fn hide_cards(&mut self) {
         self.are_cards_hidden = true;
         self.finish(true);
     }
@@ -501,7 +501,6 @@ impl Session {
 pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
     let (tutorial, _) = session.tutorial().ok_or("no tutorial is shown now")?;
     let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
-    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let may_leave = |by: TutorialPageTurner| by == TutorialPageTurner::Wizard || state.is_done();
     let is_shown = |id: &str| unless(step.id == id, "another step of the tutorial is shown");
     match event {

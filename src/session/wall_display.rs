@@ -107,8 +107,9 @@ pub enum DisplayedNames {
 }
 
 /// An approaching hand reveals an intention, as a real robot's does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RobotDepiction {
     /// A real robot stands beside the display.
     None,
@@ -120,11 +121,7 @@ pub enum RobotDepiction {
 
 impl RobotDepiction {
     pub fn name(self) -> &'static str {
-        match self {
-            RobotDepiction::None => "none",
-            RobotDepiction::Hand => "hand",
-            RobotDepiction::Arm => "arm",
-        }
+        self.into()
     }
 }
 

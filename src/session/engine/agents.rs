@@ -1,4 +1,5 @@
-//! Construction of the robot and of the simulated participant from the settings of a trial.
+//! The robot, the simulated participant and the scripted wizard of a running session, and its freeze probes: they are
+//! made from the settings of a trial, are told what they can notice, and act.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be
-//! valid.
+//! Reads session, layout and recipe files, and the files that they name. Every error names the file, the line, what
+//! was found and what would be valid.
 
 pub mod file_error;
 pub mod overwrite;
@@ -77,10 +77,8 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
         let model = folder.join(file);
-        if let Err(reason) = std::fs::metadata(&model) {
-            let remedy = "the path of a file with parameters of the human model, relative to the session file";
-            return Err(missing(path, &text, ("human_model", 0, file), reason, remedy));
-        }
+        let remedy = "the path of a file with parameters of the human model, relative to the session file";
+        check_there(&model, path, &text, ("human_model", 0, file), remedy)?;
         spec.human = read_human_model(&model)?;
     }
     read_words(path, &text, &mut spec)?;
@@ -99,10 +97,8 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
         None => Vec::new(),
     };
     let layout_path = folder.join(&spec.layout);
-    if let Err(reason) = std::fs::metadata(&layout_path) {
-        let remedy = "the path of a layout file, relative to the session file";
-        return Err(missing(path, &text, ("layout", 0, &spec.layout), reason, remedy));
-    }
+    let remedy = "the path of a layout file, relative to the session file";
+    check_there(&layout_path, path, &text, ("layout", 0, &spec.layout), remedy)?;
     let keys = read_keys(path, &text, &spec)?;
     let mut kitchen = read_kitchen(&layout_path)?;
     kitchen.layout.path.clone_from(&spec.layout);
@@ -121,6 +117,11 @@ fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Optio
     Ok(Some(RecordedFile { path: path.display().to_string(), text: keys }))
 }
 
+/// A file that a session file names must exist; the setting that names it is given as to [`missing`].
+fn check_there(path: &Path, session: &Path, text: &str, setting: (&str, usize, &str), remedy: &str) -> FileResult<()> {
+    std::fs::metadata(path).map(drop).map_err(|reason| missing(session, text, setting, reason, remedy))
+}
+
 /// In the plan's order, and in the session's language.
 fn read_questionnaires(
     session: &Path,
@@ -131,10 +132,8 @@ fn read_questionnaires(
     let folder = session.parent().unwrap_or(Path::new("."));
     let read = |(nth, asked): (usize, &QuestionnaireSpec)| {
         let path = in_language(folder.join(&asked.file), spec.display.code());
-        if let Err(reason) = std::fs::metadata(&path) {
-            let remedy = "the path of a questionnaire, relative to the session file";
-            return Err(missing(session, text, ("questionnaire.file", nth, &asked.file), reason, remedy));
-        }
+        let remedy = "the path of a questionnaire, relative to the session file";
+        check_there(&path, session, text, ("questionnaire.file", nth, &asked.file), remedy)?;
         let text = read_text(&path)?;
         let questionnaire: Questionnaire = parse(&path, &text)?;
         questionnaire.check().map_err(|error| wrong_setting(&path, &text, error))?;
@@ -147,10 +146,8 @@ fn read_questionnaires(
 fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitchen) -> FileResult<Option<Tutorial>> {
     let Some(file) = spec.plan.as_ref().and_then(|plan| plan.tutorial.as_ref()) else { return Ok(None) };
     let path = in_language(session.parent().unwrap_or(Path::new(".")).join(file), spec.display.code());
-    if let Err(reason) = std::fs::metadata(&path) {
-        let remedy = "the path of a tutorial, relative to the session file";
-        return Err(missing(session, text, ("plan.tutorial", 0, file), reason, remedy));
-    }
+    let remedy = "the path of a tutorial, relative to the session file";
+    check_there(&path, session, text, ("plan.tutorial", 0, file), remedy)?;
     let text = read_text(&path)?;
     let tutorial: Tutorial = parse(&path, &text)?;
     let checked = tutorial.check().and_then(|()| tutorial.check_kitchen(kitchen));
@@ -266,16 +263,14 @@ impl ParsedFile for LanguageFile {
 }
 
 /// Texts in the session file take precedence over those of its language file.
-pub(crate) fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<()> {
+fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<()> {
     let language = &spec.display.language;
     if DisplaySpec::LANGUAGES.contains(&language.as_str()) {
         return Ok(());
     }
     let path = session.parent().unwrap_or(Path::new(".")).join(language);
-    if let Err(reason) = std::fs::metadata(&path) {
-        let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
-        return Err(missing(session, text, ("display.language", 0, language), reason, remedy));
-    }
+    let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
+    check_there(&path, session, text, ("display.language", 0, language), remedy)?;
     let LanguageFile(mut words) = parse(&path, &read_text(&path)?)?;
     words.append(&mut spec.display.words);
     spec.display.words = words;

@@ -46,31 +46,26 @@ impl FileKind {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// What such a file is, and what would be right in the place of another one.
+    fn words(self) -> (&'static str, &'static str) {
         match self {
-            FileKind::Session => "a session file",
-            FileKind::Layout => "a layout file",
-            FileKind::Recipes => "a recipe file",
-            FileKind::HumanModel => "a file with parameters of the human model",
-            FileKind::Keys => "a key file",
-            FileKind::Questionnaire => "a questionnaire",
-            FileKind::Tutorial => "a tutorial",
-            FileKind::Language => "words of the participant's display",
-            FileKind::Battery => "a battery of cohorts",
-        }
-    }
-
-    fn remedy(self) -> &'static str {
-        match self {
-            FileKind::Session => "a session file, like sessions/default.toml",
-            FileKind::Layout => "a layout file, like layouts/sushi.toml",
-            FileKind::Recipes => "a recipe file, like recipes/sushi.toml",
-            FileKind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
-            FileKind::Tutorial => "a tutorial, like sessions/tutorials/sushi.toml",
-            FileKind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
-            FileKind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
-            FileKind::Keys => "a key file, as tomcom keys prints it",
-            FileKind::Battery => "a battery of cohorts, like sessions/people/robustness.toml",
+            FileKind::Session => ("a session file", "a session file, like sessions/default.toml"),
+            FileKind::Layout => ("a layout file", "a layout file, like layouts/sushi.toml"),
+            FileKind::Recipes => ("a recipe file", "a recipe file, like recipes/sushi.toml"),
+            FileKind::HumanModel => (
+                "a file with parameters of the human model",
+                "parameters of the human model, like those that tomcom fit writes",
+            ),
+            FileKind::Keys => ("a key file", "a key file, as tomcom keys prints it"),
+            FileKind::Questionnaire => {
+                ("a questionnaire", "a questionnaire, like sessions/questionnaires/acceptance.toml")
+            }
+            FileKind::Tutorial => ("a tutorial", "a tutorial, like sessions/tutorials/sushi.toml"),
+            FileKind::Language => (
+                "words of the participant's display",
+                "words of the participant's display, lines like \"rice\" = \"riz\"",
+            ),
+            FileKind::Battery => ("a battery of cohorts", "a battery of cohorts, like sessions/people/robustness.toml"),
         }
     }
 }
@@ -110,12 +105,12 @@ impl ParsedFile for HumanModel {
 
 /// If the text is a file of another kind, the error says so.
 pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
+    let (_, right_file) = T::KIND.words();
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
-        Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
+        Some(other) => FileError::at(path, text, None, other.words().0.to_string(), right_file.to_string()),
         None => {
             let (found, right) = told::<T>(text, &error);
-            let kind = T::KIND.remedy();
-            let remedy = right.map_or(kind.to_string(), |right| format!("{right}; in {kind}"));
+            let remedy = right.map_or(right_file.to_string(), |right| format!("{right}; in {right_file}"));
             FileError::at(path, text, error.span(), found, remedy)
         }
     })
@@ -194,7 +189,7 @@ const MOST_PLACES: usize = 3;
 /// Where files that are parsed into `T` have a setting of this name, in words: "under [human.decision]". `None` if no
 /// table has it, or too many. The parser of `T` is asked: it refuses a setting that no file has, and names those that
 /// the table could have.
-pub(crate) fn places_of<T: DeserializeOwned>(setting: &str) -> Option<String> {
+fn places_of<T: DeserializeOwned>(setting: &str) -> Option<String> {
     let mut tables = Vec::new();
     collect::<T>("", setting, DEEPEST, &mut tables);
     if tables.is_empty() || tables.len() > MOST_PLACES {

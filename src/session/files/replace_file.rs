@@ -14,7 +14,7 @@ const RANDOM: usize = 6;
 
 /// An empty file beside `path`, which is removed unless it is renamed. All users may read it whom the process's file
 /// mode allows to.
-pub fn new_beside(path: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn new_beside(path: &Path) -> io::Result<NamedTempFile> {
     let mut prefix = path.file_name().ok_or(ErrorKind::InvalidInput)?.to_os_string();
     prefix.push(WRITER);
     let mut builder = tempfile::Builder::new();

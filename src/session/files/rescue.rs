@@ -15,7 +15,7 @@ pub const RESCUED: &str = "tomcom-rescued-";
 pub const RESCUE_NOTE_NAME: &str = "rescued.toml";
 
 /// Only the user of the program can read it.
-pub fn new_rescue_folder() -> io::Result<PathBuf> {
+pub(crate) fn new_rescue_folder() -> io::Result<PathBuf> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));

@@ -364,12 +364,7 @@ pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
 
 /// What a press with an effect took, put or made: "takes cooked rice", "puts nori"; `None` where the button's name says
 /// it.
-pub(crate) fn press_effect(
-    kitchen: &Kitchen,
-    agent: Agent,
-    button: ButtonId,
-    (before, after): (State, State),
-) -> Option<String> {
+fn press_effect(kitchen: &Kitchen, agent: Agent, button: ButtonId, (before, after): (State, State)) -> Option<String> {
     let content = |state: State, at: LocationId| kitchen.content_label(state, at);
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, button).action {

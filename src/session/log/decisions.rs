@@ -1,5 +1,5 @@
-//! Files beside a closed log with later decisions about the recording. The log of a closed recording is never changed.
-//! All decisions of a file are kept, and the last one holds.
+//! Files beside a closed log with later decisions about the recording: `exclusion.toml` and `correction.toml`. The log
+//! of a closed recording is never changed. All decisions of a file are kept, and the last one holds.
 
 use std::fs;
 use std::io::{BufReader, ErrorKind};
@@ -34,7 +34,7 @@ impl From<FileError> for DecisionError {
     }
 }
 
-pub(crate) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), DecisionError> {
+fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), DecisionError> {
     let length = reason.chars().count();
     let found = if reason.chars().any(char::is_control) {
         "a reason with a line break or another control character".to_string()
@@ -49,7 +49,7 @@ pub(crate) fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), Decis
 }
 
 /// Decisions are about the whole recording, so no later part may continue it.
-pub(crate) fn check_last_part(folder: &Path) -> Result<(), DecisionError> {
+fn check_last_part(folder: &Path) -> Result<(), DecisionError> {
     let mut last = folder.to_path_buf();
     while let Err(RecordingWriteError::Continued { part, .. }) = check_continued(&last) {
         last = part;
@@ -62,10 +62,7 @@ pub(crate) fn check_last_part(folder: &Path) -> Result<(), DecisionError> {
 }
 
 /// Empty decisions if there is no such file. `remedy`: what the file should contain.
-pub(crate) fn read_decisions<Decisions: DeserializeOwned + Default>(
-    path: &Path,
-    remedy: &str,
-) -> FileResult<Decisions> {
+fn read_decisions<Decisions: DeserializeOwned + Default>(path: &Path, remedy: &str) -> FileResult<Decisions> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     check_single(path.parent().unwrap_or(Path::new("")), &name)?;
     let text = match read_regular(path) {
@@ -97,7 +94,7 @@ pub(crate) fn check_single(folder: &Path, name: &str) -> FileResult<()> {
     Ok(())
 }
 
-pub(crate) fn write_decisions(path: &Path, decisions: &impl Serialize) -> Result<(), RecordingWriteError> {
+fn write_decisions(path: &Path, decisions: &impl Serialize) -> Result<(), RecordingWriteError> {
     let failed = |reason| RecordingWriteError::unwritable(path, reason);
     let text = toml::to_string(decisions).map_err(|error| failed(std::io::Error::other(error)))?;
     replace_file::replace(path, text.as_bytes()).map_err(failed)
@@ -169,12 +166,12 @@ pub const CORRECTION_NAME: &str = "correction.toml";
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Corrections {
+struct Corrections {
     #[serde(default)]
     pub correction: Vec<CodeCorrection>,
 }
 
-pub(crate) fn corrections(folder: &Path) -> FileResult<Corrections> {
+fn corrections(folder: &Path) -> FileResult<Corrections> {
     let remedy = "[[correction]] with before, after, why, by and at, as tomcom correct writes it";
     read_decisions(&folder.join(CORRECTION_NAME), remedy)
 }

@@ -59,7 +59,7 @@ fn is_named_as_codes(name: &str, endings: &[&str]) -> bool {
 }
 
 /// Files with raters' codes by their names, or by their first lines; an error if codes were saved as a spreadsheet.
-pub fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
+pub(crate) fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {

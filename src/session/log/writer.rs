@@ -261,7 +261,7 @@ const COMPARED: usize = 64 << 10;
 /// A log file that is being written, with a guarding copy that no other program can change: the log is compared with
 /// the copy, and saved from it if another program damaged the log.
 #[derive(Debug)]
-pub(crate) struct GuardedFile {
+struct GuardedFile {
     file: File,
     /// A file without a name; `None` if the log is not guarded or the copy could not be written.
     copy: Option<File>,
@@ -288,7 +288,7 @@ impl Write for GuardedFile {
 }
 
 impl GuardedFile {
-    pub(crate) fn unguarded(file: File) -> GuardedFile {
+    fn unguarded(file: File) -> GuardedFile {
         GuardedFile { file, copy: None, length: 0, next: 0, pass_end: 0 }
     }
 

@@ -5,11 +5,6 @@
 //! attempt, phases with all texts and items), so that it can be replayed after the plan has changed. Progress follows
 //! from the recordings alone; there is no file with the state of a study. A step that is left early has no end event
 //! and can be continued like one that was cut off.
-//!
-//! The files from the ground up: `groups` (orders of conditions), `plan_spec` (the `[plan]` of a session file),
-//! `starting_groups` (assignment of participants to groups), `item_form` (answer formats of items), `questionnaire` and
-//! `questionnaire_checks` (its file), `tutorial`, `step` (one recording), `study_aims` (primary outcome and margin),
-//! `planned_study` (all of them), `progress` (completed and missing recordings).
 
 use serde::{Deserialize, Serialize};
 
@@ -115,7 +110,7 @@ pub struct QuestionnaireSpec {
 }
 
 impl QuestionnaireSpec {
-    pub fn is_asked_after(&self, period: u32) -> bool {
+    pub(crate) fn is_asked_after(&self, period: u32) -> bool {
         self.after.as_ref().map_or(!self.before, |after| after.contains(&period))
     }
 }
@@ -170,7 +165,7 @@ impl PlanSpec {
     }
 
     /// A wizard without advice must not see recommendations.
-    pub fn check_visibility(&self, visibility: WizardVisibility) -> Result<(), SettingError> {
+    pub(crate) fn check_visibility(&self, visibility: WizardVisibility) -> Result<(), SettingError> {
         let practice = self.familiarisation.iter().map(|practice| practice.condition);
         let is_blind = self.conditions.iter().copied().chain(practice).any(|arm| arm == StudyArm::Wizard);
         if !is_blind || visibility < WizardVisibility::Recommendation {
@@ -233,7 +228,7 @@ impl Default for StudyAims {
 }
 
 impl StudyAims {
-    pub(crate) fn are_default(&self) -> bool {
+    fn are_default(&self) -> bool {
         *self == StudyAims::default()
     }
 }

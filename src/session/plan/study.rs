@@ -1,4 +1,5 @@
-//! A study: its plan with session settings and questionnaires, and the settings of each recording.
+//! A study: its plan with session settings and questionnaires, the settings of each recording, and the progress of
+//! participants, which follows from the recordings alone, so that the next step is correct after a crash at any time.
 
 use serde::Serialize;
 

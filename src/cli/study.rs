@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
 use tomcom_core::base::words::count;
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::pass::reading::AnalysisScope;
 use tomcom_study::pass::{self, AnalysisRequest, NamedRecordings, StudyError, shards};

@@ -11,10 +11,10 @@ use super::notice::NoticeLevel;
 use super::probe_keys;
 use super::sending::{refuse, send};
 use super::sheet_key::SheetKey;
-use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
 use tomcom_session::probes::StartedProbe;
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_session::{Event, Session, TrialPhase};
 

@@ -25,7 +25,7 @@ use tomcom_devices::gaze_json;
 use tomcom_devices::lsl::{self, InletThreadGuard, LslError};
 use tomcom_devices::pupil::{self, CaptureConfiguration, CaptureRequest};
 use tomcom_session::SessionSpec;
-use tomcom_session::accuracy_check::AcceptedGazeCheck;
+use tomcom_session::gaze_check::AcceptedGazeCheck;
 use tomcom_session::settings::{ConsoleSpec, GazeSource};
 
 /// Largest number of tracker messages that are processed together; more would delay the wizard's keys.

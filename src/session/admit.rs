@@ -1,25 +1,27 @@
 //! Preconditions of events: whether a session accepts an event now. Preconditions are checked before an input is taken,
 //! and again when an event is applied.
 
-use super::event::{Event, SignalEndReason, TrialEndReason};
-use super::phase::TrialPhase;
-use super::probe_event::ProbeEvent;
-use super::protocol::{self, ProtocolEvent};
-use super::session_state::Session;
-use super::settings::{ArmKind, Condition, ParticipantKind};
-use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, interventions, probes, tracker};
+use crate::event::{SignalEndReason, TrialEndReason};
+use crate::probes::{self, ProbeEvent};
+use crate::protocol::{self, ProtocolEvent};
+use crate::settings::{ArmKind, Condition, ParticipantKind};
+use crate::{Event, Session, TimelineEvent, TrialPhase, gaze_check, tracker};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
-use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::{Agent, ContentId, LocationKind};
 
-/// Whether the session accepts this event now (admits it).
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
+/// What a precondition says: nothing, or the reason for which it does not hold.
+pub(crate) fn unless(holds: bool, reason: &'static str) -> Result<(), &'static str> {
+    if holds { Ok(()) } else { Err(reason) }
+}
+
+fn refuse_if(refused: bool, reason: &'static str) -> Result<(), &'static str> {
+    unless(!refused, reason)
+}
+
+/// Whether the session accepts this event now. The error says why not, in words for the wizard, as in every `admit`.
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
-    let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let phase = session.phase;
     refuse_if(phase == TrialPhase::Closed, "the session is over")?;
     match event {
@@ -44,11 +46,10 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             refuse_if(!finite, "the gaze sample is not a number")
         }
         Event::Tracker(event) => tracker::admit(event),
-        Event::Calibration(event) => accuracy_check::admit(session, event),
+        Event::Calibration(event) => gaze_check::admit(session, event),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
             session.spec.robot.arm == ArmKind::Timed,
-            "the robot's arm is timed in this session: it is not \
-                                                                 simulated physically",
+            "the robot's arm is timed in this session: it is not simulated physically",
         ),
         Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
         Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
@@ -73,14 +74,11 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown to the participant"),
         Event::Probe(event) => probes::admit(session, event),
         Event::Protocol(event) => protocol::admit(session, event),
-        other => interventions::admit(session, other),
+        other => admit_intervention(session, other),
     }
 }
 
 /// Whether the condition of the trial allows signals of this sender.
-///
-/// # Errors
-/// The reason for the refusal, in words.
 pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
     match (session.spec.trial.condition, by) {
         (Condition::None, _) => Err("nobody sends signals in the unassisted condition"),
@@ -111,11 +109,7 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     }
 }
 
-/// Rules for the wizard's keys, such as the cool-down between signals. The rules apply at the keyboard only, not to
-/// events in recordings.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
+/// Rules for the wizard's keys, such as the cool-down between signals; they do not apply to events in recordings.
 pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
     let Event::SignalShown { by: Sender::Wizard, signal, .. } = event else { return Ok(()) };
     if session.spec.scripts_wizard() {
@@ -126,16 +120,15 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
     let (cool_down_s, since) = (session.spec.signals.cool_down_s, session.signalled_at);
     match since.map(|since| now.secs_since(since)).filter(|&age_s| age_s < cool_down_s) {
-        Some(age_s) => Err(format!(
-            "too soon: the last signal is {age_s:.1} s ago, signals need {cool_down_s} s \
-                                    between them"
-        )),
+        Some(age_s) => {
+            Err(format!("too soon: the last signal is {age_s:.1} s ago, signals need {cool_down_s} s between them"))
+        }
         None => Ok(()),
     }
 }
 
-/// Whether a press of a person comes sooner after the person's previous press than the session setting `pace_s` allows.
-pub(super) fn is_too_early(session: &Session, now: SessionTime) -> bool {
+/// Whether a person presses sooner after the previous press than the setting `pace_s` allows.
+pub(crate) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     let spec = &session.spec;
     let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
         return false;
@@ -199,5 +192,58 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::OfferClosed { .. }
         | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
+    }
+}
+
+fn admit_intervention(session: &Session, event: &Event) -> Result<(), &'static str> {
+    let (phase, robot) = (session.phase, &session.robot);
+    match event {
+        Event::KitchenCorrected { location, content } => admit_correction(session, location, content),
+        Event::RobotHeld { by } => by_the_wizard(*by).and(refuse_if(robot.held, "the robot is held already")),
+        Event::RobotReleased { by } => by_the_wizard(*by).and(refuse_if(!robot.held, "the robot is not held")),
+        Event::RobotSkipped { by } => {
+            by_the_wizard(*by)?;
+            refuse_if(phase != TrialPhase::Running, "the robot's presses can be skipped only while the trial runs")?;
+            refuse_if(robot.intention.is_none(), "the robot is not on its way to a press")
+        }
+        Event::RobotDriven { by, .. } => {
+            by_the_wizard(*by)?;
+            refuse_if(phase != TrialPhase::Running, "the robot's press can be chosen only while the trial runs")?;
+            refuse_if(robot.stopped, "the robot is stopped: resume it first")
+        }
+        Event::TrialAborted { .. } => {
+            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "no trial runs that could be aborted")
+        }
+        Event::TrialExcluded { .. } => {
+            refuse_if(phase == TrialPhase::Ready, "no trial has begun that could be excluded")?;
+            refuse_if(session.excluded.is_some(), "the trial is excluded already")
+        }
+        Event::TrialIncluded => refuse_if(session.excluded.is_none(), "the trial is not excluded"),
+        _ => Ok(()),
+    }
+}
+
+fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
+    unless(by == Sender::Wizard, "only the wizard can hold the robot, skip its presses and choose them")
+}
+
+fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
+    if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) {
+        return Err("the kitchen can be corrected only during a trial");
+    }
+    if session.is_frozen() {
+        // The probe's questions are about the kitchen as it was when the task was frozen.
+        return Err("the kitchen can be corrected only after the freeze probe");
+    }
+    let kitchen = &session.kitchen;
+    let place = kitchen.location_named(location).ok_or("the kitchen has no location with this name")?;
+    let what = kitchen.content_named(content).ok_or("the kitchen has no content with this name")?;
+    match () {
+        () if kitchen.location(place).kind == LocationKind::Order => {
+            Err("orders are shown by the program, and cannot be corrected")
+        }
+        () if session.state.content(place) == what => Err("the program assumes this content already"),
+        () if what != ContentId::EMPTY && !kitchen.accepts(place, what) => Err("this content cannot be at this place"),
+        () => Ok(()),
     }
 }

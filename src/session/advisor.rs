@@ -1,8 +1,7 @@
-//! The assistant of a session: answers a request for advice after every press and every order change, and at the other
-//! times that the session's settings name.
+//! The assistant of a session: when it is asked for advice, with what, and its answer.
 
-use super::follower::SessionFollower;
-use crate::Session;
+use crate::follower::SessionFollower;
+use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
@@ -17,9 +16,7 @@ use tomcom_core::mind::signal_model::SignalReadingForecast;
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]
 pub struct AdviceRequest {
-    /// Sequence number of the event after which advice is requested.
     pub seq: u64,
-    /// Session time of the event after which advice is requested.
     pub time: SessionTime,
     presses: u32,
     state: State,
@@ -28,14 +25,12 @@ pub struct AdviceRequest {
     robot: RobotIntent,
     robot_press_s: f64,
     forecast: SignalReadingForecast,
-    /// The signals that can be sent at the time of the request.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
     error: Option<u64>,
 }
 
 impl AdviceRequest {
-    /// A request for advice after the event with this sequence number and time.
     pub fn from_follower(follower: &mut SessionFollower, seq: u64, time: SessionTime) -> AdviceRequest {
         let belief = follower.belief_for_advice(time);
         let session = &follower.session;
@@ -56,7 +51,6 @@ impl AdviceRequest {
         AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, forecast, signals, error }
     }
 
-    /// The request for advice in the form in which a communication concept receives it.
     pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {
             seq,
@@ -75,47 +69,55 @@ impl AdviceRequest {
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 
-    /// This request for advice with another estimate and other available signals.
     pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> AdviceRequest {
         AdviceRequest { belief: belief.clone(), signals, ..self.clone() }
     }
 }
 
-/// The session's assistant, which answers requests for advice by its communication concept.
 #[derive(Debug)]
 pub struct Advisor {
     concept: Box<dyn Concept>,
     cost: CostToGo,
-    /// Whether the assistant works ahead between requests for advice in a live session.
+    /// Whether it computes ahead between requests in a live session.
     pub works_ahead: bool,
 }
 
 impl Advisor {
-    /// The session's assistant, with the communication concept that the session's settings name.
     pub fn new(session: &Session, cost: CostToGo) -> Advisor {
         Advisor::by(session.spec.assistant.concept, session, cost)
     }
 
-    /// An assistant for the session with the given communication concept.
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
         let Session { kitchen, spec, .. } = session;
         let concept = concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed());
         Advisor { concept, cost, works_ahead: spec.assistant.works_ahead }
     }
 
-    /// The assistant's recommendation for a request for advice.
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }
 
-    /// Number of decisions whose cost to go had to be computed so far, because no cache held the decisions.
+    /// Number of decisions whose cost to go was in no cache.
     pub fn computed_decisions(&self) -> u64 {
         self.cost.counts().decisions_missed
     }
 
-    /// Prepares for the requests for advice that are likely after this one, as long as `proceed` returns true; see
-    /// [`Concept::work_ahead`].
+    /// Prepares for likely next requests as long as `proceed` returns true; see [`Concept::work_ahead`].
     pub fn work_ahead(&mut self, question: &AdviceRequest, proceed: &mut dyn FnMut() -> bool) {
         self.concept.work_ahead(&mut self.cost, &question.moment(), proceed);
     }
+}
+
+/// Whether the assistant is asked for advice after an event that has just been applied: a press of either agent, a
+/// change of the task without a press, an unusually long silence of the human.
+pub fn leads_to_advice(session: &Session, event: &Event) -> bool {
+    let leads = matches!(
+        event,
+        Event::Press { .. }
+            | Event::OrderShown { .. }
+            | Event::OrderCleared { .. }
+            | Event::KitchenCorrected { .. }
+            | Event::HumanWaits { .. }
+    );
+    leads && session.is_running()
 }

@@ -1,13 +1,13 @@
-//! `apply(&mut Session, &TimestampedEvent)`: the only function that changes a session, by applying one event.
+//! `apply(&mut Session, &TimestampedEvent)`: the only function that changes a session, by applying one event; and the
+//! effects that a running session then has to perform.
 
-use super::admit::{admit, is_too_early};
-use super::event::{Event, SignalEndReason, TimestampedEvent, TrialEndReason};
-use super::gaze_samples::take_sample;
-use super::phase::TrialPhase;
-use super::session_effect::{SessionEffect, Timer};
-use super::session_state::{ServedOrder, Session, ShownSignal};
-use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, offers, probes, protocol, robot_changes, silence, trial_clock};
+use crate::admit::{admit, is_too_early};
+use crate::event::{SignalEndReason, TrialEndReason};
+use crate::gaze_samples::take_sample;
+use crate::{
+    Event, ServedOrder, Session, ShownSignal, TimelineEvent, TimestampedEvent, TrialPhase, gaze_check, offers, probes,
+    protocol,
+};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
 use tomcom_core::communication::recommendation::Recommendation;
@@ -16,31 +16,22 @@ use tomcom_core::kitchen::{
     Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, Press, State,
 };
 
-/// Error: the session cannot accept an event, because the log is damaged or was written by another program.
+/// The session cannot accept an event: the log is damaged or was written by another program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}; right would be {remedy}")]
 pub struct ApplyError {
-    /// Sequence number of the refused event.
     pub seq: u64,
-    /// What is invalid in the refused event.
     pub found: String,
-    /// What a valid event would contain in its place.
     pub remedy: String,
 }
 
-/// Result of applying an event: actions to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AppliedEvent {
-    /// The actions that the running session has to perform because of the event, in order.
     pub effects: Vec<SessionEffect>,
-    /// The change of the kitchen's state by the event.
     pub change: KitchenChange,
 }
 
-/// Applies an event to the session.
-///
-/// # Errors
-/// Unknown names, decreasing times, and events that the session does not accept now (see [`admit`]). The session is
+/// Applies an event. Unknown names, decreasing times and events that [`admit`] refuses are errors; the session is
 /// unchanged then.
 pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
     check(session, stamped)?;
@@ -71,7 +62,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::FocusRegained => session.note(now, TimelineEvent::Focus(true)),
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
-        Event::Calibration(event) => accuracy_check::apply(session, now, event),
+        Event::Calibration(event) => gaze_check::apply(session, now, event),
         Event::Press { agent, button, .. } => {
             let button = named.button(*agent, button)?;
             change = press(session, now, *agent, button, &mut effects);
@@ -99,12 +90,12 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             session.robot.idle = Some((*reason, waits_for));
         }
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
-            robot_changes::arm(session, now, &stamped.event);
+            change_arm(session, now, &stamped.event);
         }
-        Event::RobotStopped => robot_changes::stop(session, now, true),
-        Event::RobotResumed => robot_changes::stop(session, now, false),
-        Event::RobotHeld { .. } => robot_changes::hold(session, now, true),
-        Event::RobotReleased { .. } => robot_changes::hold(session, now, false),
+        Event::RobotStopped => stop_robot(session, now, true),
+        Event::RobotResumed => stop_robot(session, now, false),
+        Event::RobotHeld { .. } => hold_robot(session, now, true),
+        Event::RobotReleased { .. } => hold_robot(session, now, false),
         Event::RobotSkipped { .. } => {
             if let Some((button, ..)) = session.robot.intention {
                 session.note(now, TimelineEvent::RobotSkipped(button));
@@ -154,7 +145,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
     Ok(AppliedEvent { effects, change })
 }
 
-/// Checks time and precondition of an event. Whoever reads a log checks the sequence number.
+/// Time and precondition; whoever reads a log checks the sequence number.
 fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
     if stamped.time < session.time {
         return Err(ApplyError {
@@ -171,7 +162,7 @@ fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError
     Ok(())
 }
 
-/// The locations, dishes and buttons that an event names, looked up in the session's kitchen.
+/// Looks up what an event names in the session's kitchen.
 struct Named<'a> {
     session: &'a Session,
     seq: u64,
@@ -212,7 +203,7 @@ impl Named<'_> {
     }
 }
 
-/// Changes the kitchen's state, records which locations changed, and returns the state before and after.
+/// Changes the kitchen's state and notes which locations changed; returns the state before and after.
 fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
     how(&mut session.state);
@@ -247,32 +238,30 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
     KitchenChange::TrialStarted { before, after }
 }
 
-/// Sets the timer for the event that the human has still not pressed after an unusually long time.
 fn await_press(session: &Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
-    let time = now + silence::unusual(session);
+    let time = now + unusual_silence(session);
     effects.push(SessionEffect::At { time, timer: Timer::HumanWaits });
 }
 
 fn pause(session: &mut Session, now: SessionTime) {
     match session.is_frozen() {
         true => probes::pause(session, now),
-        false => trial_clock::pause(session, now),
+        false => pause_clock(session, now),
     }
     session.note(now, TimelineEvent::Trial(TrialPhase::Paused));
 }
 
-/// Resumes after a pause: pending times are postponed by its duration. After a pause during a freeze probe, the probe
-/// continues.
+/// Pending times are postponed by the pause. After a pause during a freeze probe, the probe continues.
 fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     if session.is_frozen() {
         return probes::resume(session, now);
     }
-    effects.push(SessionEffect::Postpone(trial_clock::resume(session, now)));
+    effects.push(SessionEffect::Postpone(resume_clock(session, now)));
     session.note(now, TimelineEvent::Trial(TrialPhase::Running));
 }
 
 fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, effects: &mut Vec<SessionEffect>) {
-    trial_clock::stop(session, now);
+    stop_clock(session, now);
     session.phase = TrialPhase::Over(reason);
     probes::trial_ends(session, now);
     session.robot.rests();
@@ -283,7 +272,7 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, ef
 }
 
 fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
-    trial_clock::stop(session, now);
+    stop_clock(session, now);
     session.phase = TrialPhase::Closed;
     probes::session_ends(session, now);
     session.robot.intention = None;
@@ -316,7 +305,7 @@ fn show(
     session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
-/// Stores a recommendation as the latest, without a signal that was sent since the recommendation was requested.
+/// Stores a recommendation, without a signal that was sent since it was requested.
 fn advise(session: &mut Session, mut advice: Recommendation) {
     let shown = session.shown.as_ref().filter(|shown| shown.by == Sender::Wizard && shown.since >= advice.for_ns);
     if let Some(shown) = shown {
@@ -380,4 +369,119 @@ fn press(
         effects.push(SessionEffect::At { time: now, timer: Timer::EndTrialByPresses });
     }
     KitchenChange::Press { press, presses: session.presses }
+}
+
+/// An action that the running session must perform after an event. A replay performs none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SessionEffect {
+    At { time: SessionTime, timer: Timer },
+    Cancel(Timer),
+    CancelAll,
+    Postpone(SessionTime),
+    Close,
+}
+
+/// What happens when a timer is due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Timer {
+    /// The location stops showing `served`.
+    ClearOrder(LocationId),
+    /// A new order appears; the running session draws the dish.
+    NewOrder(LocationId),
+    EndSignal,
+    EndTrial,
+    EndTrialByPresses,
+    EndTrialByOrders,
+    /// The rules of offers are asked whether an offer opens or closes.
+    ReviewOffer,
+    HumanWaits,
+}
+
+pub(crate) fn pause_clock(session: &mut Session, now: SessionTime) {
+    stop_clock(session, now);
+    session.phase = TrialPhase::Paused;
+    session.gaze.measured = None;
+}
+
+fn stop_clock(session: &mut Session, now: SessionTime) {
+    match session.phase {
+        TrialPhase::Running => session.paused_at = now,
+        TrialPhase::Ready => {
+            session.trial_start = now;
+            session.paused_at = now;
+        }
+        _ => {}
+    }
+}
+
+/// Returns for how long the trial stood still, by which all pending times have to be postponed.
+pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTime {
+    let by = now - session.paused_at;
+    session.pauses.push((session.paused_at, now));
+    session.gaze.measured = None;
+    session.paused_total = session.paused_total + by;
+    session.phase = TrialPhase::Running;
+    if let Some((_, _, until)) = &mut session.robot.intention {
+        *until = *until + by;
+    }
+    if let Some(shown) = &mut session.shown {
+        shown.until = shown.until + by;
+    }
+    by
+}
+
+fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
+    match event {
+        Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
+        Event::RobotTouched { force_n } => session.note(now, TimelineEvent::ArmTouched { force_n: *force_n }),
+        Event::RobotSafety { mode, force_n, joint } => {
+            let arm = &mut session.robot.arm;
+            (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
+            // A stop by the wizard has an event of its own, so only other stops are noted here.
+            if mode.is_stopped() && !session.robot.stopped {
+                session.robot.stopped = true;
+                session.robot.idle = None;
+                session.note(now, TimelineEvent::ArmStopped { mode: *mode, force_n: *force_n, joint: *joint });
+            }
+        }
+        _ => {}
+    }
+}
+
+pub(crate) fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
+    session.robot.stopped = stopped;
+    session.robot.idle = None;
+    session.note(now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
+}
+
+pub(crate) fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
+    session.robot.held = held;
+    session.robot.idle = None;
+    session.note(now, if held { TimelineEvent::RobotHeld } else { TimelineEvent::RobotReleased });
+}
+
+const SILENT_INTERVALS: u64 = 3;
+/// Three usual intervals of the paper's participants.
+const LEAST_SILENCE: SessionTime = SessionTime(6_000_000_000);
+
+/// The time without a press after which silence is unusual, and the human may be stuck: three of the human's usual
+/// intervals in this trial (the median, without pauses), and at least 6 s. The timer is set at the trial's start, at
+/// each counted press of the human and at each `human_waits`, so this event comes once for every such time.
+fn unusual_silence(session: &Session) -> SessionTime {
+    let times: Vec<SessionTime> = own_presses(session).collect();
+    let mut intervals: Vec<SessionTime> = times.windows(2).map(|pair| session.age(pair[1], pair[0])).collect();
+    intervals.sort_unstable();
+    let usual = intervals.get(intervals.len() / 2).copied().unwrap_or_default();
+    SessionTime(SILENT_INTERVALS * usual.0).max(LEAST_SILENCE)
+}
+
+/// For how long the human has not pressed, without pauses; before the first press, since the trial's start.
+pub fn silence_so_far(session: &Session, now: SessionTime) -> SessionTime {
+    session.age(own_presses(session).next().unwrap_or(session.trial_start), now)
+}
+
+/// Times of the human's counted presses, the latest first.
+fn own_presses(session: &Session) -> impl Iterator<Item = SessionTime> + '_ {
+    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
+    session.timeline.iter().rev().filter(move |entry| is_own(&entry.what)).map(|entry| entry.time)
 }

@@ -14,29 +14,28 @@
 //! same code.
 
 mod agents;
-mod consequences;
-mod due_timers;
-mod informing;
-mod probing;
-mod robot;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use self::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
 use crate::admit::{admit, hygiene};
-use crate::advice_moments::leads_to_advice;
-use crate::advisor::{AdviceRequest, Advisor};
-use crate::apply::ApplyError;
+use crate::advisor::{AdviceRequest, Advisor, leads_to_advice};
+use crate::apply::{ApplyError, silence_so_far};
+use crate::engine::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
+use crate::event::{SignalEndReason, TrialEndReason};
 use crate::follower::SessionFollower;
-use crate::offers;
 use crate::orders::OrderList;
 use crate::probes::ProbeEvent;
+use crate::protocol::ProtocolEvent;
 use crate::settings::ParticipantKind;
-use crate::timers::TimerQueue;
-use crate::{AppliedEvent, Event, LogHeader, Session, SessionSpec, TimestampedEvent};
+use crate::{
+    AppliedEvent, Event, LogHeader, Session, SessionEffect, SessionSpec, Timer, TimestampedEvent, TrialPhase, offers,
+    proposals,
+};
 use tomcom_arm::worker::RobotTaskExecutor;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
+use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
@@ -46,7 +45,6 @@ use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
 use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 
-/// Runs a session: raises due events, accepts external ones, and stamps all of them.
 #[derive(Clone, Debug)]
 pub struct SessionEngine {
     follower: SessionFollower,
@@ -54,29 +52,25 @@ pub struct SessionEngine {
     orders: OrderList,
     robot: RobotTaskExecutor,
     participant: Option<SimulatedParticipant>,
-    /// Gaps in the simulated eye tracker's data, if the session has any.
     gaps: Option<GazeDropoutSchedule>,
-    /// The scripted wizard of the session, if there is one.
     wizard: Option<ScriptedWizard>,
     next_seq: u64,
-    /// Stamped events that the engine has not returned to the caller yet.
+    /// Events that the caller has not got yet.
     out: Vec<TimestampedEvent>,
-    /// The latest event after which advice is requested; the request is made once the event's immediate consequences
-    /// have been applied.
+    /// The latest event after which advice is requested, until its immediate consequences are applied.
     to_ask: Option<(u64, SessionTime)>,
-    /// The latest request for advice, until it is answered.
+    /// The latest request, until it is answered.
     asked: Option<AdviceRequest>,
-    /// Requests for advice that the engine has not returned to the caller yet.
+    /// Requests that the caller has not got yet.
     questions: Vec<AdviceRequest>,
 }
 
-/// Result of an event from outside: the events to which it led, or why the event was refused.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "the events belong into the log, also when the input was refused"]
 pub struct InputResult {
-    /// Events up to the event from outside, and the consequences of that event, in order.
+    /// What was due before, the event itself if it was accepted, and its consequences.
     pub events: Vec<TimestampedEvent>,
-    /// Why the event from outside was refused, in words for the wizard.
+    /// Why the event was refused, in words for the wizard.
     pub refused: Option<String>,
 }
 
@@ -91,12 +85,11 @@ enum Source {
 }
 
 impl SessionEngine {
-    /// An engine for a session before its first event. Other engines of the same kitchen may have used `cost`: its
-    /// cache never changes its results.
+    /// `cost` may come from another engine of the same kitchen: its cache never changes results.
     ///
     /// # Panics
-    /// The settings ask for an arm with simulated physics, and this build has none, which `SessionSpec::require_built`
-    /// checks.
+    ///
+    /// The settings ask for an arm with simulated physics, and this build has none: see `SessionSpec::require_built`.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> SessionEngine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = trial_robot(&kitchen, &spec, trial);
@@ -123,22 +116,21 @@ impl SessionEngine {
         }
     }
 
-    /// The assistant of this session; its recommendations come back as [`Event::Advised`].
+    /// Its recommendations come back as [`Event::Advised`].
     pub fn advisor(&self) -> Advisor {
         Advisor::new(self.session(), self.follower.cost.clone())
     }
 
-    /// Requests for advice since the last call of this function, the oldest first.
+    /// Requests for advice since the last call, the oldest first.
     pub fn take_questions(&mut self) -> Vec<AdviceRequest> {
         std::mem::take(&mut self.questions)
     }
 
-    /// This engine without attribution of errors to causes, because attribution takes too long in a running session.
+    /// Without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> SessionEngine {
         SessionEngine { follower: self.follower.without_causes(), ..self }
     }
 
-    /// The present estimate of the human's belief.
     pub fn belief(&self) -> &DirichletBelief {
         self.follower.filter.belief()
     }
@@ -153,29 +145,26 @@ impl SessionEngine {
         p_truth < FALSE_BELOW
     }
 
-    /// The present state of the session.
     pub fn session(&self) -> &Session {
         &self.follower.session
     }
 
-    /// The judged presses of the human so far.
     pub fn judged(&self) -> &[JudgedPress] {
         &self.follower.judged
     }
 
-    /// Session time of the next internal event; `None` while the trial is not running.
+    /// Time of the next internal event.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.next_source().map(|(time, _)| time)
     }
 
-    /// Raises the next internal event at its due time, with its immediate consequences.
+    /// Raises the next internal event, with its immediate consequences.
     pub fn fire(&mut self) -> Vec<TimestampedEvent> {
         self.fire_next();
         std::mem::take(&mut self.out)
     }
 
-    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events that are due
-    /// before. If `time` is earlier than the last event, the time of the last event is used.
+    /// Applies an event from outside, after all internal events that are due before; not earlier than the last event.
     pub fn input(&mut self, time: SessionTime, event: Event) -> InputResult {
         while self.next_due().is_some_and(|due| due <= time) {
             self.fire_next();
@@ -188,28 +177,22 @@ impl SessionEngine {
         InputResult { events: std::mem::take(&mut self.out), refused: taken.err() }
     }
 
-    /// The session with everything that is derived from it, such as judged presses and the estimate.
     pub fn follower(&self) -> &SessionFollower {
         &self.follower
     }
 
-    /// This engine without its scripted wizard and, unless freeze probes draw questions by it, without the belief
-    /// estimate: no further signals are sent.
+    /// Without its scripted wizard and, unless freeze probes need it, without the belief estimate: no further signals
+    /// are sent.
     pub fn unassisted(self) -> SessionEngine {
         let needs_estimate = self.session().spec.probes.is_some();
         let follower = if needs_estimate { self.follower } else { self.follower.without_estimate() };
         SessionEngine { follower, wizard: None, ..self }
     }
 
-    /// The engine for the session of a recording's header.
-    ///
-    /// # Panics
-    /// The panics of [`Self::new`].
     pub fn for_header(kitchen: Arc<Kitchen>, header: &LogHeader, cost: CostToGo) -> SessionEngine {
         SessionEngine::new(kitchen, header.session.clone(), header.trial, cost)
     }
 
-    /// The follower of the engine's session, after the end of the session.
     pub fn into_follower(self) -> SessionFollower {
         self.follower
     }
@@ -295,7 +278,6 @@ impl SessionEngine {
         self.review_probe(now);
     }
 
-    /// Applies the timers that are due, then lets the robot react to the state.
     fn let_follow(&mut self, now: SessionTime) {
         while self.session().is_running() {
             if self.timers.next_due().is_some_and(|due| due <= now) {
@@ -311,13 +293,10 @@ impl SessionEngine {
         }
     }
 
-    /// Records an event that the engine itself raised.
     fn record_own(&mut self, now: SessionTime, event: Event) {
         self.record(now, event).expect("an engine's own events fit its session");
     }
 
-    /// Stamps and applies an event, performs its effects, informs robot and participant, and queues the event for the
-    /// caller.
     fn record(&mut self, now: SessionTime, event: Event) -> Result<(), ApplyError> {
         let event = match event {
             Event::Gaze(sample) => Event::Gaze(sample.rounded()),
@@ -362,5 +341,124 @@ impl SessionEngine {
         self.check_criterion(now);
         self.measure_calibration(now);
         Ok(())
+    }
+}
+
+impl SessionEngine {
+    fn perform(&mut self, effect: SessionEffect) {
+        match effect {
+            SessionEffect::At { time, timer } => self.timers.set(time, timer),
+            SessionEffect::Cancel(timer) => self.timers.cancel(timer),
+            SessionEffect::CancelAll => {
+                self.timers.cancel_all();
+                self.robot.rest();
+            }
+            SessionEffect::Postpone(by) => {
+                self.timers.postpone(by);
+                self.robot.postpone(by);
+                if let Some(participant) = &mut self.participant {
+                    participant.postpone(by);
+                }
+                if let Some(wizard) = &mut self.wizard {
+                    wizard.postpone(by);
+                }
+            }
+            SessionEffect::Close => {}
+        }
+    }
+
+    fn fire_timer(&mut self, now: SessionTime) {
+        let Some(timer) = self.timers.take_first() else { return };
+        let kitchen = self.session().kitchen.clone();
+        let event = match timer {
+            Timer::ClearOrder(order) => Event::OrderCleared { order: kitchen.location(order).name.clone() },
+            Timer::NewOrder(order) => {
+                let dish = kitchen.dish(self.orders.draw()).name.clone();
+                Event::OrderShown { order: kitchen.location(order).name.clone(), dish }
+            }
+            Timer::EndSignal => Event::SignalEnded { reason: SignalEndReason::Elapsed },
+            Timer::EndTrial => Event::TrialEnded { reason: TrialEndReason::Time },
+            Timer::EndTrialByOrders => Event::TrialEnded { reason: TrialEndReason::Orders },
+            Timer::EndTrialByPresses => Event::TrialEnded { reason: TrialEndReason::Presses },
+            Timer::HumanWaits => Event::HumanWaits { silent_ns: silence_so_far(self.session(), now) },
+            Timer::ReviewOffer => return self.review_offer(now),
+        };
+        self.record_own(now, event);
+    }
+}
+
+impl SessionEngine {
+    fn check_criterion(&mut self, now: SessionTime) {
+        let session = self.session();
+        let Some((step, protocol)) = session.step() else { return };
+        let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
+        if !matches!(session.phase, TrialPhase::Over(_)) || session.aborted.is_some() {
+            return;
+        }
+        let (orders, presses) = (session.served.len() as u32, session.presses[Agent::Human.index()]);
+        let errors = self.follower.errors() as u32;
+        let met = criterion.is_met(orders, presses, errors);
+        self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
+    }
+
+    fn end_outdated_proposal(&mut self, now: SessionTime) {
+        if self.session().is_running() && proposals::is_outdated(self.session()) {
+            self.record_own(now, Event::SignalEnded { reason: SignalEndReason::Outdated });
+        }
+    }
+
+    fn measure_calibration(&mut self, now: SessionTime) {
+        let session = self.session();
+        let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
+        if let Some(event) = event {
+            self.record_own(now, Event::Calibration(event));
+        }
+    }
+
+    /// The signal that the assistant sends because of its recommendation. An error gets one proposal, as long as it is
+    /// the human's last press.
+    fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
+        let is_last = |error: u64| self.judged().last().is_some_and(|press| press.seq == error);
+        let proposal =
+            advice.proposal.as_ref().filter(|one| is_last(one.error) && !proposals::was_made(self.session()));
+        let proposal = proposal.map(|one| Signal::Propose(one.presses.clone()));
+        let signal = advice.best.clone().or(proposal)?;
+        let event = Event::SignalShown { by: Sender::Assistant, signal, offer: None };
+        admit(self.session(), &event).is_ok().then_some(event)
+    }
+}
+
+/// Pending timers in the order in which they are due; timers due at once keep the order in which they were set.
+#[derive(Clone, Debug, Default)]
+struct TimerQueue {
+    pending: BTreeSet<(SessionTime, u64, Timer)>,
+    set_so_far: u64,
+}
+
+impl TimerQueue {
+    fn set(&mut self, time: SessionTime, timer: Timer) {
+        self.pending.insert((time, self.set_so_far, timer));
+        self.set_so_far += 1;
+    }
+
+    fn cancel(&mut self, timer: Timer) {
+        self.pending.retain(|(_, _, pending)| *pending != timer);
+    }
+
+    fn cancel_all(&mut self) {
+        self.pending.clear();
+    }
+
+    fn postpone(&mut self, by: SessionTime) {
+        let pending = std::mem::take(&mut self.pending);
+        self.pending = pending.into_iter().map(|(time, serial, timer)| (time + by, serial, timer)).collect();
+    }
+
+    fn next_due(&self) -> Option<SessionTime> {
+        self.pending.first().map(|(time, _, _)| *time)
+    }
+
+    fn take_first(&mut self) -> Option<Timer> {
+        self.pending.pop_first().map(|(_, _, timer)| timer)
     }
 }

@@ -2,30 +2,28 @@
 
 use serde::Serialize;
 
-use super::follower::SessionFollower;
-use super::wizard_log::clock_at;
 use crate::TimelineEvent;
+use crate::follower::SessionFollower;
 use crate::history::wording;
+use crate::wizard_log::clock_at;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Agent;
 
-/// One error of the human in a list of errors for raters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedError {
-    /// Number of the error in the recording, from 1.
+    /// From 1.
     pub error: u64,
     /// Sequence number of the press in the log.
     pub press: u64,
-    /// Time of the press on the trial's clock, in seconds.
+    /// On the trial's clock.
     pub time_s: f64,
-    /// The button that was pressed in error, in words.
     pub button: String,
-    /// Whether the erroneous press changed the kitchen.
+    /// Whether the press changed the kitchen.
     pub effective: bool,
 }
 
 impl ListedError {
-    /// The errors of the human in a recording that was read to its end, in order.
+    /// Of a recording that was read to its end.
     pub fn all(follower: &SessionFollower) -> Vec<ListedError> {
         let session = &follower.session;
         let presses = session.timeline.iter().filter_map(|entry| match entry.what {
@@ -45,12 +43,12 @@ impl ListedError {
         errors.enumerate().map(listed).collect()
     }
 
-    /// Time of the error as the console shows it: "1:34".
+    /// As the console shows it: "1:34".
     pub fn clock(&self) -> String {
         SessionTime::from_secs_f64(self.time_s).to_string()
     }
 
-    /// The erroneous press in words: "take rice", "cooking pot (no effect)".
+    /// "take rice", "cooking pot (no effect)".
     pub fn words(&self) -> String {
         match self.effective {
             true => self.button.clone(),

@@ -2,81 +2,88 @@
 
 use std::fmt;
 
-/// An optional part of the crate; each is a Cargo feature of this name.
+use crate::SessionSpec;
+use crate::settings::{ArmKind, ParticipantKind};
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
-    /// The server of the participant's display.
     Display,
-    /// Export of recordings as MCAP files.
     Mcap,
-    /// The simulated robot arm that presses buttons in a physics simulation, and its kinematics.
     Physics,
-    /// Streams of a session for Rerun's 3D viewers.
     Rerun,
 }
 
 impl Feature {
-    /// All optional parts of the crate.
     pub const ALL: [Feature; 4] = [Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
 
-    /// Whether this build of the program contains the optional part.
-    pub const fn is_built(self) -> bool {
+    /// Name in Cargo, whether this build has it, name in words, and what a build without it cannot do.
+    const fn about(self) -> (&'static str, bool, &'static str, &'static str) {
         match self {
-            Feature::Display => cfg!(feature = "display"),
-            Feature::Mcap => cfg!(feature = "mcap"),
-            Feature::Physics => cfg!(feature = "physics"),
-            Feature::Rerun => cfg!(feature = "rerun"),
+            Feature::Display => (
+                "display",
+                cfg!(feature = "display"),
+                "the participant's display",
+                "the participant's display cannot be served",
+            ),
+            Feature::Mcap => ("mcap", cfg!(feature = "mcap"), "MCAP", "no recording is exported as MCAP"),
+            Feature::Physics => (
+                "physics",
+                cfg!(feature = "physics"),
+                "physics",
+                "the arm cannot be simulated, and nothing checks that it reaches its buttons",
+            ),
+            Feature::Rerun => {
+                ("rerun", cfg!(feature = "rerun"), "Rerun", "no stream for Rerun's viewers is written or served")
+            }
         }
     }
 
-    /// The name of the optional part's Cargo feature.
-    pub const fn key(self) -> &'static str {
-        match self {
-            Feature::Display => "display",
-            Feature::Mcap => "mcap",
-            Feature::Physics => "physics",
-            Feature::Rerun => "rerun",
-        }
-    }
-
-    /// What a build without this optional part cannot do, in words.
+    /// What a build without it cannot do.
     pub const fn lacks(self) -> &'static str {
-        match self {
-            Feature::Display => "the participant's display cannot be served",
-            Feature::Mcap => "no recording is exported as MCAP",
-            Feature::Physics => "the arm cannot be simulated, and nothing checks that it reaches its buttons",
-            Feature::Rerun => "no stream for Rerun's viewers is written or served",
-        }
+        let (.., lacks) = self.about();
+        lacks
     }
 
-    /// Checks that this build contains the optional part.
-    ///
-    /// # Errors
-    /// This build does not contain the part.
     pub const fn require(self) -> Result<(), MissingFeature> {
-        if self.is_built() { Ok(()) } else { Err(MissingFeature(self)) }
+        let (_, is_built, ..) = self.about();
+        if is_built { Ok(()) } else { Err(MissingFeature(self)) }
     }
 }
 
 impl fmt::Display for Feature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Feature::Display => "the participant's display",
-            Feature::Mcap => "MCAP",
-            Feature::Physics => "physics",
-            Feature::Rerun => "Rerun",
-        })
+        let (_, _, title, _) = self.about();
+        formatter.write_str(title)
     }
 }
 
-/// Error: this build does not contain the optional part (Cargo feature) that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("built without {0}: {lacks}", lacks = .0.lacks())]
 pub struct MissingFeature(pub Feature);
 
 impl MissingFeature {
-    /// How to get a build that contains the missing part, in words.
+    /// How to get a build that contains it.
     pub fn remedy(self) -> String {
-        format!("cargo build --features {}, or a build with the default features", self.0.key())
+        let (key, ..) = self.0.about();
+        format!("cargo build --features {key}, or a build with the default features")
+    }
+}
+
+impl SessionSpec {
+    /// Whether this build can run the session without a console.
+    pub const fn require_built(&self) -> Result<(), MissingFeature> {
+        match self.robot.arm {
+            ArmKind::Physics => Feature::Physics.require(),
+            ArmKind::Timed => Ok(()),
+        }
+    }
+
+    /// Whether this build can run the session at the console.
+    pub fn require_built_live(&self) -> Result<(), MissingFeature> {
+        self.require_built()?;
+        match self.participant.kind {
+            ParticipantKind::Display => Feature::Display.require(),
+            ParticipantKind::Keyboard | ParticipantKind::Simulated => Ok(()),
+        }
     }
 }

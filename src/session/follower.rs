@@ -1,10 +1,10 @@
 //! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
 //! Live sessions and replays derive these with the same code.
 
-use crate::apply::ApplyError;
+use crate::apply::{ApplyError, apply};
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
-use crate::{AppliedEvent, Event, Session, TimestampedEvent, apply};
+use crate::{AppliedEvent, Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::repeats::SignalRepeatRule;
@@ -24,46 +24,38 @@ use tomcom_core::mind::recorded_estimate::RecordedEstimate;
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
 pub struct SessionFollower {
-    /// The session after the last applied event.
     pub session: Session,
-    /// Every press of the human so far, with its judgement (error or not, and why).
     pub judged: Vec<JudgedPress>,
-    /// False belief episodes, as far as the participant's beliefs are known.
+    /// As far as the participant's beliefs are known.
     pub episodes: FalseBeliefTracker,
-    /// The belief filter, which estimates the human's belief.
     pub filter: BeliefFilter,
-    /// Rule that says which signals the assistant is not to repeat yet.
     pub repeats: SignalRepeatRule,
-    /// Computing times of updates of the belief estimate; `None` if the times are not measured.
+    /// `None` if computing times are not measured.
     pub timing: Option<InferenceTiming>,
-    /// The cost to go that judges presses; its caches can serve the next session in the same kitchen.
+    /// Judges presses; its caches can serve the next session in the same kitchen.
     pub cost: CostToGo,
     judge: PressJudge,
     attributor: ErrorAttributor,
-    /// Session time of the last update of the belief estimate.
+    /// Last update of the belief estimate.
     updated_at: Option<SessionTime>,
     /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
-    /// Cause that a simulated participant recorded in advance for its next press, in case the press is an error.
+    /// Cause that a simulated participant recorded in advance, in case its next press is an error.
     told_cause: Option<ErrorCause>,
-    /// Whether the follower attributes errors to their causes.
     finds_causes: bool,
-    /// Whether the follower updates the belief estimate.
     estimates: bool,
-    /// The belief estimate before the last counted press of the human.
+    /// Before the last counted press of the human.
     pub estimated: Option<PressBeliefEstimate>,
-    /// The belief estimate at the beginning of the last freeze probe.
+    /// At the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
 }
 
 /// The belief estimate when the task stopped for a freeze probe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbedEstimate {
-    /// Number of the freeze probe in the trial.
+    /// Number of the probe in the trial.
     pub probe: u32,
-    /// True state of the kitchen when the task stopped.
     pub state: State,
-    /// The estimate of the human's belief when the task stopped.
     pub belief: DirichletBelief,
 }
 
@@ -72,41 +64,36 @@ pub struct ProbedEstimate {
 pub struct PressBeliefEstimate {
     /// Sequence number of the press.
     pub press: u64,
-    /// True state of the kitchen before the press.
     pub state: State,
-    /// The estimate of the human's belief before the press.
     pub belief: DirichletBelief,
-    /// Likelihood of the press under the estimate before the press, and quality of the belief samples behind it.
+    /// Likelihood of the press, and quality of the belief samples behind it.
     pub evidence: PressEvidence,
 }
 
 impl PressBeliefEstimate {
-    /// The belief estimate before the press in the form that the log records.
+    /// As the log records it.
     pub fn witness(&self, kitchen: &Kitchen) -> RecordedEstimate {
         RecordedEstimate::new(kitchen, self.press, &self.belief, self.state, self.evidence)
     }
 }
 
-/// Computing times of single updates of the belief estimate, in nanoseconds.
+/// Computing times of single updates of the belief estimate.
 #[derive(Clone, Debug)]
 pub struct InferenceTiming {
-    /// A monotonic clock of the caller, in nanoseconds.
+    /// A monotonic clock of the caller.
     now_ns: fn() -> u64,
-    /// Computing times of updates by a gaze sample, in nanoseconds.
     pub gaze_ns: Vec<u64>,
-    /// Computing times of updates by a press of the human or the robot, in nanoseconds.
+    /// Of updates by a press of human or robot.
     pub action_ns: Vec<u64>,
 }
 
 impl InferenceTiming {
-    /// Starts measuring computing times with the caller's monotonic clock, in nanoseconds.
     pub fn with_clock(now_ns: fn() -> u64) -> InferenceTiming {
         InferenceTiming { now_ns, gaze_ns: Vec::new(), action_ns: Vec::new() }
     }
 }
 
 impl SessionFollower {
-    /// The follower of a session, before the session's first event.
     pub fn new(session: Session, cost: CostToGo) -> SessionFollower {
         let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
         let judge = PressJudge::new(kitchen.clone());
@@ -135,22 +122,18 @@ impl SessionFollower {
         }
     }
 
-    /// The belief estimate at `now`, updated by the time of unknown gaze since the last event.
-    pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
+    /// Updated by the time of unknown gaze since the last event.
+    pub(crate) fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
         self.filter.at(now, &mut self.cost)
     }
 
-    /// The belief estimate from which a request for advice at `now` starts: as expected once the participant has read
-    /// the signal on the display. Most requests follow an event that has just updated the estimate.
-    pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
+    /// The estimate from which a request for advice starts: as expected once the participant has read the signal on the
+    /// display. Most requests follow an event that has just updated the estimate.
+    pub(crate) fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         let is_current = self.updated_at.is_some_and(|updated| updated >= now);
         self.filter.foreseen(now, is_current, &mut self.cost)
     }
 
-    /// Applies the next event to the session, and updates judgements and belief estimate.
-    ///
-    /// # Errors
-    /// The errors of [`apply()`].
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
         let applied = apply(&mut self.session, stamped)?;
         match (&stamped.event, applied.change) {
@@ -183,7 +166,6 @@ impl SessionFollower {
         Ok(applied)
     }
 
-    /// Updates the belief estimate by an event that has just been applied.
     fn estimate(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(what) = self.observed(stamped, change).filter(|_| self.estimates) else { return };
         let observation = Observation { time: stamped.time, what };
@@ -209,8 +191,7 @@ impl SessionFollower {
         }
     }
 
-    /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after gaze
-    /// samples.
+    /// Gaze samples are skipped, since no advice is requested after them.
     fn remember(&mut self, stamped: &TimestampedEvent) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         if let Some(EndedSignal { location, read }) = self.filter.take_signal_over() {
@@ -225,7 +206,7 @@ impl SessionFollower {
         self.repeats.update(kitchen, state, self.filter.belief());
     }
 
-    /// The observation that the belief filter receives for an event; `None` if the event is no evidence.
+    /// `None` if the event is no evidence.
     pub fn observed(&self, stamped: &TimestampedEvent, change: &KitchenChange) -> Option<ObservedEvidence> {
         match *change {
             KitchenChange::TrialStarted { after, .. } => return Some(ObservedEvidence::Started { state: after }),
@@ -274,7 +255,7 @@ impl SessionFollower {
         }
     }
 
-    /// The locations about which a freeze probe asked, as a bit set.
+    /// The locations about which a probe asked, as a bit set.
     fn asked_about(&self, probe: &StartedProbe) -> u32 {
         let asked = probe.questions.iter().take(probe.shown.map_or(0, |shown| shown + 1));
         let locations = asked.filter_map(|question| match &question.about {
@@ -284,18 +265,17 @@ impl SessionFollower {
         locations.fold(0, |bits, location| bits | 1 << location.index())
     }
 
-    /// This follower without attribution of errors to causes, because attribution takes too long in a running session.
+    /// Without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> SessionFollower {
         SessionFollower { finds_causes: false, ..self }
     }
 
-    /// This follower with the belief estimate as it is now, because updates take most of the time of a session of which
-    /// only presses and errors count.
+    /// With the estimate as it is now: updates take most of the time of a session of which only presses and errors
+    /// count.
     pub fn without_estimate(self) -> SessionFollower {
         SessionFollower { estimates: false, ..self }
     }
 
-    /// Judges a press of the human that has just been applied, and attributes an error to its cause.
     fn human_pressed(&mut self, stamped: &TimestampedEvent, press: &Press) {
         let kitchen = self.session.kitchen.clone();
         let number = self.session.all_presses();
@@ -313,12 +293,11 @@ impl SessionFollower {
         self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
     }
 
-    /// Number of the human's presses so far whose judgement rests on a cost to go that is not proven.
+    /// Number of judged presses whose cost to go is not proven.
     pub fn unproven(&self) -> usize {
         self.judged.iter().filter(|press| !press.verdict.is_proven).count()
     }
 
-    /// The number of the human's errors so far.
     pub fn errors(&self) -> usize {
         self.judged.iter().filter(|press| press.verdict.error).count()
     }

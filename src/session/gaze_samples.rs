@@ -1,21 +1,54 @@
-//! The stream of gaze samples in a session: how a sample changes the session's state, and faults of the stream.
+//! The participant's gaze in a session: how a sample changes its state (sampling rate, faults, the locations looked
+//! at).
 
-use super::accuracy_check;
-use super::gaze_status::{GazeStatus, RateMeasurement};
-use super::session_state::Session;
+use crate::{Session, gaze_check};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::gaze::quality::{GazeFault, GazeFaultDetector};
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::LocationId;
+use tomcom_core::kitchen::state::MAX_LOCATIONS;
 
-/// A gap between gaze samples of this length makes the sampling rate be measured anew, in seconds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GazeStatus {
+    /// Arrival of the latest sample, usable or not.
+    pub arrived: Option<SessionTime>,
+    /// The newest usable sample on the display, and its arrival.
+    pub last: Option<(SessionTime, GazeSample)>,
+    /// When the last sample inside each location's area was taken: the participant's last look there.
+    pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
+    /// Locations in whose areas the latest sample lies, as a bit set; empty if it is faulty or unusable, or was taken
+    /// while the kitchen was not on the display.
+    pub here: u32,
+    /// All samples, also those counted in `unusable`.
+    pub samples: u64,
+    /// Samples with too low a confidence or outside of the display.
+    pub unusable: u64,
+    pub judge: GazeFaultDetector,
+    /// Of the latest sample.
+    pub fault: Option<GazeFault>,
+    /// Measured over about a second: see [`Session::gaze_hz`].
+    pub(crate) rate_hz: f64,
+    pub(crate) measured: Option<RateMeasurement>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RateMeasurement {
+    /// Arrival of the first sample.
+    pub since: SessionTime,
+    /// When the first sample was taken.
+    pub first_taken: SessionTime,
+    pub samples: u32,
+}
+
+/// A gap of this length makes the rate be measured anew.
 const GAP_S: f64 = 0.5;
-/// Time over which the sampling rate is measured, in seconds; the first measurement counts from [`FIRST_S`] on.
+/// Time over which the rate is measured; the first measurement counts from [`FIRST_S`] on.
 const MEASURED_S: f64 = 1.0;
 const FIRST_S: f64 = 0.05;
 
-/// Applies a gaze sample: counts it, updates the sampling rate, and records which location the participant looks at. A
-/// look counts by the time at which the sample was taken: a sample that arrives after a change may have been taken before.
-pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
+/// A look counts by the time at which the sample was taken: a sample that arrives after a change may have been taken
+/// before.
+pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let status = &mut session.gaze;
     status.samples += 1;
     measure_rate(status, now, sample.taken(now));
@@ -25,7 +58,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
         return;
     }
     let taken = sample.taken(now);
-    accuracy_check::gaze(session, taken, sample);
+    gaze_check::gaze(session, taken, sample);
     let sample = session.corrected(sample);
     let status = &mut session.gaze;
     if !sample.is_on_display() || sample.confidence < MIN_CONFIDENCE {
@@ -46,28 +79,26 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
 }
 
 impl Session {
-    /// Whether a gaze sample that arrives now and was taken at `taken` can be a look at the kitchen: during a freeze probe
-    /// the kitchen is not on the display.
-    pub fn had_kitchen_on_display(&self, taken: SessionTime) -> bool {
+    /// Whether a sample taken at `taken` can be a look at the kitchen: during a freeze probe it is not on the display.
+    pub(crate) fn had_kitchen_on_display(&self, taken: SessionTime) -> bool {
         !self.is_frozen() && self.probes.ended_at.is_none_or(|ended| taken >= ended)
     }
 
-    /// Whether the latest gaze sample is a look at this location's present content: inside the location's area, and taken
-    /// since the content last changed.
+    /// Whether the latest sample is a look at the location's present content: taken since the content last changed.
     pub fn sees_present_content(&self, location: LocationId) -> bool {
         let is_here = self.gaze.here & 1 << location.index() != 0;
         is_here && self.gaze.looked_at[location.index()].is_some_and(|taken| taken >= self.changed_at[location.index()])
     }
 
-    /// The location in whose area the latest gaze sample lies.
+    /// The location in whose area the latest sample lies.
     pub fn looked_at(&self) -> Option<LocationId> {
         let here = self.gaze.here;
         (here != 0).then(|| LocationId(here.trailing_zeros() as u8))
     }
 }
 
-/// Updates the sampling rate by a sample: the number of samples by the time in which they arrived, or were taken, if that
-/// is longer. Samples that arrive together say nothing else.
+/// Number of samples by the time in which they arrived, or were taken, if that is longer. Samples that arrive together
+/// say nothing else.
 fn measure_rate(status: &mut GazeStatus, now: SessionTime, taken: SessionTime) {
     let is_gap = status.arrived.is_none_or(|last| now.secs_since(last) >= GAP_S);
     status.arrived = Some(now);
@@ -86,12 +117,11 @@ fn measure_rate(status: &mut GazeStatus, now: SessionTime, taken: SessionTime) {
     measured.samples += 1;
 }
 
-/// Names of kinds of faulty gaze samples.
-pub(super) const MALFORMED: &str = "malformed";
-pub(super) const TOO_FREQUENT: &str = "too frequent";
-pub(super) const DUPLICATE: &str = "duplicate";
+pub(crate) const MALFORMED: &str = "malformed";
+pub(crate) const TOO_FREQUENT: &str = "too frequent";
+pub(crate) const DUPLICATE: &str = "duplicate";
 
-/// Kinds of faulty gaze samples that have occurred so far, each with its number of samples.
+/// Kinds of faulty samples so far, each with its number.
 pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
     let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
     let all = [

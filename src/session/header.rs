@@ -1,74 +1,62 @@
-//! The header of a log: its first line, with everything that a replay needs.
+//! The header of a log: its first line, with everything that a replay needs; and the correction of a code that was
+//! typed wrong when the session began.
 
 use serde::{Deserialize, Serialize};
 
-use super::code_correction::CodeCorrection;
-use super::settings::SessionSpec;
+use crate::SessionSpec;
 use tomcom_core::base::time::SessionTime;
 
-/// The name of the log's format, as every log's header has it.
 pub const FORMAT: &str = "tomcom-session";
-/// The version of the log's format that this program writes and reads.
+/// The version that this program writes and reads.
 pub const VERSION: u32 = 3;
 
-/// The header of a log: its first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogHeader {
-    /// Name of the log's format, always [`FORMAT`].
+    /// Always [`FORMAT`].
     pub format: String,
-    /// The version of the log's format.
     pub version: u32,
-    /// The version of the program that wrote the log.
+    /// Version of the program that wrote the log.
     pub program: String,
-    /// Index of the recorded trial: with the same seed, another index gives other orders and another participant.
+    /// With the same seed, another trial has other orders and another participant.
     pub trial: u64,
-    /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or the session time
-    /// of [`PreviousPart`]. Only live sessions have this time.
+    /// Wall clock time (UTC, RFC 3339) at session time 0, or at that of [`PreviousPart`]; of live sessions only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub started: Option<String>,
-    /// The earlier part of the session that this recording continues.
+    /// The part of the session that this recording continues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continues: Option<PreviousPart>,
-    /// Name of the recording whose trial this recording repeats.
+    /// Name of the recording whose trial this one repeats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub redoes: Option<String>,
-    /// All settings of the session in use, including the seed.
     pub session: SessionSpec,
     /// What differs from the named human model, in words: `decision.tau = 8.0, not 4.0`.
     pub human_model_differs: Vec<String>,
-    /// The layout file of the kitchen, with its text.
     pub layout: RecordedFile,
-    /// The recipe file of the kitchen, with its text.
     pub recipes: RecordedFile,
-    /// The file with the wizard's key bindings, if the session had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keys: Option<RecordedFile>,
-    /// The correction of the participant's code that holds, from a file beside the log; `session` has the corrected
-    /// code.
+    /// From a file beside the log; `session` has the corrected code.
     #[serde(skip)]
     pub correction: Option<CodeCorrection>,
 }
 
-/// The previous part of a recording, after which this recording continues the session.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreviousPart {
-    /// Name of the previous part's folder, in the same parent folder.
+    /// Name of its folder, in the same parent folder.
     pub recording: String,
-    /// Number of events in all earlier parts, which is the sequence number of the first event in this part.
+    /// In all earlier parts: the sequence number of this part's first event.
     pub events: u64,
-    /// Session time at which this part continues the session.
+    /// Session time at which this part continues.
     pub t_ns: SessionTime,
 }
 
-/// A text file of a session: its path and its complete text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedFile {
-    /// Path from which the file was read, as messages show it.
+    /// As messages show it.
     pub path: String,
-    /// The complete text of the file.
     pub text: String,
 }
 
@@ -78,7 +66,6 @@ impl LogHeader {
         self.correction.as_ref().map_or(&self.session.participant.code, |correction| &correction.before)
     }
 
-    /// The header for the log of a session that this program runs.
     pub fn new(session: SessionSpec, trial: u64, layout: RecordedFile, recipes: RecordedFile) -> LogHeader {
         let program = env!("CARGO_PKG_VERSION").to_string();
         let (format, version) = (FORMAT.to_string(), VERSION);
@@ -97,5 +84,27 @@ impl LogHeader {
             keys: None,
             correction: None,
         }
+    }
+}
+
+/// A later decision that the recording belongs to another participant than its log says.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CodeCorrection {
+    pub before: String,
+    pub after: String,
+    pub why: String,
+    /// Account on the computer from which the code was corrected; empty if it is not known.
+    pub by: String,
+    /// UTC, RFC 3339.
+    pub at: String,
+}
+
+impl CodeCorrection {
+    /// "P02 is P03 (typed wrong; lab, 2026-03-14T10:00:00Z)".
+    pub fn in_words(&self) -> String {
+        let CodeCorrection { before, after, why, by, at } = self;
+        let by = if by.is_empty() { String::new() } else { format!("{by}, ") };
+        format!("{before} is {after} ({why}; {by}{at})")
     }
 }

@@ -1,11 +1,14 @@
-//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
+//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next; and the shards of a
+//! simulation.
 
-use super::engine::SessionEngine;
+use std::str::FromStr;
+
+use crate::engine::SessionEngine;
 use crate::protocol::ProtocolEvent;
 use crate::{Event, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
-/// Time after which a simulated attendant resumes an arm that has stopped by itself, in seconds.
+/// Time after which a simulated attendant resumes an arm that has stopped by itself.
 const LOOKS_S: f64 = 3.0;
 
 /// Stands in for a wizard in simulations: resumes an arm that has stopped by itself.
@@ -15,7 +18,7 @@ pub struct SimulatedRobotOperator {
 }
 
 impl SimulatedRobotOperator {
-    /// Raises the next internal event of a running session, and resumes the arm if it has been stopped for a while.
+    /// Raises the next internal event, and resumes the arm if it has been stopped for a while.
     pub fn step(&mut self, engine: &mut SessionEngine) -> Vec<TimestampedEvent> {
         let now = engine.next_due().unwrap_or(engine.session().time);
         let mut events = engine.fire();
@@ -27,10 +30,7 @@ impl SimulatedRobotOperator {
     }
 }
 
-/// Runs a whole session of one trial and passes every event to `record`.
-///
-/// # Errors
-/// The first error of `record`; the session stops there.
+/// Runs a session of one trial and passes every event to `record`, until its first error.
 pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
     let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
     if let Some(phase) = engine.session().next_phase() {
@@ -51,4 +51,30 @@ pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEve
     }
     let end = engine.session().time;
     engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)
+}
+
+const MAX_SHARDS: u64 = 100_000;
+
+/// Part `number` (from 1) of `of` disjoint parts of a simulation's trials, which several computers share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SimulationShard {
+    pub number: u64,
+    pub of: u64,
+}
+
+impl SimulationShard {
+    /// All trials.
+    pub const WHOLE: SimulationShard = SimulationShard { number: 1, of: 1 };
+}
+
+impl FromStr for SimulationShard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<SimulationShard, String> {
+        let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((number, of)) if number >= 1 && number <= of && of <= MAX_SHARDS => Ok(SimulationShard { number, of }),
+            _ => Err("a part and how many there are, such as 1/8 to 8/8".to_string()),
+        }
+    }
 }

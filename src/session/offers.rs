@@ -1,14 +1,12 @@
 //! The rules of offers to the wizard: when one opens and closes, and which one the key `enter` takes.
 //!
-//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](super::Timer), and records the event
+//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](crate::Timer), and records the event
 //! of an offer that `due` returns; a replay applies the recorded events. Ages of offers are measured on the trial's
 //! clock, so offers do not grow older in a pause.
 
-use super::admit::{admit, hygiene};
-use super::event::Event;
-use super::phase::TrialPhase;
-use super::session_state::Session;
-use super::settings::{Condition, WizardVisibility};
+use crate::admit::{admit, hygiene};
+use crate::settings::{Condition, WizardVisibility};
+use crate::{Event, Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{
     GAP, HOLD, Offer, OfferCloseReason, OfferCloseThresholds, OfferKeyKind, OfferUse, OfferWorth, OfferedAdvice,
@@ -18,13 +16,12 @@ use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::communication::{Sender, Signal, unavailable};
 use tomcom_core::kitchen::OrderContent;
 
-/// Whether the recommendations of a session become offers to the wizard. An assistant that acts by itself sends its
-/// recommendation at once.
+/// An assistant that acts by itself sends its recommendation at once, without offers.
 pub fn are_made(session: &Session) -> bool {
     session.spec.trial.condition != Condition::Assistant
 }
 
-/// The event by which an offer to the wizard opens or closes now: `offer_opened`, `offer_closed`, or none.
+/// `offer_opened` or `offer_closed`, if one is due.
 pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
     match session.offers.unclosed() {
         Some(offer) => {
@@ -35,7 +32,6 @@ pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
     }
 }
 
-/// The reason for which the open offer closes now; `None` if the offer stays open.
 fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCloseReason> {
     match session.phase {
         TrialPhase::Running => {}
@@ -57,7 +53,7 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCl
     outdone(session, offer, session.advice.as_ref()?)
 }
 
-/// The reason for which the latest recommendation closes the open offer; `None` if the offer stays open.
+/// Why the latest recommendation closes the open offer.
 fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferCloseReason> {
     let signal = match &offer.advice.what {
         OfferedCommunication::Signal(signal) => signal,
@@ -78,7 +74,6 @@ fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<
     (other.net >= net + thresholds.better_by).then_some(OfferCloseReason::Replaced)
 }
 
-/// The offer to the wizard that opens now; `None` if no offer opens.
 fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     if !session.is_running() || !are_made(session) {
         return None;
@@ -103,15 +98,14 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     Some(OfferedAdvice { what: OfferedCommunication::Signal(option.signal.clone()), for_seq, worth, reason, visible })
 }
 
-/// Whether a wizard could see an offer that opens now: a console shows it or a script reads it, and the settings show
-/// recommendations.
+/// Whether a wizard could see an offer that opens now: a console shows it or a script reads it.
 fn is_visible(session: &Session) -> bool {
     let is_drawn = session.has_console && session.spec.console.visibility == WizardVisibility::Recommendation;
     is_drawn || session.spec.script_reads_offers()
 }
 
-/// The signal that an offer would propose: the best signal whose benefit exceeds its cost. If two orders want the same
-/// dish, the older order is chosen, provided that the benefit of its recipe signal exceeds the cost, too.
+/// The best signal whose benefit exceeds its cost. If two orders want the same dish, the older one is chosen, provided
+/// that the benefit of its recipe signal exceeds the cost, too.
 fn candidate<'a>(session: &Session, advice: &'a Recommendation) -> Option<&'a SignalOption> {
     let is_worth = |option: &&SignalOption| {
         option.net > 0.0 && unavailable(&session.kitchen, session.state, &option.signal).is_none()
@@ -134,24 +128,20 @@ fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), O
     Some(((session.changed_at[order.index()], index), session.state.order(order)))
 }
 
-/// Records that the wizard sent a signal: the signal of the open offer, or of the last offer while `enter` still takes
-/// it.
+/// The wizard sent the signal of the open offer, or of the last one while `enter` still takes it.
 pub(super) fn sends(session: &mut Session, now: SessionTime, signal: &Signal, is_taken: bool) {
     let how = if is_taken { OfferKeyKind::Taken } else { OfferKeyKind::OwnKey };
     let with_last = still_takes(session, now).is_some();
     session.offers.sends(signal, OfferUse { how, at: now }, with_last);
 }
 
-/// The last offer that closed, while the key `enter` can still take it.
+/// The last closed offer, while the key `enter` can still take it.
 fn still_takes(session: &Session, now: SessionTime) -> Option<&Offer> {
     session.offers.last().filter(|last| session.age(last.closed, now) <= TAKEN_AFTER).map(|last| &last.offer)
 }
 
-/// The offer to which the key `enter` refers at `now`: the open one; in the first 0.3 s of an open offer, or while none
-/// is open, the last offer if it closed at most 1.3 s ago and was not taken.
-///
-/// # Errors
-/// Why the key `enter` refers to no offer, in words for the wizard.
+/// The offer to which `enter` refers: the open one; in the first 0.3 s of an open offer, or while none is open, the
+/// last one if it closed at most 1.3 s ago and was not taken. The error is in words for the wizard.
 pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str> {
     let open = session.offers.open();
     if let Some(offer) = open.filter(|offer| session.age(offer.opened, now) >= UNREAD) {
@@ -165,10 +155,7 @@ pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str
     }
 }
 
-/// The offer that the key `enter` takes at `now`, with the event that sends its signal.
-///
-/// # Errors
-/// Why the key `enter` has no effect now, in words for the wizard.
+/// The offer that `enter` takes, with the event that sends its signal.
 pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), String> {
     if session.spec.console.visibility != WizardVisibility::Recommendation {
         return Err("recommendations are not shown in this session".to_string());
@@ -180,13 +167,12 @@ pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), Str
     Ok((offer, event))
 }
 
-/// The event by which a scripted wizard takes the offer with this sequence number, if the key `enter` would refer to it
-/// at `now`.
-pub fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<Event> {
+/// If `enter` would refer to the offer with this sequence number.
+pub(crate) fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<Event> {
     meant(session, now).ok().filter(|meant| meant.seq == offer).and_then(take)
 }
 
-/// The event that sends the signal of an offer; `None` if the offer proposes presses.
+/// `None` if the offer proposes presses.
 fn take(offer: &Offer) -> Option<Event> {
     let signal = offer.signal()?.clone();
     Some(Event::SignalShown { by: Sender::Wizard, signal, offer: Some(offer.seq) })

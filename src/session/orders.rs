@@ -2,14 +2,13 @@
 
 use rand::RngExt;
 
-use super::settings::SessionSpec;
+use crate::SessionSpec;
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::kitchen::DishId;
 
-/// Number of orders in a run: after each run, all matched lists of orders contain the same dishes.
+/// After each run of this many orders, all matched lists contain the same dishes.
 const RUN: usize = 3;
 
-/// The sequence of dishes that a trial's orders show, independent of which order location is free.
 #[derive(Clone, Debug)]
 pub struct OrderList {
     random: Stream,
@@ -17,21 +16,21 @@ pub struct OrderList {
     matched: Option<Matched>,
 }
 
-/// Matched lists of orders: blocks contain every dish of the menu once, in an order that all trials of a participant
-/// share. Each block is divided into short runs, and each trial has its own order of the dishes within a run. So two
-/// trials of a participant have the same dishes up to the last complete run.
+/// Blocks contain every dish of the menu once, in an order that all trials of a participant share. Each block is
+/// divided into short runs, within which each trial has its own order. So two trials of a participant have the same
+/// dishes up to the last complete run.
 #[derive(Clone, Debug)]
 struct Matched {
     shared: Stream,
-    /// Dishes of the present block that are still to be ordered, in reverse order.
+    /// Dishes of the present block still to be ordered, in reverse order.
     block: Vec<u8>,
-    /// Dishes of the present run that are still to be ordered, in reverse order.
+    /// Likewise, of the present run.
     run: Vec<u8>,
 }
 
 impl OrderList {
-    /// The list of ordered dishes of a trial: in a plan, matched with the participant's other trials; else independent
-    /// uniform draws. `menu` is the number of dishes.
+    /// In a plan, matched with the participant's other trials; else independent uniform draws. `menu`: number of
+    /// dishes.
     pub fn new(menu: usize, spec: &SessionSpec, trial: u64) -> OrderList {
         let seed = spec.seed;
         let matched = spec.step.as_ref().map(|step| {
@@ -42,7 +41,6 @@ impl OrderList {
         OrderList { random: stream(seed, "orders", trial), menu, matched }
     }
 
-    /// Draws the dish of the next order.
     pub fn draw(&mut self) -> DishId {
         match &mut self.matched {
             None => DishId(self.random.random_range(0..self.menu) as u8),

@@ -1,14 +1,12 @@
 //! Which codes people have: participants, raters and wizards. A code must be read as it is by every program that reads
 //! the tables, and it must be safe in names of folders and files.
 
-/// Largest number of characters of a person's code.
 const LONGEST: usize = 16;
 /// Words, in small letters, that pandas, R and spreadsheets take for a missing value, a truth value or a number.
 const WORDS: [&str; 12] = ["f", "false", "inf", "infinity", "na", "nan", "nil", "no", "none", "null", "t", "true"];
-/// Description of a valid code, for the message that refuses another one.
 pub const REMEDY: &str = "a code of a letter and up to 15 letters, digits, - and _, such as \"P07\"; never a name";
 
-/// Why a text is no code of a participant, a rater or a wizard, in words; `None` if it is one.
+/// Why a text is no code of a participant, a rater or a wizard.
 pub fn fault(code: &str) -> Option<&'static str> {
     let is_sign = |sign: char| sign.is_ascii_alphanumeric() || sign == '-' || sign == '_';
     if code.is_empty() {

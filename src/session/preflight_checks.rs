@@ -1,27 +1,65 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
-use super::condition::Condition;
-use super::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
-use super::lsl_settings::LslGazeSpec;
-use super::participant_settings::{GazeSource, ParticipantKind};
-pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
-use super::session_state::Session;
-use super::tracker::TrackerConnection;
+use serde::{Deserialize, Serialize};
+
+use crate::Session;
+use crate::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
+use crate::settings::{Condition, GazeSource, ParticipantKind};
+use crate::stream_settings::LslGazeSpec;
+use crate::tracker::TrackerConnection;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::mind::model::HumanModel;
 
-/// Sampling rate of the gaze below which short looks are missed, in Hz.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PreflightVerdict {
+    Ok,
+    /// Usable with limitations.
+    Warning,
+    /// Not usable.
+    Failed,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PreflightCheck {
+    /// What it is about: "display", "disk".
+    pub name: String,
+    pub verdict: PreflightVerdict,
+    pub found: String,
+    /// What the wizard can do about it; `None` if the verdict is ok.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<String>,
+}
+
+impl PreflightCheck {
+    /// A check that is ok gets no remedy.
+    pub fn new(
+        name: &str,
+        verdict: PreflightVerdict,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> PreflightCheck {
+        let remedy = (verdict != PreflightVerdict::Ok).then(|| remedy.into());
+        PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
+    }
+
+    pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
+        PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
+    }
+}
+
+/// Rate below which short looks are missed.
 const SLOW_HZ: f64 = 20.0;
-/// Time without a usable gaze sample after which gaze counts as missing, in seconds.
+/// Time without a usable sample after which gaze counts as missing.
 const UNUSABLE_S: f64 = 1.0;
-/// Free disk space, in bytes, below which the preflight check warns, and below which it fails; a session of 15 min
-/// takes about 10 MB.
+/// Free bytes below which the check warns, and below which it fails; a session of 15 min takes about 10 MB.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 
-/// Checks the free disk space for a recording; `None` if the system does not report it.
+/// `None` if the system does not say.
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     let remedy = "free some space, or record elsewhere with --out";
     let Some(free) = free_bytes else {
@@ -40,7 +78,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     PreflightCheck::new("free space", verdict, format!("{} MB free on the disk", free / 1_000_000), remedy)
 }
 
-/// Checks whether the trial's settings are those of the study arm that the plan prescribes; `None` outside of plans.
+/// Whether the settings are those of the study arm that the plan prescribes.
 fn condition(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let planned = spec.step.as_ref()?.arm?;
@@ -57,23 +95,20 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Says which human model the session has, and what differs from the named model, unless it is the default.
+/// How it differs from the named model, unless it is the default.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
     let human = &session.spec.human;
     (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", human.named()))
 }
 
-/// A sender of gaze that was rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RejectedGaze {
-    /// Who was rejected, and why, in words.
+    /// Who was rejected, and why.
     pub told: String,
-    /// What to do, so that the sender is not rejected.
     pub remedy: String,
 }
 
-/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a
-/// gaze accuracy check, `rejected` the sender of gaze that was rejected since the last gaze sample arrived.
+/// `check_gaze`: key that starts a gaze accuracy check; `rejected`: since the last gaze sample arrived.
 pub fn participant(
     session: &Session,
     now: SessionTime,
@@ -113,8 +148,8 @@ pub fn participant(
     checks
 }
 
-/// Checks the gaze that the session replays from this file: one check of the numbers, and one for each remark about the
-/// file. A file without any sample is refused when it is read.
+/// One check of the numbers, and one for each remark about the file. A file without any sample is refused when it is
+/// read.
 pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCheck> {
     let look = "look at the line that is named; docs/tracker-recorded.md says what is read, and how";
     let (verdict, remedy) = match found {
@@ -134,9 +169,9 @@ pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCh
 fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start the program that sends gaze to port {}", session.spec.participant.gaze_port),
-        GazeSource::Pupil => "let the participant look at the wall display; Pupil Capture needs a \
-                              calibration"
-            .to_string(),
+        GazeSource::Pupil => {
+            "let the participant look at the wall display; Pupil Capture needs a calibration".to_string()
+        }
         GazeSource::Lsl => "let the participant look at the display: the stream has no gaze".to_string(),
         GazeSource::Mouse | GazeSource::Simulated | GazeSource::File | GazeSource::None => {
             "move the pointer over the kitchen".to_string()
@@ -193,8 +228,7 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
     checks
 }
 
-/// Checks how many samples of the gaze stream are faulty. Real gaze streams have some; they are ignored, and matter only
-/// if there are many.
+/// Real gaze streams have some faulty samples; they are ignored, and matter only if there are many.
 fn stream_faults(session: &Session) -> Option<PreflightCheck> {
     let faults = faults(session);
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
@@ -215,7 +249,6 @@ fn stream_faults(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("gaze stream", verdict, found, remedy))
 }
 
-/// Checks the connection to the eye tracker, and whether it detects the display.
 fn tracker(session: &Session) -> PreflightCheck {
     let spec = &session.spec.tracker;
     let name = "eye tracker";
@@ -230,8 +263,7 @@ fn tracker(session: &Session) -> PreflightCheck {
                 None => (
                     format!("{device}, does not see \"{}\"", spec.surface),
                     format!(
-                        "keep the display tags in view and lit; define a surface \"{}\" in Capture's Surface \
-                             Tracker",
+                        "keep the display tags in view and lit; define a surface \"{}\" in Capture's Surface Tracker",
                         spec.surface
                     ),
                 ),
@@ -253,7 +285,6 @@ fn tracker(session: &Session) -> PreflightCheck {
     }
 }
 
-/// Checks the gaze stream from the Lab Streaming Layer.
 fn stream(session: &Session) -> PreflightCheck {
     let wanted = session.spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()).map_or(String::new(), LslGazeSpec::title);
     if let streams @ [_, _, ..] = &session.tracker.several_streams[..] {
@@ -271,7 +302,6 @@ fn stream(session: &Session) -> PreflightCheck {
     PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 
-/// Checks the result of the last gaze accuracy check, if there was one.
 fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
     let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
     let verdict = match accuracy_deg {

@@ -13,17 +13,14 @@
 
 use rand::RngExt;
 
-use super::probe_event::{ProbeQuestion, ProbeSubject};
-use super::probe_settings::ProbeSpec;
-use super::session_state::Session;
+use crate::Session;
+use crate::probes::{ProbeQuestion, ProbeSpec, ProbeSubject};
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
 
-/// Number of strata of aspects from which questions are drawn.
 const STRATA: usize = 4;
 
-/// Draws the questions of a freeze probe. `is_wrong` says for each state aspect whether the belief is wrong by the
-/// estimate; `None` in a blind probe.
+/// `is_wrong`: for each state aspect, whether the belief is wrong by the estimate; `None` in a blind probe.
 pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Option<&[bool]>) -> Vec<ProbeQuestion> {
     let name = format!("questions of probes in trial {}", session.trial);
     let mut random = stream(session.spec.seed, &name, u64::from(probe));
@@ -51,7 +48,7 @@ pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Opti
     questions
 }
 
-/// Draws a question about what happens next: about the next served order, if there is an order, or about the robot.
+/// About the next served order, if there is an order, or about the robot.
 fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     let kitchen = &session.kitchen;
     let is_order = |&order: &LocationId| matches!(session.state.order(order), OrderContent::Dish(_));
@@ -66,8 +63,7 @@ fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     ProbeQuestion { about, choices, inclusion }
 }
 
-/// All possible answers to a probe's question, by their names in the log; none, if the kitchen does not have what the
-/// question is about.
+/// All possible answers, by their names in the log; none if the kitchen does not have what the question is about.
 fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
     match about {
         ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. } => {
@@ -80,7 +76,7 @@ fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
     }
 }
 
-/// Number of the stratum to which a state aspect belongs, from 0.
+/// From 0.
 fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
     let is_current =
         |dish| session.kitchen.orders.iter().any(|&order| session.state.order(order) == OrderContent::Dish(dish));
@@ -92,8 +88,7 @@ fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
     }
 }
 
-/// The share of each state aspect in a probe's questions: strata that are not empty have equal shares, and so have the
-/// aspects within a stratum.
+/// Strata that are not empty have equal shares, and so have the aspects within a stratum.
 fn stratum_shares(strata: &[usize]) -> Vec<f64> {
     let mut sizes = [0_usize; STRATA];
     strata.iter().for_each(|&stratum| sizes[stratum] += 1);
@@ -148,7 +143,7 @@ fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
     drawn
 }
 
-/// The question about a state aspect, with its choices in random order.
+/// With its choices in random order.
 fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream) -> ProbeQuestion {
     let aspect = &kitchen.aspects[id.index()];
     let about = match aspect.kind {
@@ -161,8 +156,7 @@ fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream
     ProbeQuestion { about, choices, inclusion: (inclusion * 1e9).round() / 1e9 }
 }
 
-/// The state aspect that a probe's question is about; none if the question is about what happens next, or about
-/// something that the kitchen does not have.
+/// `None` if the question is about what happens next, or about something that the kitchen does not have.
 pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     match about {
         ProbeSubject::Location { location } => kitchen.location_named(location).map(AspectId::of_location),
@@ -174,7 +168,7 @@ pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     }
 }
 
-/// Whether a recorded question of a probe fits this kitchen, with all its choices.
+/// Whether a recorded question fits this kitchen, with all its choices.
 pub(super) fn fits(kitchen: &Kitchen, question: &ProbeQuestion) -> bool {
     let is_chance = question.inclusion > 0.0 && question.inclusion <= 1.0;
     let labels = labels(kitchen, &question.about);

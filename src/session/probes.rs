@@ -1,44 +1,422 @@
-//! The rules of freeze probes: when one is due, which of its events a session accepts, and what they change.
+//! Freeze probes: when one is due, which of its events a session accepts, and what they change.
 //!
-//! A running session asks [`upcoming`] after every event and records the event of a probe that is due; a replay applies
-//! the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which stands
-//! still while the wizard pauses the probe.
+//! A running session asks [`upcoming`] after every event and records the event of a probe that is due; a replay
+//! applies the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which
+//! stands still while the wizard pauses the probe.
 
-use super::event::{Event, TimestampedEvent};
-use super::phase::TrialPhase;
-pub use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use super::probe_sampling;
-pub use super::probe_schedule::{ScheduledProbe, of_trial};
-use super::probe_schedule::{draw, requested_uses_estimate};
-use super::probe_settings::ProbeSpec;
-pub use super::probe_state::{ProbeAnswer, StartedProbe, TrialProbes, WaitingProbe};
-use super::session_state::Session;
-use super::timeline_entry::TimelineEvent;
-use super::trial_clock;
+use rand::RngExt;
+use serde::{Deserialize, Serialize};
+
+use crate::admit::unless;
+use crate::apply::{pause_clock, resume_clock};
+use crate::settings::SettingError;
+use crate::wall_display::AnswerDevice;
+use crate::{Event, Session, SessionSpec, TimelineEvent, TimestampedEvent, TrialPhase, probe_sampling};
+use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Kitchen;
 
-/// Time between the freeze of the task and the first question, in seconds: the kitchen disappears from the display
-/// before any question is shown.
+/// `[probes]` of a session file; without it there are no freeze probes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ProbeSpec {
+    /// Number of scheduled probes.
+    pub per_trial: u32,
+    /// Least time before the first probe and between two, on the trial's clock.
+    pub apart_s: f64,
+    /// Time after a signal or a probe in which none begins, on the trial's clock.
+    pub after_signal_s: f64,
+    /// Longest time for which a probe waits while it may not begin, on the trial's clock; then it is cancelled.
+    pub wait_s: f64,
+    /// Time for all questions of a probe.
+    pub limit_s: f64,
+    /// Count-down before the task continues.
+    pub count_down_s: f64,
+    pub least_questions: u32,
+    pub most_questions: u32,
+    /// Share of blind probes, whose questions are chosen without the belief estimate.
+    pub blind_share: f64,
+    /// Least inclusion probability of any question.
+    pub least_inclusion: f64,
+    /// Probability, for the belief filter, that the participant looks at a place because a question was about it.
+    pub teaches: f64,
+    /// Whether the participant also reports the confidence in each answer.
+    pub confidence: bool,
+    /// Whether a probe can also ask what happens next (level 2 of situation awareness).
+    pub level_2: bool,
+    /// Names of locations, and recipes as "recipe of DISH", about which nothing is asked.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub leave_out: Vec<String>,
+}
+
+impl Default for ProbeSpec {
+    fn default() -> Self {
+        ProbeSpec {
+            per_trial: 4,
+            apart_s: 60.0,
+            after_signal_s: 10.0,
+            wait_s: 15.0,
+            limit_s: 25.0,
+            count_down_s: 3.0,
+            least_questions: 2,
+            most_questions: 4,
+            blind_share: 0.5,
+            least_inclusion: 0.05,
+            teaches: 0.0,
+            confidence: false,
+            level_2: false,
+            leave_out: Vec::new(),
+        }
+    }
+}
+
+impl ProbeSpec {
+    pub(crate) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
+        let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
+        if least_questions > most_questions {
+            let found = format!("least_questions = {least_questions}, and most_questions = {most_questions}");
+            return Err(SettingError::new("probes.least_questions", found, "no more than most_questions"));
+        }
+        let needs_s = f64::from(per_trial) * apart_s + wait_s;
+        if per_trial > 0 && needs_s > trial_s {
+            let found = format!(
+                "per_trial = {per_trial}, which takes {needs_s} s with apart_s = {apart_s} and wait_s = {wait_s}, in a trial of \
+                 {trial_s} s"
+            );
+            let remedy = "fewer probes, a smaller apart_s under [probes], or more seconds under [trial]";
+            return Err(SettingError::new("probes.per_trial", found, remedy));
+        }
+        Ok(())
+    }
+
+    /// The kitchen must have what the settings name, and enough state aspects for the questions.
+    pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
+        let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
+        if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
+            let found = format!("leave_out = \"{name}\", which the kitchen does not have");
+            let remedy = "names of the layout's locations, or \"recipe of DISH\"";
+            return Err(SettingError::new("probes.leave_out", found, remedy));
+        }
+        let asked = kitchen.aspects.iter().filter(|aspect| self.asks_about(&aspect.name, aspect.labels.len())).count();
+        if (self.most_questions as usize) > asked {
+            let found =
+                format!("most_questions = {}, and {asked} locations and recipes to ask about", self.most_questions);
+            return Err(SettingError::new("probes.most_questions", found, "no more questions than that"));
+        }
+        if self.least_inclusion * asked as f64 > f64::from(self.least_questions) {
+            let found = format!(
+                "least_inclusion = {} for each of {asked} locations and recipes, in probes with least_questions = {}",
+                self.least_inclusion, self.least_questions
+            );
+            let remedy = format!("at most {:.3}, or more questions", f64::from(self.least_questions) / asked as f64);
+            return Err(SettingError::new("probes.least_inclusion", found, remedy));
+        }
+        Ok(())
+    }
+
+    /// `values`: number of the aspect's possible values.
+    pub(crate) fn asks_about(&self, aspect: &str, values: usize) -> bool {
+        values > 1 && !self.leave_out.iter().any(|name| name == aspect)
+    }
+}
+
+/// The task stands still, and the participant answers questions about the participant's beliefs (SAGAT, Endsley 1988).
+/// Probes have numbers from 1 within a trial, scheduled and requested ones together; questions have numbers from 1
+/// within a probe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "did", rename_all = "snake_case")]
+pub enum ProbeEvent {
+    Requested,
+    /// It is due but may not begin yet.
+    Delayed {
+        probe: u32,
+        reason: ProbeDelayReason,
+    },
+    /// It has waited for the longest allowed time, and is cancelled.
+    Dropped {
+        probe: u32,
+        /// Why it still had to wait at the end.
+        reason: ProbeDelayReason,
+    },
+    /// The task stands still from now on; all questions are drawn.
+    Begun {
+        probe: u32,
+        origin: ProbeOrigin,
+        /// Whether the belief estimate influenced the choice of questions.
+        uses_estimate: bool,
+        /// In the order in which they are asked.
+        questions: Vec<ProbeQuestion>,
+    },
+    Asked {
+        probe: u32,
+        question: u32,
+    },
+    Answered {
+        probe: u32,
+        question: u32,
+        /// One of the question's choices; `None`: "I don't know".
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        answer: Option<String>,
+        /// From 1 to 3, if it was asked for.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        confidence: Option<u8>,
+        on: AnswerDevice,
+    },
+    /// The wizard skips the remaining questions.
+    Skipped {
+        probe: u32,
+        reason: String,
+    },
+    /// No more questions are asked: the count-down begins, unless the trial is over.
+    Closed {
+        probe: u32,
+        reason: ProbeEndReason,
+    },
+    /// The task continues.
+    Ended {
+        probe: u32,
+    },
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProbeQuestion {
+    pub about: ProbeSubject,
+    /// Possible answers, by their names in the log, in the order in which they are shown.
+    pub choices: Vec<String>,
+    /// Probability with which this question was drawn, given the settings, the session so far, and the number of
+    /// questions.
+    pub inclusion: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(tag = "asks", rename_all = "snake_case")]
+pub enum ProbeSubject {
+    Location {
+        location: String,
+    },
+    Recipe {
+        dish: String,
+    },
+    /// Which order will be served next.
+    NextOrder,
+    /// What the robot will press next.
+    NextPress,
+}
+
+/// Why a probe that is due cannot begin yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeDelayReason {
+    /// A signal was shown a short time before.
+    Signal,
+    /// Another probe ended a short time before.
+    Probe,
+}
+
+impl ProbeDelayReason {
+    pub fn words(self) -> &'static str {
+        match self {
+            ProbeDelayReason::Signal => "a signal was shown just before",
+            ProbeDelayReason::Probe => "another probe ended just before",
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum ProbeOrigin {
+    Schedule,
+    Wizard,
+}
+
+impl ProbeOrigin {
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// Why a probe asks no more questions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum ProbeEndReason {
+    Answered,
+    TimeOver,
+    Skipped,
+    TrialEnded,
+}
+
+impl ProbeEndReason {
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    pub fn words(self) -> &'static str {
+        match self {
+            ProbeEndReason::Answered => "all questions of the probe are answered",
+            ProbeEndReason::TimeOver => "the probe's time is over",
+            ProbeEndReason::Skipped => "the wizard skipped the other questions",
+            ProbeEndReason::TrialEnded => "the trial is over",
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrialProbes {
+    /// The probe for which the task stands still, from its `begun` to its `ended`.
+    pub open: Option<StartedProbe>,
+    pub over: Vec<StartedProbe>,
+    /// It is due and has not begun.
+    pub waiting: Option<WaitingProbe>,
+    /// Numbers of the cancelled probes, each with why it had to wait.
+    pub dropped: Vec<(u32, ProbeDelayReason)>,
+    /// Drawn at the trial's start.
+    pub schedule: Vec<ScheduledProbe>,
+    /// Number of scheduled probes that have become due.
+    pub came_due: usize,
+    /// The highest number of a probe so far.
+    pub numbered: u32,
+    /// When the last signal was shown.
+    pub signalled_at: Option<SessionTime>,
+    /// When the last probe ended.
+    pub ended_at: Option<SessionTime>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaitingProbe {
+    pub number: u32,
+    pub origin: ProbeOrigin,
+    pub uses_estimate: bool,
+    /// When it became due, on the trial's clock.
+    pub since: SessionTime,
+    /// Why it has to wait, once that is recorded.
+    pub reason: Option<ProbeDelayReason>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartedProbe {
+    pub number: u32,
+    pub origin: ProbeOrigin,
+    pub uses_estimate: bool,
+    pub questions: Vec<ProbeQuestion>,
+    /// Index of the shown question.
+    pub shown: Option<usize>,
+    /// One for each question.
+    pub answers: Vec<Option<ProbeAnswer>>,
+    /// When the task was frozen.
+    pub begun: SessionTime,
+    /// When the shown question appeared.
+    pub asked_at: SessionTime,
+    /// The wizard's reason for skipping the remaining questions.
+    pub skipped: Option<String>,
+    /// Why and when the questions ended.
+    pub closed: Option<(ProbeEndReason, SessionTime)>,
+    pub paused_since: Option<SessionTime>,
+    /// Start and end of each finished pause of the probe.
+    pub pauses: Vec<(SessionTime, SessionTime)>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeAnswer {
+    /// `None`: "I don't know".
+    pub answer: Option<String>,
+    /// From 1 to 3.
+    pub confidence: Option<u8>,
+    /// From the appearance of the question to the answer, without pauses.
+    pub took: SessionTime,
+    pub on: AnswerDevice,
+}
+
+impl StartedProbe {
+    pub fn is_paused(&self) -> bool {
+        self.paused_since.is_some()
+    }
+
+    /// The shown question, which waits for an answer, with its index.
+    pub fn question(&self) -> Option<(usize, &ProbeQuestion)> {
+        let shown = self.shown.filter(|&shown| self.closed.is_none() && self.answers[shown].is_none())?;
+        Some((shown, &self.questions[shown]))
+    }
+
+    /// Time from `at` to `now` without the probe's pauses.
+    pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
+        let end = self.paused_since.unwrap_or(now).min(now);
+        let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
+        paused.fold(end - at, |age, pause| age - pause)
+    }
+
+    /// When `after` will have passed since `at`, if no further pause comes.
+    pub fn when(&self, at: SessionTime, after: SessionTime) -> SessionTime {
+        let paused = self.pauses.iter().map(|&(from, until)| until - from.max(at));
+        paused.fold(at + after, |when, pause| when + pause)
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScheduledProbe {
+    /// On the trial's clock.
+    pub at: SessionTime,
+    pub uses_estimate: bool,
+}
+
+/// `None` in a practice trial, which does not count.
+pub fn of_trial(spec: &SessionSpec) -> Option<&ProbeSpec> {
+    let counts = spec.step.as_ref().is_none_or(|step| step.period.is_some());
+    spec.probes.as_ref().filter(|_| counts)
+}
+
+/// Draws a trial's schedule from a random stream of its own. Each probe comes between once and twice `apart_s` after
+/// the previous one (the first: after the trial's start), so that nobody can foresee it; in a trial that is hardly long
+/// enough for all, intervals are closer to `apart_s`.
+pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
+    let Some(probes) = of_trial(spec) else { return Vec::new() };
+    let mut random = stream(spec.seed, "times of probes", trial);
+    let number = probes.per_trial as usize;
+    let slack_s = spec.trial.seconds - probes.wait_s - probes.apart_s * number as f64;
+    let spread_s = (slack_s / number.max(1) as f64).clamp(0.0, probes.apart_s);
+    let mut at_s = 0.0;
+    let times: Vec<SessionTime> = (0..number)
+        .map(|_| {
+            at_s += probes.apart_s + spread_s * random.random::<f64>();
+            SessionTime::from_secs_f64(at_s)
+        })
+        .collect();
+    let blind = blind(number, probes.blind_share, &mut random);
+    times.into_iter().zip(blind).map(|(at, is_blind)| ScheduledProbe { at, uses_estimate: !is_blind }).collect()
+}
+
+/// Which probes are blind: a share of them, in random order. A fractional remainder of the number is the probability of
+/// one more.
+fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
+    let wanted = number as f64 * share;
+    let count = wanted.floor() as usize + usize::from(random.random::<f64>() < wanted.fract());
+    let mut blind: Vec<bool> = (0..number).map(|index| index < count).collect();
+    shuffle(&mut blind, random);
+    blind
+}
+
+/// Drawn at random, as for scheduled probes.
+fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
+    let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
+    let name = format!("requested probes of trial {trial}");
+    stream(spec.seed, &name, u64::from(number)).random::<f64>() >= share
+}
+
+/// Time between the freeze and the first question: the kitchen disappears before any question is shown.
 const BLANK_S: f64 = 1.0;
 
-/// What the rules of freeze probes require next.
+/// What the rules require next.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DueProbeEvent {
-    /// A freeze probe begins; its questions have to be drawn.
-    Begin {
-        /// Number of the freeze probe within the trial, counted from 1.
-        probe: u32,
-        /// Whether the schedule or the wizard caused the probe.
-        origin: ProbeOrigin,
-        /// Whether the belief estimate influences the choice of the probe's questions.
-        uses_estimate: bool,
-    },
-    /// Any event of a freeze probe except its beginning is due.
+    /// Its questions have to be drawn.
+    Begin { probe: u32, origin: ProbeOrigin, uses_estimate: bool },
+    /// Any event but the beginning.
     Event(ProbeEvent),
 }
 
-/// The next due event of freeze probes and its time; none without freeze probes, and while a probe is paused.
-pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbeEvent)> {
+/// The next due event and its time; `None` without freeze probes, and while a probe is paused.
+pub(crate) fn upcoming(session: &Session) -> Option<(SessionTime, DueProbeEvent)> {
     let spec = of_trial(&session.spec)?;
     match &session.probes.open {
         Some(open) => in_probe(session, spec, open),
@@ -105,13 +483,12 @@ fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProb
     })
 }
 
-/// Session time at which the running trial's clock will show `clock`; the present session time, if it shows more
-/// already.
+/// When the running trial's clock will show `clock`; now, if it shows more already.
 fn at_clock(session: &Session, clock: SessionTime) -> SessionTime {
     session.time + (clock - session.trial_clock(session.time))
 }
 
-/// Why a freeze probe cannot begin at session time `at`, and the session time until which it cannot.
+/// Why no probe can begin at `at`, and until when.
 fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeDelayReason, SessionTime)> {
     let after = SessionTime::from_secs_f64(spec.after_signal_s);
     let last =
@@ -123,13 +500,8 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeD
     blocks.max_by_key(|(_, until)| *until)
 }
 
-/// Whether the session accepts this event of a freeze probe now.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
-pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
+pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
     let spec = of_trial(&session.spec).ok_or("this trial has no freeze probes")?;
-    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let book = &session.probes;
     let is_next = |probe: u32| probe == book.waiting.as_ref().map_or(book.numbered + 1, |waiting| waiting.number);
     match event {
@@ -173,22 +545,18 @@ pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
         }
         ProbeEvent::Closed { probe, .. } => opened(session, *probe).map(drop),
         ProbeEvent::Ended { probe } => {
-            let open = book.open.as_ref().filter(|open| open.number == *probe).ok_or(
-                "this freeze probe is not \
-                                                                                      running",
-            )?;
+            let open =
+                book.open.as_ref().filter(|open| open.number == *probe).ok_or("this freeze probe is not running")?;
             unless(open.closed.is_some() && session.phase == TrialPhase::Paused, "the probe's questions are not over")?;
             unless(!open.is_paused(), "the probe is paused")
         }
     }
 }
 
-/// The open freeze probe with this number, if its questions have not ended.
+/// The open probe with this number, if its questions have not ended.
 fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> {
-    let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or(
-        "this freeze probe is not \
-                                                                                       running",
-    )?;
+    let open =
+        session.probes.open.as_ref().filter(|open| open.number == probe).ok_or("this freeze probe is not running")?;
     match open.closed.is_some() {
         true => Err("the probe's questions are over"),
         false => Ok(open),
@@ -196,31 +564,29 @@ fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> 
 }
 
 impl Session {
-    /// Duration of the freeze probe that this event, which was just applied, ended; `None` for every other event.
+    /// Duration of the probe that this event, which was just applied, ended.
     pub fn probe_pause(&self, stamped: &TimestampedEvent) -> Option<SessionTime> {
         let Event::Probe(ProbeEvent::Ended { .. }) = stamped.event else { return None };
         self.probes.over.last().map(|over| stamped.time - over.begun)
     }
 
-    /// Whether the task is frozen for a freeze probe: from the probe's beginning until the task continues.
+    /// Whether the task is frozen: from a probe's beginning until the task continues.
     pub fn is_frozen(&self) -> bool {
         self.probes.open.is_some()
     }
 
-    /// Whether the wizard can pause the trial or the open freeze probe now.
+    /// Whether the wizard can pause the trial or the open probe now.
     pub fn can_be_paused(&self) -> bool {
         self.is_running() || self.probes.open.as_ref().is_some_and(|open| !open.is_paused())
     }
 }
 
-/// Draws the schedule of freeze probes at the start of a trial.
-pub(super) fn start(session: &mut Session) {
+pub(crate) fn start(session: &mut Session) {
     session.probes = TrialProbes { schedule: draw(&session.spec, session.trial), ..TrialProbes::default() };
 }
 
-/// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if the event
-/// lets the task continue.
-pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
+/// Returns for how long the task stood still, if the event lets it continue.
+pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
     if !matches!(event, ProbeEvent::Asked { .. } | ProbeEvent::Answered { .. }) {
         session.note(now, TimelineEvent::Probe(event.clone()));
     }
@@ -244,7 +610,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
         }
         ProbeEvent::Begun { origin, uses_estimate, questions, .. } => {
             let number = take_due(session, now).number;
-            trial_clock::pause(session, now);
+            pause_clock(session, now);
             session.probes.open = Some(StartedProbe {
                 number,
                 origin: *origin,
@@ -263,14 +629,13 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
         ProbeEvent::Ended { .. } => {
             session.probes.over.extend(session.probes.open.take());
             session.probes.ended_at = Some(now);
-            return Some(trial_clock::resume(session, now));
+            return Some(resume_clock(session, now));
         }
         _ => in_open(session, now, event),
     }
     None
 }
 
-/// Applies an event of the open freeze probe, such as a question or an answer.
 fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     let is_over = matches!(session.phase, TrialPhase::Over(_));
     let Some(open) = &mut session.probes.open else { return };
@@ -297,7 +662,7 @@ fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     }
 }
 
-/// Removes the freeze probe that begins or is delayed: the waiting probe, or else the next one of the schedule.
+/// Removes the probe that begins or is delayed: the waiting one, or else the next one of the schedule.
 fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     let clock = session.trial_clock(now);
     let book = &mut session.probes;
@@ -312,15 +677,14 @@ fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     WaitingProbe { number, origin, uses_estimate, since: at, reason: None }
 }
 
-/// Stops the freeze probe's own time, because the wizard pauses.
-pub(super) fn pause(session: &mut Session, now: SessionTime) {
+/// The wizard pauses: the probe's own time stops.
+pub(crate) fn pause(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open {
         open.paused_since = Some(now);
     }
 }
 
-/// Continues the freeze probe after a pause by the wizard.
-pub(super) fn resume(session: &mut Session, now: SessionTime) {
+pub(crate) fn resume(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open
         && let Some(since) = open.paused_since.take()
     {
@@ -328,9 +692,8 @@ pub(super) fn resume(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Handles the end of the trial: a freeze probe in its count-down ends, too; a probe with remaining questions is closed
-/// by an event of its own.
-pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
+/// A probe in its count-down ends with the trial; one with remaining questions is closed by an event of its own.
+pub(crate) fn trial_ends(session: &mut Session, now: SessionTime) {
     resume(session, now);
     session.probes.waiting = None;
     if session.probes.open.as_ref().is_some_and(|open| open.closed.is_some()) {
@@ -338,8 +701,7 @@ pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Handles the end of the session: an open freeze probe ends with the session.
-pub(super) fn session_ends(session: &mut Session, now: SessionTime) {
+pub(crate) fn session_ends(session: &mut Session, now: SessionTime) {
     trial_ends(session, now);
     if let Some(mut open) = session.probes.open.take() {
         open.closed = Some((ProbeEndReason::TrialEnded, now));

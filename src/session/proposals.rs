@@ -1,13 +1,12 @@
 //! Proposed presses (of the concept DEV) on the participant's display: which presses are still to be made, and when the
 //! proposal is out of date.
 
-use super::session_state::Session;
-use super::timeline_entry::TimelineEvent;
+use crate::{Session, TimelineEvent};
 use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::kitchen::Agent;
 
-/// Names of the proposed presses on the display that the human has still to make; `None` if no proposal is on the
-/// display. After a press of another button, no proposed presses are left.
+/// Names of the proposed presses that the human has still to make; `None` if no proposal is on the display. After a
+/// press of another button, none are left.
 pub fn left(session: &Session) -> Option<&[String]> {
     let Signal::Propose(presses) = &session.shown.as_ref()?.signal else { return None };
     let since = session.timeline.iter().rev().take_while(|entry| !matches!(entry.what, TimelineEvent::Signal { .. }));
@@ -24,15 +23,14 @@ pub fn left(session: &Session) -> Option<&[String]> {
     Some(if is_followed { &presses[made.len()..] } else { &[] })
 }
 
-/// Whether the proposal on the display is out of date: its presses were made, another button was pressed, or the next
-/// proposed press would have no effect.
+/// Its presses were made, another button was pressed, or the next one would have no effect.
 pub fn is_outdated(session: &Session) -> bool {
     let Some(left) = left(session) else { return false };
     unavailable(&session.kitchen, session.state, &Signal::Propose(left.to_vec())).is_some()
 }
 
-/// Whether presses were already proposed on the display since the human's last press: an error gets one proposal only.
-pub fn was_made(session: &Session) -> bool {
+/// Whether presses were proposed since the human's last press: an error gets one proposal only.
+pub(crate) fn was_made(session: &Session) -> bool {
     let newest = session.timeline.iter().rev().find(|entry| match &entry.what {
         TimelineEvent::Press { agent, .. } => *agent == Agent::Human,
         TimelineEvent::Signal { signal, .. } => matches!(signal, Signal::Propose(_)),

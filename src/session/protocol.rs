@@ -1,33 +1,180 @@
-//! The study protocol: rules for the phases of a plan's recording, which follow one after another.
+//! The study protocol: the phases of a plan's recording, which follow one after another.
 
-use super::phase::TrialPhase;
-use super::plan::{PhaseSpec, PlanPosition, Questionnaire};
-pub use super::protocol_event::{ProtocolEvent, StudyPhase};
-pub use super::protocol_state::{ItemAnswer, PracticeResult, StudyProtocolState};
-use super::session_state::Session;
-use super::tutorial;
+use serde::{Deserialize, Serialize};
+
+use crate::admit::unless;
+use crate::plan::{PhaseSpec, PlanPosition};
+use crate::questionnaire::{AnswerValue, Questionnaire};
+use crate::tutorial::{self, TutorialEvent, TutorialState};
+use crate::wall_display::AnswerDevice;
+use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum StudyPhase {
+    Instruction,
+    Tutorial,
+    /// Practice, which does not count.
+    Familiarisation,
+    Trial,
+    Questionnaire,
+    Debriefing,
+}
+
+impl StudyPhase {
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// Practice or counted.
+    pub fn has_trial(self) -> bool {
+        matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum ProtocolEvent {
+    /// Without consent nothing is recorded.
+    ConsentGiven {
+        /// By holding a button on the display, or by telling the wizard, who confirmed it at the console.
+        on: AnswerDevice,
+        text: String,
+        digest: String,
+    },
+    PhaseStarted {
+        phase: StudyPhase,
+        /// In the recording, from 1.
+        number: usize,
+    },
+    /// A step of an instruction or debriefing.
+    Ticked {
+        /// From 1.
+        step: usize,
+        done: bool,
+    },
+    Tutorial(TutorialEvent),
+    ItemShown {
+        item: String,
+    },
+    /// All answers are shown, for the participant to confirm them.
+    AnswersShown,
+    /// A later answer replaces an earlier one. The next item follows at once, except after sliders and choices of
+    /// several options.
+    ItemAnswered {
+        item: String,
+        answer: AnswerValue,
+    },
+    ItemSkipped {
+        item: String,
+    },
+    /// The answers become final.
+    AnswersConfirmed,
+    /// Result of the practice trial.
+    CriterionChecked {
+        met: bool,
+        orders: u32,
+        /// Of the participant.
+        presses: u32,
+        /// Among these presses.
+        errors: u32,
+    },
+    CriterionWaived {
+        reason: String,
+    },
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ItemAnswer {
+    Given(AnswerValue),
+    Skipped,
+}
+
+/// Of the practice trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PracticeResult {
+    pub met: bool,
+    pub orders: u32,
+    pub presses: u32,
+    pub errors: u32,
+    /// Why the criterion was waived, if it was.
+    pub waived: Option<String>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StudyProtocolState {
+    pub consent: bool,
+    /// Number of the present phase, from 1; 0 before the first phase.
+    pub number: usize,
+    /// Steps of the present instruction or debriefing.
+    pub ticks: Vec<bool>,
+    /// To the items of the present questionnaire.
+    pub answers: Vec<Option<ItemAnswer>>,
+    /// Index of the shown item; the number of items while all answers are shown for confirmation.
+    pub item: usize,
+    /// Whether the answers are final.
+    pub confirmed: bool,
+    pub practice: Option<PracticeResult>,
+    pub tutorial: Option<TutorialState>,
+}
+
+impl ItemAnswer {
+    /// `None` if the item was skipped.
+    pub fn value(&self) -> Option<&AnswerValue> {
+        match self {
+            ItemAnswer::Given(value) => Some(value),
+            ItemAnswer::Skipped => None,
+        }
+    }
+}
+
+impl StudyProtocolState {
+    pub fn given(&self, index: usize) -> Option<&AnswerValue> {
+        self.answers.get(index)?.as_ref()?.value()
+    }
+
+    /// Records the answer to the shown item and shows the next one, unless the shown one stays; after the last item,
+    /// the first unanswered one or all answers are shown.
+    pub(crate) fn answer(&mut self, answer: ItemAnswer, stays: bool) {
+        if let Some(place) = self.answers.get_mut(self.item) {
+            *place = Some(answer);
+        }
+        if stays {
+            return;
+        }
+        let next = self.item + 1;
+        self.item = match self.open_item() {
+            None => self.answers.len(),
+            Some(open) if next == self.answers.len() => open,
+            Some(_) => next,
+        };
+    }
+
+    /// The first item without an answer.
+    pub fn open_item(&self) -> Option<usize> {
+        self.answers.iter().position(Option::is_none)
+    }
+}
+
 impl Session {
-    /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.
+    /// `None` if the recording belongs to no plan.
     pub fn step(&self) -> Option<(&PlanPosition, &StudyProtocolState)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
 
-    /// The present phase of the study protocol.
     pub fn study_phase(&self) -> Option<&PhaseSpec> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number.checked_sub(1)?)
     }
 
-    /// The phase of the study protocol after the present one.
     pub fn next_phase(&self) -> Option<StudyPhase> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number).map(PhaseSpec::phase)
     }
 
-    /// The event that moves from the shown questionnaire item to the next one, or to the overview of all answers;
-    /// `None` if the overview is shown.
+    /// The event that moves to the next item, or to the overview of all answers; `None` in the overview.
     pub fn next_item(&self) -> Option<ProtocolEvent> {
         let (questionnaire, protocol) = (self.questionnaire()?, self.protocol.as_ref()?);
         questionnaire.items.get(protocol.item)?;
@@ -37,7 +184,7 @@ impl Session {
         })
     }
 
-    /// The questionnaire of the present phase, if it has one.
+    /// Of the present phase.
     pub fn questionnaire(&self) -> Option<&Questionnaire> {
         match self.study_phase()? {
             PhaseSpec::Questionnaire { questionnaire } => Some(questionnaire),
@@ -45,7 +192,7 @@ impl Session {
         }
     }
 
-    /// Why the present phase of the study protocol cannot be left yet; `None` if the phase can be left.
+    /// Why the present phase cannot be left yet.
     pub fn phase_lacks(&self) -> Option<&'static str> {
         let protocol = self.protocol.as_ref()?;
         if self.aborted.is_some() {
@@ -62,14 +209,13 @@ impl Session {
             PhaseSpec::Trial | PhaseSpec::Familiarisation => {
                 (!matches!(self.phase, TrialPhase::Over(_))).then_some("the trial is not over")
             }
-            PhaseSpec::Questionnaire { .. } => (!protocol.confirmed).then_some(
-                "the answers to the questionnaire are \
-                                                                                not confirmed",
-            ),
+            PhaseSpec::Questionnaire { .. } => {
+                (!protocol.confirmed).then_some("the answers to the questionnaire are not confirmed")
+            }
         }
     }
 
-    /// Whether all phases of the recording are done or the trial was aborted; true for a session without a plan.
+    /// Whether all phases are done or the trial was aborted; true without a plan.
     pub fn is_step_done(&self) -> bool {
         match &self.protocol {
             None => true,
@@ -79,13 +225,8 @@ impl Session {
     }
 }
 
-/// Whether the session accepts this event of the study protocol now.
-///
-/// # Errors
-/// Why the session refuses the event, in words for the wizard.
 pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
     let Some((step, protocol)) = session.step() else { return Err("the session has no study plan") };
-    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     match event {
         ProtocolEvent::ConsentGiven { .. } => {
             unless(!protocol.consent && protocol.number == 0, "consent is given once, before everything else")
@@ -99,8 +240,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let is_done = step.checked_sub(1).and_then(|index| protocol.ticks.get(index));
             unless(
                 is_done.is_some_and(|is_done| is_done != done),
-                "the phase has no step with this number to be \
-                                                                    ticked",
+                "the phase has no step with this number to be ticked",
             )
         }
         ProtocolEvent::Tutorial(event) => tutorial::admit(session, event),
@@ -110,10 +250,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let questionnaire = shown_item(session, item)?;
             questionnaire
                 .form(protocol.item)
-                .ok_or(
-                    "the questionnaire's item lacks a setting that its kind \
-                                                     needs",
-                )?
+                .ok_or("the questionnaire's item lacks a setting that its kind needs")?
                 .admit(answer)
         }
         ProtocolEvent::ItemSkipped { item } => shown_item(session, item).map(drop),
@@ -121,8 +258,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             unless(is_open(session), "no questionnaire is being answered")?;
             unless(
                 protocol.answers.iter().all(Option::is_some),
-                "not every item of the questionnaire is answered or \
-                                                                  skipped",
+                "not every item of the questionnaire is answered or skipped",
             )
         }
         ProtocolEvent::CriterionChecked { .. } => {
@@ -130,8 +266,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let is_over = matches!(session.phase, TrialPhase::Over(_));
             unless(
                 is_practice && is_over && protocol.practice.is_none(),
-                "no practice has been completed that could \
-                                                                           be judged",
+                "no practice has been completed that could be judged",
             )
         }
         ProtocolEvent::CriterionWaived { reason } => {
@@ -142,11 +277,8 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
     }
 }
 
-/// Whether a trial may start; in a plan, only in the phase of the trial.
-///
-/// # Errors
-/// The reason for which the trial may not start, in words.
-pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
+/// In a plan, only in the phase of the trial.
+pub(crate) fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
     match session.protocol.is_none() || has_trial {
         true => Ok(()),
@@ -173,8 +305,7 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
     }
 }
 
-/// Applies an event of the study protocol that the session accepts, at the event's session time `now`.
-pub(super) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
+pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
     let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
     let (steps, items) = match event {
         ProtocolEvent::PhaseStarted { number, .. } => sizes(session.spec.step.as_ref(), *number),
@@ -223,7 +354,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTi
     }
 }
 
-/// Numbers of steps to tick off and of questionnaire items in the phase with this number.
+/// Numbers of steps to tick off and of questionnaire items in a phase.
 fn sizes(step: Option<&PlanPosition>, number: usize) -> (usize, usize) {
     let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
     let items = match phase {

@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::advice_moments::leads_to_advice;
-use crate::advisor::AdviceRequest;
+use crate::advisor::{AdviceRequest, leads_to_advice};
 use crate::files::file_error::{FileError, FileResult};
 use crate::follower::SessionFollower;
 use crate::log::{LogLine, LogReader};
@@ -14,55 +13,43 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Kitchen, KitchenChange};
 
-/// A recording that is being replayed, with the session at the replay's present position.
+/// With the session at the replay's present position.
 #[derive(Debug)]
 pub struct RecordingReplay {
     log: LogReader,
-    /// The session up to the replay's present position, with what follows from its events: judged presses and the
-    /// estimate.
     pub follower: SessionFollower,
     /// A line that was read and is not applied yet.
     held: Option<LogLine>,
-    /// The newest event after which the assistant is asked for advice: sequence number and time. The assistant is asked
-    /// once all immediate consequences of the event are applied.
+    /// The newest event after which the assistant is asked, once all its immediate consequences are applied.
     to_ask: Option<(u64, SessionTime)>,
 }
 
-/// An event that a replay has just applied, with the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayedEvent {
-    /// The event with its sequence number and time.
     pub stamped: TimestampedEvent,
-    /// Change of the kitchen that the event caused.
     pub change: KitchenChange,
 }
 
 impl RecordingReplay {
-    /// Opens a recording for replay, before its first event.
-    ///
-    /// # Errors
-    /// The errors of [`LogReader::open`].
+    /// Before its first event.
     pub fn open(recording: &Path) -> FileResult<RecordingReplay> {
         let log = LogReader::open(recording)?;
         let cost = CostToGo::new(log.kitchen.clone());
         Ok(RecordingReplay::over(log, cost))
     }
 
-    /// A replay of a log. The cost to go `cost` must be of the log's kitchen, and can come from another replay.
+    /// `cost` must be of the log's kitchen, and can come from another replay.
     pub fn over(log: LogReader, cost: CostToGo) -> RecordingReplay {
         let follower = SessionFollower::new(log.session(), cost);
         RecordingReplay { log, follower, held: None, to_ask: None }
     }
 
-    /// This replay without attribution of errors to causes, which takes long.
+    /// Without attribution of errors to causes, which takes long.
     pub fn without_causes(self) -> RecordingReplay {
         RecordingReplay { follower: self.follower.without_causes(), ..self }
     }
 
-    /// Applies and returns the next event; `None` at the present end of the log.
-    ///
-    /// # Errors
-    /// A line is not an event, or the event is not possible in the session's present state.
+    /// Applies the next event; `None` at the present end of the log.
     pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
         let Some(line) = self.next_line()? else { return Ok(None) };
         self.apply(&line).map(Some)
@@ -84,9 +71,6 @@ impl RecordingReplay {
     }
 
     /// Applies all remaining events.
-    ///
-    /// # Errors
-    /// The errors of [`RecordingReplay::step`].
     pub fn run(&mut self) -> FileResult<()> {
         while self.step()?.is_some() {}
         Ok(())
@@ -94,9 +78,6 @@ impl RecordingReplay {
 
     /// Replays up to the next request for advice, which is made after the same events, and with the same immediate
     /// consequences applied, as in the running session; `None` at the present end of the log.
-    ///
-    /// # Errors
-    /// The errors of [`RecordingReplay::step`].
     pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
         loop {
             let line = self.next_line()?;
@@ -112,28 +93,22 @@ impl RecordingReplay {
         }
     }
 
-    /// The session after the events that were replayed so far.
     pub fn session(&self) -> &Session {
         &self.follower.session
     }
 
-    /// The log that is being replayed.
     pub fn log(&self) -> &LogReader {
         &self.log
     }
 }
 
-/// Checks that all recordings are of one kitchen.
+/// All recordings must be of one kitchen.
 #[derive(Debug, Default)]
 pub struct SameKitchenCheck {
     first: Option<(PathBuf, Arc<Kitchen>)>,
 }
 
 impl SameKitchenCheck {
-    /// Adds the kitchen of a further recording to the check.
-    ///
-    /// # Errors
-    /// The recording's kitchen differs from that of the first recording.
     pub fn admit(&mut self, recording: &Path, kitchen: &Arc<Kitchen>) -> FileResult<()> {
         let (path, first) = self.first.get_or_insert_with(|| (recording.to_path_buf(), kitchen.clone()));
         if first.aspects == kitchen.aspects && first.buttons == kitchen.buttons {
@@ -144,15 +119,31 @@ impl SameKitchenCheck {
         Err(FileError::from_finding(recording, found, remedy))
     }
 
-    /// The kitchen that all recordings share.
-    ///
-    /// # Errors
-    /// No recording was added to the check.
+    /// It is an error if no recording was admitted.
     pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
         let none = || {
             let remedy = "at least one recording".to_string();
             FileError::from_finding(Path::new("."), "no recording".to_string(), remedy)
         };
         self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
+    }
+}
+
+/// Kind of event to which a replay can jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+pub enum ReplayLandmark {
+    Error,
+    Signal,
+    #[strum(serialize = "note")]
+    Marker,
+    /// It begins in the belief estimate.
+    #[strum(serialize = "false belief")]
+    FalseBelief,
+}
+
+impl ReplayLandmark {
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }

@@ -1,117 +1,100 @@
-//! The state of a session, computed from its events.
+//! The state of a session, computed from its events: trial, robot, timeline, and the state of each feature.
 
 use std::sync::Arc;
 
-use super::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
-use super::gaze_status::GazeStatus;
-use super::phase::TrialPhase;
-use super::probe_state::TrialProbes;
-use super::protocol_state::StudyProtocolState;
-use super::robot_status::RobotStatus;
-use super::settings::{Condition, SessionSpec, WizardVisibility};
-use super::study_arm::StudyArm;
-use super::timeline_entry::{TimelineEntry, TimelineEvent};
-use super::tracker::TrackerStatus;
+use crate::event::{SignalEndReason, TrialEndReason};
+use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
+use crate::probes::{ProbeEvent, TrialProbes};
+use crate::protocol::StudyProtocolState;
+use crate::settings::{Condition, WizardVisibility};
+use crate::study_arm::StudyArm;
+use crate::tracker::TrackerStatus;
+use crate::{GazeStatus, SessionSpec};
 use tomcom_core::base::rng::of_trial;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferHistory;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{HighlightSet, Sender, Signal};
+use tomcom_core::kitchen::no_effect::NoEffectReason;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
-use tomcom_core::kitchen::{DishId, Kitchen, LocationId, State};
+use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, State};
+use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{AbortReason, IdleReason};
 use tomcom_people::wizard::settings::WizardKind;
 
-/// Time without a gaze sample after which gaze counts as missing, in seconds.
+/// Time without a sample after which gaze counts as missing.
 const SILENT_S: f64 = 1.0;
 
-/// The state of a session after its events so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
-    /// The kitchen of the session, compiled from its files.
     pub kitchen: Arc<Kitchen>,
-    /// The settings of the session in use.
     pub spec: SessionSpec,
-    /// Index of the session's trial.
     pub trial: u64,
-    /// The session time of the last event.
+    /// Of the last event.
     pub time: SessionTime,
-    /// The phase of the session's trial: ready, running, paused or over.
     pub phase: TrialPhase,
-    /// Session time of the trial's start.
     pub trial_start: SessionTime,
-    /// Total duration of all finished pauses of the trial's clock.
+    /// Duration of all finished pauses.
     pub paused_total: SessionTime,
-    /// Session time at which the trial's clock last stopped: at the beginning of a pause, or at the trial's end.
+    /// When the trial's clock last stopped: at the beginning of a pause, or at the trial's end.
     pub paused_at: SessionTime,
-    /// Session times of start and end of each finished pause of the trial.
+    /// Start and end of each finished pause.
     pub pauses: Vec<(SessionTime, SessionTime)>,
-    /// True state of the kitchen: the content of every location.
+    /// True state of the kitchen.
     pub state: State,
-    /// Session time of the last change of each location.
+    /// Last change of each location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
-    /// Number of presses during the trial by each agent, indexed by [`tomcom_core::kitchen::Agent::index`].
+    /// In the trial, by [`tomcom_core::kitchen::Agent::index`].
     pub presses: [u32; 2],
-    /// The orders that were served in the trial.
     pub served: Vec<ServedOrder>,
-    /// Present state of the robot.
     pub robot: RobotStatus,
-    /// The signal on the participant's display, if there is one.
+    /// The signal on the participant's display.
     pub shown: Option<ShownSignal>,
-    /// The assistant's latest recommendation in the running trial.
+    /// The latest in the running trial.
     pub advice: Option<Recommendation>,
-    /// The open offer to the wizard, and the offers that have closed.
     pub offers: OfferHistory,
-    /// Whether a console shows the session to a person (the wizard).
+    /// Whether a console shows the session to a person.
     pub has_console: bool,
-    /// Sequence number of the latest event for which the participant's display flashes (trial start, signal).
+    /// The latest event for which the participant's display flashes (trial start, signal).
     pub cue: Option<u64>,
-    /// Session time of the wizard's last signal.
+    /// When the wizard sent the last signal.
     pub signalled_at: Option<SessionTime>,
-    /// Whether the wizard saw the comparison of the wizard's signals with those of the assistants.
+    /// Whether the wizard saw how the assistants compare with the wizard.
     pub unblinded: bool,
-    /// Reason for aborting the trial, if it was aborted.
+    /// Why the trial was aborted, if it was.
     pub aborted: Option<String>,
-    /// Reason for excluding the trial from the analysis, if it is excluded.
+    /// Why the trial is excluded from the analysis, if it is.
     pub excluded: Option<String>,
-    /// State of the participant's gaze stream.
     pub gaze: GazeStatus,
-    /// State of the eye tracker.
     pub tracker: TrackerStatus,
-    /// The gaze accuracy check that is running or waits for the wizard's decision.
+    /// Running, or waiting for the wizard's decision.
     pub calibration: Option<RunningGazeCheck>,
-    /// The last accepted gaze accuracy check.
+    /// The last accepted one.
     pub calibrated: Option<AcceptedGazeCheck>,
-    /// All entries of the session's timeline (events without gaze samples).
+    /// Events without gaze samples.
     pub timeline: Vec<TimelineEntry>,
-    /// The freeze probes of the trial.
     pub probes: TrialProbes,
-    /// State of the study protocol (phases and answers), if the recording belongs to a plan.
+    /// If the recording belongs to a plan.
     pub protocol: Option<StudyProtocolState>,
 }
 
-/// An order that was served in the trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServedOrder {
-    /// Session time at which the order was served.
     pub time: SessionTime,
-    /// The dish that the served order wanted.
     pub dish: DishId,
-    /// Number of presses of both agents in the trial up to the serving press, which is included.
+    /// Of both agents in the trial, up to and with the serving press.
     pub presses: u32,
 }
 
-/// A signal on the participant's display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownSignal {
-    /// The signal that the display shows.
     pub signal: Signal,
-    /// The location that the signal is about; `None` for proposed presses.
+    /// `None` for proposed presses.
     pub location: Option<LocationId>,
-    /// Who sent the displayed signal.
     pub by: Sender,
-    /// Session time at which the signal appeared.
     pub since: SessionTime,
-    /// Session time at which the signal will disappear by itself.
+    /// When it will disappear by itself.
     pub until: SessionTime,
 }
 
@@ -122,12 +105,11 @@ impl Session {
         times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
     }
 
-    /// The locations that signals may highlight in this session.
     pub fn highlights(&self) -> HighlightSet {
         self.spec.highlights(&self.kitchen)
     }
 
-    /// The state of a session before its first event.
+    /// Before its first event.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64) -> Session {
         let state = kitchen.empty_state();
         let protocol = spec.step.as_ref().map(|_| StudyProtocolState::default());
@@ -165,17 +147,18 @@ impl Session {
         }
     }
 
-    /// Reading of the trial's clock at `now`: time since the trial's start without pauses; zero before the start.
+    /// Time since the trial's start without pauses; zero before the start.
     pub fn trial_clock(&self, now: SessionTime) -> SessionTime {
         match self.phase {
             TrialPhase::Ready => SessionTime::ZERO,
             TrialPhase::Running => now - self.trial_start - self.paused_total,
-            TrialPhase::Paused => self.paused_at - self.trial_start - self.paused_total,
-            TrialPhase::Over(_) | TrialPhase::Closed => self.paused_at - self.trial_start - self.paused_total,
+            TrialPhase::Paused | TrialPhase::Over(_) | TrialPhase::Closed => {
+                self.paused_at - self.trial_start - self.paused_total
+            }
         }
     }
 
-    /// Time from `at` to `now` on the trial's clock, without pauses and without the time after the trial's end.
+    /// Time from `at` to `now` on the trial's clock: without pauses and without the time after the trial's end.
     pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
         let end = match self.phase {
             TrialPhase::Ready | TrialPhase::Running => now,
@@ -185,18 +168,18 @@ impl Session {
         paused.fold(end - at, |age, pause| age - pause)
     }
 
-    /// Sampling rate of the gaze in Hz; `None` if no sample came for a second.
+    /// `None` if no sample came for a second.
     pub fn gaze_hz(&self, now: SessionTime) -> Option<f64> {
         let arrived = self.gaze.arrived.filter(|&arrived| now.secs_since(arrived) <= SILENT_S);
         arrived.map(|_| self.gaze.rate_hz)
     }
 
-    /// Random seed of estimates and recommendations, unique to the trial.
+    /// Of estimates and recommendations, unique to the trial.
     pub fn seed(&self) -> u64 {
         of_trial(self.spec.seed, self.trial)
     }
 
-    /// Whether the settings let the wizard (a person or a script) see the assistant's recommendations.
+    /// Whether the settings let the wizard (a person or a script) see recommendations.
     fn wizard_is_to_see_advice(&self) -> bool {
         let spec = &self.spec;
         match spec.wizard.kind {
@@ -207,20 +190,20 @@ impl Session {
         }
     }
 
-    /// Whether the wizard (a person or a script) saw the assistant's recommendations.
+    /// Whether the wizard (a person or a script) saw recommendations.
     pub fn wizard_saw_advice(&self) -> bool {
         let is_persons = self.spec.wizard.kind == WizardKind::Person;
         let was_unblinded = self.unblinded && is_persons && self.spec.trial.condition == Condition::Wizard;
         was_unblinded || self.wizard_is_to_see_advice()
     }
 
-    /// The study arm of the trial as it was actually carried out: whether the wizard really saw advice.
+    /// As the trial was actually carried out: whether the wizard really saw advice.
     pub fn study_arm(&self) -> StudyArm {
         self.arm_of_settings(self.wizard_saw_advice())
     }
 
-    /// The study arm under which the trial counts, whatever happened in it: the arm that the plan assigned or, without a
-    /// plan, the arm of the settings.
+    /// Under which the trial counts, whatever happened in it: the arm that the plan assigned or, without a plan, that
+    /// of the settings.
     pub fn planned_arm(&self) -> StudyArm {
         let assigned = self.spec.step.as_ref().and_then(|step| step.arm);
         assigned.unwrap_or_else(|| self.arm_of_settings(self.wizard_is_to_see_advice()))
@@ -230,18 +213,165 @@ impl Session {
         StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, saw_advice)
     }
 
-    /// Number of presses of both agents during the trial.
+    /// Of both agents in the trial.
     pub fn all_presses(&self) -> u32 {
         self.presses.iter().sum()
     }
 
-    /// Whether the trial is running: started, and neither paused nor over.
+    /// Started, and neither paused nor over.
     pub fn is_running(&self) -> bool {
         self.phase == TrialPhase::Running
     }
 
-    /// Adds an entry to the session's timeline.
-    pub(super) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
+    pub(crate) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
         self.timeline.push(TimelineEntry { time, what });
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrialPhase {
+    Ready,
+    Running,
+    Paused,
+    Over(TrialEndReason),
+    /// The session has ended.
+    Closed,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimelineEntry {
+    pub time: SessionTime,
+    pub what: TimelineEvent,
+}
+
+/// What the console and the tables show of events.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimelineEvent {
+    Press {
+        agent: Agent,
+        button: ButtonId,
+        before: State,
+        /// As `before` if the press had no effect.
+        after: State,
+        /// Why, and the location that the reason is about; `None` if the press had an effect.
+        no_effect: Option<(NoEffectReason, LocationId)>,
+    },
+    Signal {
+        by: Sender,
+        signal: Signal,
+    },
+    SignalEnded(SignalEndReason),
+    Served {
+        order: LocationId,
+    },
+    OrderShown {
+        order: LocationId,
+    },
+    Marker(String),
+    RobotStopped,
+    /// By itself: a protective stop or a fault.
+    ArmStopped {
+        mode: SafetyMode,
+        /// If a contact stopped the arm.
+        force_n: Option<f64>,
+        /// The faulty joint, from 1.
+        joint: Option<u8>,
+    },
+    ArmTouched {
+        force_n: f64,
+    },
+    RobotResumed,
+    RobotHeld,
+    RobotReleased,
+    RobotSkipped(ButtonId),
+    RobotDriven(ButtonId),
+    Corrected {
+        location: LocationId,
+    },
+    Trial(TrialPhase),
+    /// Other than a question or an answer.
+    Probe(ProbeEvent),
+    Excluded(String),
+    Included,
+    /// Whether the terminal has keyboard focus.
+    Focus(bool),
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RobotStatus {
+    /// The ongoing press: button, start, and expected time of contact.
+    pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
+    /// Whether the ongoing or last press is of the robot's initiative.
+    pub initiative: bool,
+    /// Number of presses by its initiative while the trial ran.
+    pub initiative_presses: u32,
+    /// By the wizard or by itself, until the wizard resumes it.
+    pub stopped: bool,
+    /// By the wizard, before its next press.
+    pub held: bool,
+    /// The press that the wizard chose, until it is made or aborted.
+    pub driven_to: Option<ButtonId>,
+    /// Why the robot is idle, and the human's buttons for a press of one of which it waits.
+    pub idle: Option<(IdleReason, Vec<ButtonId>)>,
+    pub arm: ArmStatus,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ArmStatus {
+    /// `None` before the first motion and for the timed arm.
+    pub last: Option<(SessionTime, ArmSample)>,
+    pub mode: SafetyMode,
+    /// Contact force that caused a protective stop.
+    pub stopped_by_n: Option<f64>,
+}
+
+impl RobotStatus {
+    /// Also possible after a protective stop.
+    pub fn is_stopped_by_wizard(&self) -> bool {
+        self.stopped && !self.arm.mode.has_stopped_itself()
+    }
+
+    /// As screens name it: a stop by the wizard is an emergency stop also of the timed arm, which has no safety modes
+    /// of its own.
+    pub fn safety_mode(&self) -> SafetyMode {
+        if self.is_stopped_by_wizard() { SafetyMode::EmergencyStop } else { self.arm.mode }
+    }
+
+    pub(crate) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime, initiative: bool) {
+        self.intention = Some((button, now, until));
+        self.initiative = initiative;
+        self.idle = None;
+    }
+
+    pub(crate) fn gives_up(&mut self, reason: AbortReason) {
+        self.intention = None;
+        // If the wizard chose another press for the robot, that press is still pending.
+        self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
+    }
+
+    pub(crate) fn rests(&mut self) {
+        self.intention = None;
+        self.driven_to = None;
+        self.idle = None;
+    }
+}
+
+impl Session {
+    /// Whose press changed a location at this time.
+    pub fn changed_by(&self, at: SessionTime) -> Option<Agent> {
+        let since = self.timeline.iter().rev().take_while(|entry| entry.time >= at);
+        since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
+            TimelineEvent::Press { agent, no_effect: None, .. } => Some(agent),
+            _ => None,
+        })
+    }
+
+    /// Whether the location changed without a press of the human, and the participant has not looked there since: a
+    /// fact, not an estimate.
+    pub fn is_unseen(&self, location: LocationId) -> bool {
+        let at = self.changed_at[location.index()];
+        let seen = self.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
+        let knows = seen || self.gaze.samples == 0 || at == SessionTime::ZERO;
+        !knows && self.changed_by(at) != Some(Agent::Human)
     }
 }

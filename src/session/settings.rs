@@ -1,20 +1,16 @@
-//! The settings of a session file, all together.
+//! The settings of a session file, and the errors of invalid ones.
+
+use core::net::{IpAddr, Ipv4Addr};
+use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-pub use super::condition::Condition;
-pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
-pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
-pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
-use super::person_code;
-use super::plan::{PlanPosition, PlanSpec};
-pub use super::probe_settings::ProbeSpec;
-use super::ranges;
-pub use super::robot_settings::{ArmKind, RobotSpec};
-pub use super::setting_checks::{SettingError, is_code};
-use super::stream_settings::RerunSpec;
-use super::tracker::TrackerSpec;
-use super::wall_display::DisplaySpec;
+use crate::plan::{PlanPosition, PlanSpec};
+use crate::stream_settings::RerunSpec;
+use crate::tracker::TrackerSpec;
+use crate::wall_display::DisplaySpec;
+use crate::{person_code, ranges};
+use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::communication::HighlightSet;
 use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
 use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
@@ -22,60 +18,49 @@ use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
 use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
 
-/// The settings of a session file: who takes part, under which condition, and for how long.
+pub use crate::probes::ProbeSpec;
+pub use crate::stream_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SessionSpec {
     /// Path of the layout file, relative to the session file.
     pub layout: String,
-    /// Seed of all random streams of the session.
+    /// Of all random streams.
     #[serde(default = "default_seed")]
     pub seed: u64,
-    /// When a trial ends, and under which condition it runs.
     #[serde(default)]
     pub trial: TrialSpec,
-    /// The participant (person or simulation), and the source of gaze.
     #[serde(default)]
     pub participant: ParticipantSpec,
-    /// Settings of the eye tracker.
     #[serde(default)]
     pub tracker: TrackerSpec,
-    /// Settings of the robot's arm and its timing.
     #[serde(default)]
     pub robot: RobotSpec,
-    /// Settings of the wizard: a person, or a script.
     #[serde(default)]
     pub wizard: WizardSpec,
-    /// How long signals are shown, and which are allowed.
     #[serde(default)]
     pub signals: SignalSpec,
-    /// Settings of the assistant that recommends or sends signals.
     #[serde(default)]
     pub assistant: AssistantSpec,
-    /// Settings of the wizard's console.
     #[serde(default)]
     pub console: ConsoleSpec,
-    /// Settings of the participant's display.
     #[serde(default)]
     pub display: DisplaySpec,
-    /// Settings of freeze probes; `None`: the task never stands still for questions.
+    /// `None`: the task never stands still for questions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probes: Option<ProbeSpec>,
-    /// Settings of the stream to Rerun's viewers.
     #[serde(default)]
     pub rerun: RerunSpec,
-    /// Settings of the Lab Streaming Layer; `None`: nothing is sent or received.
+    /// Lab Streaming Layer; `None`: nothing is sent or received.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lsl: Option<LslSpec>,
-    /// Path of a file with the parameters of the human model, relative to the session file; `None`: the parameters are
-    /// in
-    /// [`Self::human`].
+    /// File with the parameters of the human model, relative to the session file; `None`: they are in [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
-    /// Parameters of the assistant's human model; in a recording, the parameters in use.
+    /// The assistant's human model; in a recording, the parameters in use.
     #[serde(default)]
     pub human: HumanModel,
-    /// Study plan with several participants and trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanSpec>,
     /// Position of a recording in its plan; written by the program, not allowed in session files.
@@ -88,19 +73,20 @@ fn default_seed() -> u64 {
 }
 
 impl SessionSpec {
-    /// Checks ranges of the settings, the participant's code, and settings that exclude each other.
-    ///
-    /// # Errors
-    /// An error names the first invalid setting.
+    /// Missing settings get their defaults; other files to which the session file refers are not read.
+    pub fn from_toml(text: &str) -> Result<SessionSpec, SettingError> {
+        let wrong = |error: toml::de::Error| SettingError::new("", error.to_string(), "settings of a session");
+        let spec: SessionSpec = toml::from_str(text).map_err(wrong)?;
+        spec.check().map(|()| spec)
+    }
+
+    /// Ranges, the participant's code, and settings that exclude each other.
     pub fn check(&self) -> Result<(), SettingError> {
         ranges::check_session(self)?;
         let code = &self.participant.code;
         if let Some(fault) = person_code::fault(code) {
-            return Err(SettingError::new(
-                "participant.code",
-                format!("code = \"{code}\": {fault}"),
-                person_code::REMEDY,
-            ));
+            let found = format!("code = \"{code}\": {fault}");
+            return Err(SettingError::new("participant.code", found, person_code::REMEDY));
         }
         if let Some(plan) = &self.plan {
             plan.check()?;
@@ -127,10 +113,7 @@ impl SessionSpec {
             None => Ok(()),
         }
     }
-}
 
-impl SessionSpec {
-    /// Checks the settings of the Lab Streaming Layer, and that a gaze stream is set if gaze comes from the layer.
     fn check_lsl(&self) -> Result<(), SettingError> {
         if self.participant.gaze == GazeSource::Lsl && self.lsl.as_ref().is_none_or(|lsl| lsl.gaze.is_none()) {
             let found = "gaze = \"lsl\", and no stream".to_string();
@@ -147,7 +130,7 @@ impl SessionSpec {
         sends || self.participant.gaze == GazeSource::Lsl
     }
 
-    /// The locations that signals may highlight. By default all shared places and the robot's hand, and with the human
+    /// The locations that signals may highlight: by default all shared places and the robot's hand, with the human
     /// model of the paper those that the paper names.
     pub fn highlights(&self, kitchen: &Kitchen) -> HighlightSet {
         match (&self.signals.highlights, self.human.model) {
@@ -157,10 +140,7 @@ impl SessionSpec {
         }
     }
 
-    /// Checks that the kitchen has what these settings name.
-    ///
-    /// # Errors
-    /// The first setting that does not fit the kitchen.
+    /// The kitchen must have what these settings name.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
         let usual = HighlightSet::usual(kitchen);
         let can_be = |id: LocationId| usual.holds(id) && kitchen.location(id).kind != LocationKind::Order;
@@ -179,24 +159,22 @@ impl SessionSpec {
         self.probes.as_ref().map_or(Ok(()), |probes| probes.check_kitchen(kitchen))
     }
 
-    /// Whether the assistant computes recommendations: in the assistant condition, and with `shadow = "on"`.
+    /// In the assistant condition, and with `shadow = "on"`.
     pub fn asks_assistant(&self) -> bool {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == ShadowMode::On
     }
 
-    /// Whether the signals come from a scripted wizard.
-    pub fn scripts_wizard(&self) -> bool {
+    pub(crate) fn scripts_wizard(&self) -> bool {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
     }
 
-    /// Whether a scripted wizard reads the assistant's offers: offers are made, and the session shows recommendations.
+    /// Offers are made, and the session shows recommendations.
     pub fn script_reads_offers(&self) -> bool {
         let is_shown = self.asks_assistant() && self.console.visibility == WizardVisibility::Recommendation;
         self.scripts_wizard() && self.wizard.offers.is_some() && is_shown
     }
 
-    /// The condition in a run without a person at the console: a wizard condition without a scripted wizard becomes
-    /// unassisted.
+    /// In a run without a person at the console, a wizard condition without a scripted wizard becomes unassisted.
     pub fn unattended(&self, condition: Condition) -> Condition {
         match condition {
             Condition::Wizard if self.wizard.kind == WizardKind::Person => Condition::None,
@@ -205,21 +183,19 @@ impl SessionSpec {
     }
 }
 
-/// Condition of a trial, and when it ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrialSpec {
-    /// The trial's condition: who may send signals.
     pub condition: Condition,
-    /// Number of presses of both agents at which the trial ends; the default is the paper's mean.
+    /// Of both agents, at which the trial ends; the default is the paper's mean.
     pub presses: u32,
-    /// The longest duration of the trial in seconds of the trial's clock, which stands still in pauses.
+    /// Longest duration, on the trial's clock, which stands still in pauses.
     pub seconds: f64,
-    /// Number of served orders at which the trial ends, if set.
+    /// Served orders at which the trial ends, if set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orders: Option<u32>,
-    /// Least time between two presses of a person, in seconds of the trial's clock; earlier presses are recorded but do
-    /// not count. Simulated participants have the pace of their population instead.
+    /// Least time between two presses of a person, on the trial's clock; earlier presses are recorded but do not count.
+    /// Simulated participants have the pace of their population instead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pace_s: Option<f64>,
 }
@@ -230,22 +206,287 @@ impl Default for TrialSpec {
     }
 }
 
-/// Settings of the signals to the participant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SignalSpec {
-    /// Time for which a signal is shown on the display, in seconds.
     pub shown_s: f64,
-    /// Names of the locations that signals may highlight; `None`: those of the human model (see
-    /// [`SessionSpec::highlights`]).
+    /// Locations that signals may highlight; `None`: see [`SessionSpec::highlights`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub highlights: Option<Vec<String>>,
-    /// Least time between two signals of the wizard, in seconds.
+    /// Least time between two signals of the wizard.
     pub cool_down_s: f64,
 }
 
 impl Default for SignalSpec {
     fn default() -> Self {
         SignalSpec { shown_s: 4.0, highlights: None, cool_down_s: 0.5 }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("found {found}, wanted {remedy}")]
+pub struct SettingError {
+    /// Dotted, outermost table first; inner tables may be left out: "rerun.address".
+    pub path: String,
+    pub found: String,
+    pub remedy: Cow<'static, str>,
+    /// Index among settings with the same path, from 0.
+    pub nth: usize,
+}
+
+impl SettingError {
+    /// In the first setting with this path.
+    pub fn new(path: impl Into<String>, found: String, remedy: impl Into<Cow<'static, str>>) -> SettingError {
+        SettingError { path: path.into(), found, remedy: remedy.into(), nth: 0 }
+    }
+
+    /// Name without the tables in front.
+    pub fn key(&self) -> &str {
+        self.path.rsplit('.').next().unwrap_or(&self.path)
+    }
+}
+
+impl From<OutOfRange> for SettingError {
+    fn from(error: OutOfRange) -> SettingError {
+        SettingError::new(error.path, error.found, error.remedy)
+    }
+}
+
+/// 1 to 32 ASCII letters, digits, `-` and `_`: safe in names of folders, keys and tables.
+pub fn is_code(text: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)
+}
+
+/// Who sends signals in a trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Condition {
+    None,
+    Wizard,
+    Assistant,
+}
+
+impl Condition {
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ParticipantSpec {
+    /// Anonymous, never a name.
+    pub code: String,
+    pub kind: ParticipantKind,
+    pub gaze: GazeSource,
+    /// UDP and TCP port of the JSON gaze input.
+    pub gaze_port: u16,
+    /// Where the JSON gaze input listens; localhost by default.
+    pub gaze_listen: IpAddr,
+    /// Other computers from which gaze is read; if empty, they need the pairing code.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gaze_from: Vec<IpAddr>,
+    pub gaze_senders: GazeSenders,
+    /// `None` for the default population.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub population: Option<Population>,
+}
+
+impl Default for ParticipantSpec {
+    fn default() -> Self {
+        let code = "P01".to_string();
+        ParticipantSpec {
+            code,
+            kind: ParticipantKind::Simulated,
+            gaze: GazeSource::Simulated,
+            gaze_port: 50021,
+            gaze_listen: LOCALHOST,
+            gaze_from: Vec::new(),
+            gaze_senders: GazeSenders::First,
+            population: None,
+        }
+    }
+}
+
+impl ParticipantSpec {
+    pub(crate) fn simulates_gaze(&self) -> bool {
+        self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
+    }
+}
+
+/// Who takes the human's part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParticipantKind {
+    Simulated,
+    /// A person at the keyboard of the console.
+    Keyboard,
+    /// A person at the wall display, which is a page in a browser.
+    Display,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeSource {
+    /// The eyes of the simulated participant.
+    Simulated,
+    /// The mouse pointer: over the console's kitchen, or over the display if the participant plays there.
+    Mouse,
+    /// Pupil Core, through Pupil Capture's network API.
+    Pupil,
+    /// Pupil Player's export, or a recording of this program.
+    File,
+    /// Newline separated JSON over TCP or UDP.
+    Json,
+    /// A stream of the Lab Streaming Layer.
+    Lsl,
+    None,
+}
+
+/// From whom the JSON gaze input accepts datagrams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeSenders {
+    /// Only the address that sent the first gaze sample, until it has been silent for 5 s.
+    First,
+    Any,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ConsoleSpec {
+    pub visibility: WizardVisibility,
+    /// For terminals and fonts without other characters.
+    pub ascii: bool,
+    pub theme: ColourTheme,
+    /// Whether a click on a signal or on the offer sends the signal at once, without a question.
+    pub click_sends: bool,
+    /// File with the wizard's key bindings, relative to the session file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keys: Option<String>,
+    /// Preset texts for the wizard's markers: key 1 sets a marker with the first one.
+    pub notes: Vec<String>,
+    /// Preset reasons for aborting or excluding a trial.
+    pub reasons: Vec<String>,
+}
+
+/// Keys 1 to 5.
+pub const MAX_NOTES: usize = 5;
+const MAX_REASONS: usize = 20;
+/// In characters.
+const MAX_PRESET: usize = 40;
+
+impl Default for ConsoleSpec {
+    fn default() -> Self {
+        let texts = |texts: [&str; 5]| texts.map(str::to_string).to_vec();
+        ConsoleSpec {
+            visibility: WizardVisibility::Recommendation,
+            ascii: false,
+            theme: ColourTheme::Auto,
+            click_sends: false,
+            keys: None,
+            notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
+            reasons: texts([
+                "participant stopped",
+                "technical failure",
+                "wizard's mistake",
+                "instructions not understood",
+                "interrupted",
+            ]),
+        }
+    }
+}
+
+impl ConsoleSpec {
+    fn check(&self) -> Result<(), SettingError> {
+        let wrong = |key: &str, texts: &[String], most: usize, remedy| {
+            let is_text = |text: &String| {
+                let length = text.chars().count();
+                (1..=MAX_PRESET).contains(&length) && text.trim() == text && !text.chars().any(char::is_control)
+            };
+            let is_wrong = texts.is_empty() || texts.len() > most || !texts.iter().all(is_text);
+            is_wrong.then(|| SettingError::new(format!("console.{key}"), format!("{key} = {texts:?}"), remedy))
+        };
+        let notes = "1 to 5 texts of 1 to 40 characters, each on one line";
+        let reasons = "1 to 20 texts of 1 to 40 characters, each on one line";
+        let found = wrong("notes", &self.notes, MAX_NOTES, notes);
+        found.or_else(|| wrong("reasons", &self.reasons, MAX_REASONS, reasons)).map_or(Ok(()), Err)
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ColourTheme {
+    /// By the terminal's background; as for a dark one if the terminal does not report it.
+    Auto,
+    Dark,
+    Light,
+}
+
+/// How much the wizard's console shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum WizardVisibility {
+    /// Kitchen and gaze only, as in the paper.
+    State,
+    /// Also the estimated belief.
+    Belief,
+    /// Also the recommendations.
+    Recommendation,
+}
+
+impl WizardVisibility {
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    pub fn title(self) -> &'static str {
+        match self {
+            WizardVisibility::State => "kitchen and gaze",
+            WizardVisibility::Belief => "kitchen, gaze and the estimated belief",
+            WizardVisibility::Recommendation => {
+                "kitchen, gaze, the estimated belief and the assistant's recommendation"
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum ArmKind {
+    /// Presses have a random duration; the arm's motion is only displayed.
+    #[default]
+    Timed,
+    /// A simulated UR5 presses buttons by contact; it slows near the human's hand and stops on contact with it.
+    Physics,
+}
+
+impl ArmKind {
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RobotSpec {
+    pub arm: ArmKind,
+    /// Timed arm: median duration of a press.
+    pub press_s: f64,
+    /// Timed arm: standard deviation of the logarithm of a press's duration.
+    pub press_spread: f64,
+    /// Time without a press of the human after which the robot takes the initiative.
+    pub initiative_s: f64,
+}
+
+impl Default for RobotSpec {
+    fn default() -> Self {
+        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15, initiative_s: 6.0 }
     }
 }

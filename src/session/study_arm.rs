@@ -2,47 +2,44 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::condition::Condition;
+use crate::settings::Condition;
 use tomcom_core::communication::concept::ConceptName;
 
 /// An arm of a study. A wizard who sees the assistant's recommendations is another arm than a wizard who does not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, strum::IntoStaticStr,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum StudyArm {
-    /// Unassisted: nobody sends signals.
+    /// Nobody sends signals.
     #[default]
     None,
-    /// The wizard sends signals and does not see the assistant's recommendations, as in the paper.
+    /// The wizard does not see recommendations, as in the paper.
     Wizard,
-    /// The wizard sends signals and sees the estimated belief and the recommendations.
+    /// The wizard sees the estimated belief and the recommendations.
     #[serde(rename = "wizard+advice")]
+    #[strum(serialize = "wizard+advice")]
     WizardWithAdvice,
-    /// ToM-Com: the assistant sends signals by theory of mind with communication planning.
+    /// The assistant sends signals by theory of mind with communication planning.
     TomCom,
-    /// ToM: the assistant sends signals by theory of mind without planning.
+    /// The assistant sends signals by theory of mind without planning.
     Tom,
-    /// DEV: the assistant proposes the next presses after an error.
+    /// The assistant proposes the next presses after an error.
     Dev,
 }
 
 impl StudyArm {
-    /// All study arms, in the order of tables.
+    /// In the order of tables.
     pub const ALL: [StudyArm; 6] =
         [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom, StudyArm::Dev];
 
-    /// Name of the study arm in files.
+    /// In files.
     pub fn name(self) -> &'static str {
-        match self {
-            StudyArm::None => "none",
-            StudyArm::Wizard => "wizard",
-            StudyArm::WizardWithAdvice => "wizard+advice",
-            StudyArm::TomCom => "tom-com",
-            StudyArm::Tom => "tom",
-            StudyArm::Dev => "dev",
-        }
+        self.into()
     }
 
-    /// Name of the study arm in texts.
+    /// In texts.
     pub fn title(self) -> &'static str {
         match self {
             StudyArm::None => "unassisted",
@@ -54,7 +51,6 @@ impl StudyArm {
         }
     }
 
-    /// Who sends signals in the study arm.
     pub fn condition(self) -> Condition {
         match self {
             StudyArm::None => Condition::None,
@@ -63,7 +59,7 @@ impl StudyArm {
         }
     }
 
-    /// The communication concept that sends signals in the study arm; `None` without an assistant.
+    /// `None` without an assistant.
     pub fn concept(self) -> Option<ConceptName> {
         match self {
             StudyArm::None | StudyArm::Wizard | StudyArm::WizardWithAdvice => None,
@@ -73,9 +69,7 @@ impl StudyArm {
         }
     }
 
-    /// The study arm that a trial with these settings belongs to; `saw_advice` says whether the wizard saw the
-    /// assistant's
-    /// recommendations.
+    /// `saw_advice`: whether the wizard saw recommendations.
     pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
         match (condition, concept) {
             (Condition::None, _) | (Condition::Assistant, ConceptName::None) => StudyArm::None,

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::engine::SessionEngine;
 use crate::admit::is_external;
 use crate::advisor::{AdviceRequest, Advisor};
+use crate::engine::SessionEngine;
 use crate::files::file_error::{FileError, FileResult};
 use crate::follower::SessionFollower;
 use crate::log::{LogEnding, LogLine, LogReader, event_line};
@@ -19,41 +19,36 @@ use tomcom_core::base::words::count;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 
-/// Whether a recording verifies: the result of `tomcom replay RECORDING --verify`.
+/// The result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     /// Whether running the session again gave the same events and states.
     pub verified: bool,
-    /// Number of recorded events.
     pub events: u64,
-    /// Whether the recording was cut off; a cut recording is verified up to the cut.
+    /// A cut recording is verified up to the cut.
     pub cut: bool,
-    /// Whether the recording's session is still running.
+    /// Whether the recorded session still runs.
     pub running: bool,
-    /// First difference between the recorded events and those of running the session again; null without a difference.
+    /// The first one; null without a difference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<VerificationDifference>,
 }
 
-/// First difference between a recording and running its session again.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VerificationDifference {
-    /// Sequence number of the recorded event that differs.
+    /// Of the recorded event.
     pub seq: u64,
-    /// Path of the log that contains the event; with several parts, the log of the part.
+    /// The log with the event; of several parts, that of the part.
     pub log: PathText,
-    /// Number of the event's line in the log, from 1.
+    /// From 1.
     pub line: usize,
-    /// The recorded event, as a line of the log.
+    /// As a line of the log.
     pub recorded: String,
-    /// The event's line from running the session again; null if the repeated run gives no such event.
+    /// Null if the repeated run gives no such event.
     pub again: Option<String>,
 }
 
 /// Runs the session of a recording again and compares the new events with the recorded ones.
-///
-/// # Errors
-/// The recording cannot be read, or its events cannot be applied.
 pub fn verify(recording: &Path) -> FileResult<Verification> {
     let RepeatedRecording { log, again, replayed, difference } =
         RepeatedRecording::from_log(LogReader::open(recording)?)?;
@@ -65,21 +60,15 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
 
 /// A recording whose session was run again to the end.
 pub struct RepeatedRecording {
-    /// The log, read to its end.
+    /// Read to its end.
     pub log: LogReader,
-    /// The session that was run again.
     pub again: RepeatedSession,
     /// The session after applying the recorded events.
     pub replayed: SessionFollower,
-    /// First difference between the recorded events and those of the re-run; `None` without a difference.
     pub difference: Option<VerificationDifference>,
 }
 
 impl RepeatedRecording {
-    /// Runs a recording again, from its first event to its last.
-    ///
-    /// # Errors
-    /// The recording cannot be read, or its events cannot be applied.
     pub fn from_log(mut log: LogReader) -> FileResult<RepeatedRecording> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
@@ -99,14 +88,11 @@ impl RepeatedRecording {
     }
 }
 
-/// A recorded session that is being run again.
 pub struct RepeatedSession {
-    /// The engine of the session.
     pub engine: SessionEngine,
-    /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that the
-    /// recording lacks because of the cut.
+    /// Events that have not been compared yet; at the end of a cut recording, those that it lacks because of the cut.
     pub produced: VecDeque<TimestampedEvent>,
-    /// The assistant, which computes recommendations anew; `None` if the session asks no assistant.
+    /// `None` if the session asks no assistant.
     advisor: Option<Advisor>,
     questions: VecDeque<AdviceRequest>,
 }
@@ -139,7 +125,7 @@ impl RepeatedSession {
         })
     }
 
-    /// An external event for the re-run; a recommendation is computed anew for the request after the same event.
+    /// A recommendation is computed anew, for the request after the same event.
     fn computed_again(&mut self, event: &Event) -> Event {
         let (Event::Advised(advice), Some(advisor)) = (event, &mut self.advisor) else { return event.clone() };
         self.questions.retain(|question| question.seq >= advice.for_seq);
@@ -150,7 +136,7 @@ impl RepeatedSession {
         }
     }
 
-    /// Whether the re-run ends with the same session state and belief estimate as the replay, without events left over.
+    /// Whether both end with the same session state and belief estimate, without events left over.
     fn ends_like(&self, replayed: &SessionFollower) -> bool {
         self.produced.is_empty()
             && *self.engine.session() == replayed.session
@@ -158,7 +144,6 @@ impl RepeatedSession {
     }
 }
 
-/// The result of the verification as text.
 pub fn describe(found: &Verification) -> String {
     let until = match (found.running, found.cut) {
         (true, _) => "; the session is still running, and only the events written so far are verified",

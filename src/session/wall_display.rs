@@ -7,35 +7,33 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::setting_checks::SettingError;
+use crate::settings::SettingError;
 use tomcom_core::base::time::SessionTime;
 
 /// `[display]` of a session file: settings of the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DisplaySpec {
-    /// Address at which the display's page is served; other addresses than localhost need the pairing code that the
-    /// console shows.
+    /// Other addresses than localhost need the pairing code that the console shows.
     pub listen: IpAddr,
-    /// The TCP port of the display's page.
+    /// TCP port of the page.
     pub port: u16,
-    /// Language of the display's page: "en", "de", or the path of a file with words, relative to the session file.
+    /// "en", "de", or the path of a file with words, relative to the session file.
     pub language: String,
-    /// Words of the page from the language file; in a recording, the words in use.
+    /// From the language file; in a recording, the words in use.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub words: BTreeMap<String, String>,
-    /// Which pictures on the page have names beside them.
     pub names: DisplayedNames,
-    /// Whether each button on the page shows its keyboard key.
+    /// Whether each button shows its keyboard key.
     pub keys: bool,
     /// Whether the page shows the robot's next press. The paper does not show it, since a shown intention is
     /// communication.
     pub intention: bool,
     /// How the page shows a robot that the participant cannot see otherwise.
     pub arm: RobotDepiction,
-    /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
+    /// Whether the corners show AprilTags, by which an eye tracker finds the display.
     pub tags: bool,
-    /// Whether a square on the page flashes at the start of the trial and at signals, to synchronise video recordings.
+    /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
     /// Whether the page says why a press has no effect.
     pub reasons: bool,
@@ -45,7 +43,7 @@ pub struct DisplaySpec {
     pub clock: bool,
     /// Whether the page shows the number of served orders.
     pub served: bool,
-    /// Where questionnaires are answered: on the display or at the console.
+    /// Where questionnaires are answered.
     pub questionnaire: AnswerDevice,
 }
 
@@ -72,17 +70,17 @@ impl Default for DisplaySpec {
 }
 
 impl DisplaySpec {
-    /// Whether other computers can open the display's page.
+    /// Whether other computers can open the page.
     pub fn is_open(&self) -> bool {
         !self.listen.is_loopback()
     }
 
-    /// Language code of the display's page; a file with words contains its own language code.
+    /// A file with words contains its own code.
     pub fn code(&self) -> &str {
         self.words.get("language").unwrap_or(&self.language)
     }
 
-    /// Built-in languages of the display's page.
+    /// Those that are built in.
     pub const LANGUAGES: [&str; 2] = ["en", "de"];
 
     pub(super) fn check(&self) -> Result<(), SettingError> {
@@ -97,39 +95,33 @@ impl DisplaySpec {
     }
 }
 
-/// Which pictures on the participant's display have names beside them. Contents of places never have a name, since
-/// telling salmon from tuna is part of the task.
+/// Which pictures have names beside them. Contents of places never have one, since telling salmon from tuna is part of
+/// the task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedNames {
-    /// No picture has a name beside it.
     None,
-    /// Pictures of storages have names beside them.
     Storages,
-    /// Pictures of storages and orders have names beside them.
+    /// Of storages, too.
     Orders,
 }
 
-/// How the participant's display shows the robot. An approaching hand reveals an intention, as a real robot's does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+/// An approaching hand reveals an intention, as a real robot's does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RobotDepiction {
-    /// The page does not show the robot: a real robot stands beside the display.
+    /// A real robot stands beside the display.
     None,
-    /// The page shows a hand that moves between the places with its content.
+    /// A hand that moves between the places with its content.
     Hand,
-    /// The page shows a hand with an arm, seen from above.
+    /// A hand with an arm, seen from above.
     Arm,
 }
 
 impl RobotDepiction {
-    /// Name of this choice of the shown robot in files and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            RobotDepiction::None => "none",
-            RobotDepiction::Hand => "hand",
-            RobotDepiction::Arm => "arm",
-        }
+        self.into()
     }
 }
 
@@ -137,30 +129,26 @@ impl RobotDepiction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AnswerDevice {
-    /// Answers are entered at the console: the wizard reads the items out and enters the participant's answers.
+    /// The wizard reads the items out and enters the answers.
     Console,
-    /// Answers are entered on the display by the participant; the wizard can also enter answers.
+    /// The participant enters the answers; the wizard can, too.
     Display,
 }
 
-/// Reports of the participant's display; all are witnesses (only recorded).
+/// All are witnesses (only recorded).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum DisplayEvent {
-    /// The display's page is connected.
     Connected {
-        /// Width of the page in pixels.
         width_px: u32,
-        /// Height of the page in pixels.
         height_px: u32,
     },
-    /// The display's page is disconnected.
     Lost,
     /// The page has drawn a frame with the flash for an event (trial start, signal).
     Drawn {
-        /// Sequence number of the event for which the page flashed.
+        /// Sequence number of that event.
         cue: u64,
-        /// Session time at which the page drew the frame, by its synchronised clock.
+        /// By the page's synchronised clock.
         at_ns: SessionTime,
     },
 }

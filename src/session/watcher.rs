@@ -11,16 +11,15 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::advisor::{AdviceRequest, Advisor};
-use super::follower::SessionFollower;
-use crate::advice_moments::leads_to_advice;
+use crate::advisor::{AdviceRequest, Advisor, leads_to_advice};
 use crate::apply::ApplyError;
+use crate::event::WizardScreenContent;
+use crate::follower::SessionFollower;
 use crate::history::belief_track::BeliefSnapshot;
 use crate::history::comparison::{
     Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
 };
 use crate::settings::Condition;
-use crate::wizard_screen::WizardScreenContent;
 use crate::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
@@ -34,10 +33,9 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 
-/// Communication concepts to compare with the wizard, and the window within which communications match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SenderComparisonSettings {
-    /// Communication concepts to compare in addition to the session's own.
+    /// In addition to the session's own.
     pub with: Vec<ConceptName>,
     /// Number of the human's presses within which two communications match; the estimate leaves out signals sent within
     /// this window.
@@ -45,7 +43,7 @@ pub struct SenderComparisonSettings {
 }
 
 impl SenderComparisonSettings {
-    /// All concepts to compare: the session's own (ToM-Com if it has none) and those in `with`.
+    /// The session's own (ToM-Com if it has none) and those in `with`.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
             ConceptName::None => ConceptName::TomCom,
@@ -61,54 +59,49 @@ impl SenderComparisonSettings {
     }
 }
 
-/// A communication concept, with the hypothetical signals that the concept has sent so far.
+/// A concept, with the hypothetical signals that it has sent so far.
 #[derive(Debug)]
 struct Voice {
     name: ConceptName,
     advisor: Advisor,
-    /// The concept's hypothetical signals within the window: number of human presses before each signal, and the
-    /// signal's location.
+    /// Hypothetical signals within the window: number of human presses before each, and its location.
     said: Vec<(u32, LocationId)>,
     repeats: SignalRepeatRule,
-    /// Sequence number of the error after which the concept last proposed presses.
+    /// The error after which the concept last proposed presses.
     proposed: Option<u64>,
     spoken: Vec<Communication>,
 }
 
-/// A belief filter that leaves out one sent signal and all later signals.
+/// A belief filter that leaves out one sent signal and all later ones.
 #[derive(Debug)]
 struct CounterfactualFilter {
-    /// Number of human presses before the sent signal that the filter leaves out.
+    /// Number of human presses before that signal.
     press: u32,
     signal: Signal,
-    /// State of the kitchen when the left out signal was sent.
+    /// The kitchen when it was sent.
     state: State,
     filter: BeliefFilter,
 }
 
-/// Follows a session event by event, and asks each communication concept for its hypothetical signals.
+/// Follows a session event by event, and asks each concept for its hypothetical signals.
 #[derive(Debug)]
 pub struct SenderComparisonFollower {
-    /// The followed session with its belief estimate.
     pub follower: SessionFollower,
     window: u32,
     voices: Vec<Voice>,
-    /// One counterfactual filter for each signal within the window, the oldest first.
+    /// One for each signal within the window, the oldest first.
     counterfactuals: VecDeque<CounterfactualFilter>,
-    /// Signals sent before the window, as the session's rule against repeats sees them.
+    /// Signals sent before the window, as the rule against repeats sees them.
     shown: SignalRepeatRule,
     sent: Vec<Communication>,
-    /// The newest event after which concepts are asked for advice: sequence number and time. Concepts are asked once
-    /// all immediate consequences of the event are applied.
+    /// The newest event after which concepts are asked, once all its immediate consequences are applied.
     to_ask: Option<(u64, SessionTime)>,
     known: Option<Arc<CommunicationContext>>,
     screen: Option<WizardScreenContent>,
-    /// Number of times that the concepts were asked for advice.
     asked: u64,
 }
 
 impl SenderComparisonFollower {
-    /// The comparison at the beginning of a session, before the first event.
     pub fn new(session: Session, cost: CostToGo, request: &SenderComparisonSettings) -> SenderComparisonFollower {
         let voice = |name: ConceptName| Voice {
             name,
@@ -133,15 +126,11 @@ impl SenderComparisonFollower {
         }
     }
 
-    /// This comparison without attribution of errors to causes, which takes too long in a running session.
+    /// Without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> SenderComparisonFollower {
         SenderComparisonFollower { follower: self.follower.without_causes(), ..self }
     }
 
-    /// Applies the next event to the session and to the counterfactual filters.
-    ///
-    /// # Errors
-    /// The errors of [`SessionFollower::apply`].
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.ask();
@@ -172,28 +161,28 @@ impl SenderComparisonFollower {
         Ok(change)
     }
 
-    /// Asks the concepts for advice about the last event, after the end of the session.
+    /// Asks about the last event, after the end of the session.
     pub fn finish(&mut self) {
         self.ask();
     }
 
-    /// The context of the last request for advice.
+    /// Of the last request for advice.
     pub fn known(&self) -> Option<&Arc<CommunicationContext>> {
         self.known.as_ref()
     }
 
-    /// Number of requests for advice and number of sent signals: the comparison of a running trial changes only when
-    /// one of these numbers grows.
+    /// Numbers of requests for advice and of sent signals: the comparison of a running trial changes only when one of
+    /// them grows.
     pub fn progress(&self) -> (u64, usize) {
         (self.asked, self.sent.len())
     }
 
-    /// Number of the human's presses so far.
+    /// Of the human so far.
     pub fn presses(&self) -> u32 {
         self.follower.session.presses[Agent::Human.index()]
     }
 
-    /// Updates the counterfactual filters by an event, unless the event is a signal.
+    /// By any event but a signal.
     fn update_counterfactuals(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let (press, window) = (self.presses(), self.window);
         while let Some(oldest) = self.counterfactuals.pop_front_if(|oldest| press > oldest.press + window) {
@@ -241,7 +230,6 @@ impl SenderComparisonFollower {
         Communication { said, time, what, known: self.known.clone() }
     }
 
-    /// Asks every communication concept for its recommendation.
     fn ask(&mut self) {
         let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
         self.asked += 1;
@@ -287,7 +275,7 @@ impl SenderComparisonFollower {
         Some(CommunicationContent::Proposal(proposal.presses.clone()))
     }
 
-    /// The communications of wizard and assistants so far, compared; `over` says that the session has ended.
+    /// `over`: the session has ended.
     pub fn comparison(&self, over: bool) -> SenderComparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
@@ -305,7 +293,7 @@ impl SenderComparisonFollower {
     }
 }
 
-/// The belief estimate that leaves out the signals sent within the window.
+/// Leaves out the signals sent within the window.
 fn estimate<'a>(
     follower: &'a SessionFollower,
     counterfactuals: &'a VecDeque<CounterfactualFilter>,

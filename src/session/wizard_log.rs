@@ -2,10 +2,9 @@
 
 use serde::Serialize;
 
-use super::follower::SessionFollower;
-use crate::event::SignalEndReason;
+use crate::event::{SignalEndReason, WizardScreenContent};
+use crate::follower::SessionFollower;
 use crate::settings::ParticipantKind;
-use crate::wizard_screen::WizardScreenContent;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
@@ -22,29 +21,26 @@ pub struct WizardLog {
     seen: Vec<SignalsPerScreen>,
 }
 
-/// Number of signals sent while the wizard's screen showed a certain amount of information.
+/// Sent while the wizard's screen showed a certain amount of information.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
-    /// Content of the wizard's screen; null before the screen was first drawn, and without a console.
+    /// Null before the screen was first drawn, and without a console.
     pub screen: Option<WizardScreenContent>,
-    /// Number of signals sent with this content on the screen.
     pub signals: u64,
 }
 
-/// Performance of a wizard in one session.
+/// Of one session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WizardSummary {
-    /// Measures of the wizard's performance in the session.
     #[serde(flatten)]
     pub measures: WizardMeasures,
-    /// Numbers of signals by the content of the wizard's screen.
     pub screens: Vec<SignalsPerScreen>,
     /// Whether the wizard saw the assistants' recommendations.
     pub unblinded: bool,
 }
 
 impl WizardLog {
-    /// Adds an event that has just been applied to the session.
+    /// An event that has just been applied.
     pub fn note(&mut self, stamped: &TimestampedEvent, session: &Session) {
         match &stamped.event {
             Event::Screen(screen) => self.screen = Some(screen.clone()),
@@ -76,9 +72,9 @@ impl WizardLog {
         }
     }
 
-    /// The wizard's performance measured by false belief episodes from raters' codes. Raters code errors only, so it is
-    /// unknown whether other beliefs were false. Therefore signals about harmless false beliefs, signals about wrong
-    /// targets and needless signals are not told apart.
+    /// By false belief episodes from raters' codes. Raters code errors only, so it is unknown whether other beliefs
+    /// were false: signals about harmless false beliefs, signals about wrong targets and needless signals are not told
+    /// apart.
     pub fn measures_by_raters(&self, follower: &SessionFollower, episodes: &[FalseBeliefEpisode]) -> WizardMeasures {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let periods = periods(follower, episodes.iter());
@@ -86,7 +82,7 @@ impl WizardLog {
         WizardMeasures { wrong_targets: None, needless: None, harmless: None, ..measures }
     }
 
-    /// Summary of the wizard's performance in a session that has been followed to its end.
+    /// Of a session that was followed to its end.
     pub fn figures(&self, follower: &SessionFollower) -> WizardSummary {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let measures = WizardMeasures::from_signals(&sent, false_belief_periods(follower).as_deref());
@@ -94,14 +90,13 @@ impl WizardLog {
     }
 }
 
-/// Periods of false belief on the trial's clock; `None` where the participant's beliefs are not known.
+/// On the trial's clock; `None` where the participant's beliefs are not known.
 pub fn false_belief_periods(follower: &SessionFollower) -> Option<Vec<FalseBeliefPeriod>> {
     let known = follower.session.spec.participant.kind == ParticipantKind::Simulated
         && follower.judged.iter().all(|press| press.belief_known);
     known.then(|| periods(follower, follower.episodes.all()))
 }
 
-/// False belief episodes as periods on the trial's clock.
 fn periods<'a>(
     follower: &SessionFollower,
     episodes: impl Iterator<Item = &'a FalseBeliefEpisode>,
@@ -119,13 +114,12 @@ fn periods<'a>(
     episodes.map(period).collect()
 }
 
-/// Converts an earlier session time to the trial's clock.
+/// An earlier session time on the trial's clock.
 pub fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
     let paused = session.pauses.iter().map(|&(from, until)| until.min(time) - from);
     paused.fold(time - session.trial_start, |clock, pause| clock - pause)
 }
 
-/// The wizard's performance as lines of text.
 pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;
     let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());

@@ -30,8 +30,8 @@ use tomcom_core::measures::cause_codes::{AgreementTable, RaterAgreement};
 use tomcom_core::measures::matching::{MatchCounts, Similarity};
 use tomcom_core::measures::rater_choice::RaterPair;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
-use tomcom_session::code_correction::CodeCorrection;
 use tomcom_session::event::TrialEndReason;
+use tomcom_session::header::CodeCorrection;
 use tomcom_session::settings::ParticipantKind;
 
 /// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.

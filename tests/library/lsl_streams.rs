@@ -13,12 +13,12 @@ use tomcom_devices::lsl::{LslError, load};
 use tomcom_devices::lsl::{
     LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
 };
-use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::log::LogReader;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;

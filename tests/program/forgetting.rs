@@ -7,8 +7,8 @@ use std::process::{Command, Stdio};
 
 use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::RecordingLock;
-use tomcom_session::shard::SimulationShard;
 
 use crate::program::TOMCOM;
 

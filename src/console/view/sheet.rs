@@ -17,9 +17,9 @@ use crate::console::question::StartQuestion;
 use crate::console::text_columns::width;
 use tomcom_core::base::words::count;
 use tomcom_session::Session;
-use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
 use tomcom_session::protocol::{ItemAnswer, StudyProtocolState};
+use tomcom_session::questionnaire::AnswerValue;
 
 /// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {

@@ -5,7 +5,7 @@ use super::colours;
 use super::entity_content::{EntityData, SceneLogLevel, slug};
 use tomcom_core::kitchen::Agent;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_session::history::{probe_wording, wording};
+use tomcom_session::history::wording;
 use tomcom_session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
 use tomcom_session::{Session, probe_sampling};
 
@@ -38,7 +38,7 @@ impl ProbeScene {
         match event {
             ProbeEvent::Begun { .. } => self.filled.drain(..).map(|lane| state(lane, "")).collect(),
             ProbeEvent::Asked { question: number, .. } => {
-                let asked = question(*number).map_or_else(String::new, |asked| probe_wording::subject(&asked.about));
+                let asked = question(*number).map_or_else(String::new, |asked| wording::probe_subject(&asked.about));
                 vec![state(ASKED, asked)]
             }
             ProbeEvent::Answered { question: number, answer, .. } => {
@@ -57,7 +57,7 @@ impl ProbeScene {
         answer: Option<&str>,
         belief: Option<&DirichletBelief>,
     ) -> Vec<EntityUpdate> {
-        let about = probe_wording::subject(&asked.about);
+        let about = wording::probe_subject(&asked.about);
         let said = match (answer, &asked.about) {
             (None, _) => "does not know".to_string(),
             (Some(name), ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. }) => {

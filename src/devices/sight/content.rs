@@ -11,7 +11,7 @@ use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::no_effect::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use tomcom_core::robot::IdleReason;
-use tomcom_session::accuracy_check::RunningGazeCheck;
+use tomcom_session::gaze_check::RunningGazeCheck;
 use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use tomcom_session::wall_display::RobotDepiction;
 use tomcom_session::{Session, TimelineEvent, TrialPhase, proposals};

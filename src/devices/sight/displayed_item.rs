@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::page_language::DisplayWords;
 use tomcom_session::Session;
-use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, ItemOption};
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::wall_display::AnswerDevice;
 
 /// A questionnaire item as the participant's display shows it.

@@ -7,7 +7,7 @@ use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
-use tomcom_session::history::{probe_wording, wording};
+use tomcom_session::history::wording;
 use tomcom_session::log::{LogWriter, RecordingWriteError};
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
@@ -24,7 +24,7 @@ impl Live {
                     self.model.say(NoticeLevel::Alarm, wording::arm_stopped(mode, force_n, joint));
                 }
                 Event::Probe(ref event @ (ProbeEvent::Delayed { .. } | ProbeEvent::Dropped { .. })) => {
-                    self.model.warn(probe_wording::event(event));
+                    self.model.warn(wording::probe(event));
                 }
                 _ => {}
             }

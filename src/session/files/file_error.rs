@@ -7,66 +7,50 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
+use toml::de::{DeTable, DeValue};
 
-use super::place::place_of;
 use crate::features::{Feature, MissingFeature};
 use tomcom_core::base::printable::{printable, printable_lines};
 
-/// Result of reading a file, with an error that explains what is wrong with the file.
 pub type FileResult<T> = Result<T, FileError>;
 
-/// An error of a file that the program reads or writes: unreadable, unsuitable as a whole, or invalid in one place.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum FileError {
-    /// The file cannot be read at all.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
-        /// Path of the file that cannot be read.
         path: PathBuf,
-        /// Why the file cannot be read.
         reason: io::Error,
-        /// What a valid file would be.
         #[help]
         remedy: String,
     },
-    /// The file cannot be written.
     #[error("{}: cannot be written: {reason}", path.display())]
     Unwritable {
-        /// Path of the file or folder that cannot be written.
         path: PathBuf,
-        /// Why the file or folder cannot be written.
         reason: io::Error,
-        /// What a suitable name or place for the file would be.
         #[help]
         remedy: String,
     },
     /// A folder, a command-line option, or a file as a whole is unsuitable.
     #[error("{name}: found {found}")]
     Unfit {
-        /// Name of the folder, option or file.
         name: String,
-        /// What is wrong with the folder, option or file.
         found: String,
-        /// What folder, option or file would be valid.
         #[help]
         remedy: String,
     },
     /// A text file is invalid in one place.
     #[error("{name}:{line}: found {found}")]
     Wrong {
-        /// Name of the invalid file, as messages show it.
         name: String,
-        /// Line of the error in the file, counted from 1.
+        /// From 1.
         line: usize,
-        /// What is wrong in that line of the file.
         found: String,
-        /// Text of the file, for the excerpt in the message.
+        /// For the excerpt in the message.
         #[source_code]
         text: Arc<NamedSource<String>>,
-        /// Place of the error in the file's text, in bytes.
+        /// In bytes.
         #[label("here")]
         span: Option<SourceSpan>,
-        /// What would be valid at this place of the file.
         #[help]
         remedy: String,
     },
@@ -87,7 +71,7 @@ impl FileError {
         FileError::Wrong { name, line, found: one_line(found), text: Arc::new(source), span, remedy }
     }
 
-    /// The error on one line with what would be right, for places that show no help below a message.
+    /// On one line with its remedy, for places that show no help below a message.
     pub fn with_remedy(&self) -> String {
         let (FileError::Unreadable { remedy, .. }
         | FileError::Unwritable { remedy, .. }
@@ -101,38 +85,33 @@ impl FileError {
         FileError::Unfit { name: name_of(what), found: one_line(found), remedy }
     }
 
-    /// The error about a session or a recording that needs an optional part of the program which this build lacks.
+    /// A session or a recording needs an optional part which this build lacks.
     pub fn not_built(what: &Path, missing: MissingFeature) -> FileError {
         let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
         let remedy = format!("{}{instead}", missing.remedy());
         FileError::from_finding(
             what,
-            format!(
-                "a session that needs another build of tomcom; this build is \
-                                               {missing}"
-            ),
+            format!("a session that needs another build of tomcom; this build is {missing}"),
             remedy,
         )
     }
 
-    /// The error about a file that cannot be read.
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
         FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
 
-    /// The error about an output file, whose name the user chose, that cannot be written.
+    /// An output file whose name the user chose.
     pub fn unwritable(path: &Path, reason: io::Error) -> FileError {
         FileError::not_written(path, reason, "give another name for the file, in a folder that can be written to")
     }
 
-    /// The error about a file or folder that cannot be written, with what would be right in its place.
     pub fn not_written(path: &Path, reason: io::Error, remedy: &str) -> FileError {
         FileError::Unwritable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
 }
 
-/// The error about a file that a session file names and that cannot be read. Arguments are the dotted path of the
-/// setting that names the file, the index among settings with this path (0 is the first), and the file's name.
+/// A file that a session file names cannot be read. The setting that names it: its dotted path, its index among
+/// settings with this path (from 0), and its value.
 pub fn missing(
     session: &Path,
     text: &str,
@@ -156,11 +135,7 @@ fn one_line(text: String) -> String {
 /// Largest size of a file that people write, and of a file that is read as a whole, in bytes.
 pub const MAX_TEXT: u64 = 16 << 20;
 
-/// Opens a regular file for reading. Pipes and devices are refused, since they may never end, and opening a pipe could
-/// block forever.
-///
-/// # Errors
-/// The file does not exist, cannot be opened, or is no regular file.
+/// Opens a regular file. Pipes and devices are refused: they may never end, and opening a pipe could block forever.
 pub fn open_regular(path: &Path) -> io::Result<File> {
     match fs::metadata(path)?.is_file() {
         true => File::open(path),
@@ -170,10 +145,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Reads a regular file as a whole.
-///
-/// # Errors
-/// The errors of [`open_regular`], or the file has more than `most` bytes.
+/// Reads a regular file of at most `most` bytes.
 pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_regular(path)?.take(most + 1).read_to_end(&mut bytes)?;
@@ -183,10 +155,7 @@ pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads the text of a regular file of at most [`MAX_TEXT`] bytes: settings, notes, decisions.
-///
-/// # Errors
-/// The errors of [`read_bytes`], or the file is not UTF-8.
+/// Reads the text (UTF-8) of a regular file of at most [`MAX_TEXT`] bytes: settings, notes, decisions.
 pub fn read_regular(path: &Path) -> io::Result<String> {
     let bytes = read_bytes(path, MAX_TEXT)?;
     String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
@@ -195,4 +164,58 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
 /// Reads the text of a file that people write, as [`read_regular`] does.
 pub fn read_text(path: &Path) -> FileResult<String> {
     read_regular(path).map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
+}
+
+/// Byte range of the `nth` setting (from 0) with this dotted path in a TOML text, outermost table first:
+/// "rerun.address". Inner tables may be left out: "human.tau". `None` if the text has no such setting.
+pub fn place_of(text: &str, path: &str, nth: usize) -> Option<Range<usize>> {
+    let document = DeTable::parse(text).ok()?;
+    let names: Vec<&str> = path.split('.').collect();
+    let mut places = Vec::new();
+    collect(document.get_ref(), &names, &mut places);
+    places.sort_by_key(|place| place.start);
+    places.into_iter().nth(nth)
+}
+
+fn collect(table: &DeTable, names: &[&str], places: &mut Vec<Range<usize>>) {
+    let Some((first, rest)) = names.split_first() else { return };
+    for (name, value) in table {
+        let is_it = name.get_ref() == first;
+        if is_it && rest.is_empty() {
+            places.push(name.span().start..name.span().end.max(value.span().end));
+            continue;
+        }
+        within(value.get_ref(), if is_it { rest } else { names }, places);
+    }
+}
+
+fn within(value: &DeValue, names: &[&str], places: &mut Vec<Range<usize>>) {
+    match value {
+        DeValue::Table(table) => collect(table, names, places),
+        DeValue::Array(values) => values.iter().for_each(|value| within(value.get_ref(), names, places)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::files::place_of;
+
+    const TEXT: &str = "name = \"a\"\n[tracker]\naddress = \"b\"\n[rerun]\naddress = \"c\"\n[human.decision]\ntau = 1\n\
+                        [[item]]\nid = \"d\"\n[[item]]\nid = \"e\"\n[plan]\nform = { after = [2] }\n";
+
+    fn line(path: &str, nth: usize) -> Option<&str> {
+        place_of(TEXT, path, nth).map(|place| &TEXT[place])
+    }
+
+    #[test]
+    fn a_setting_is_found_in_its_own_table() {
+        assert_eq!(line("rerun.address", 0), Some("address = \"c\""));
+        assert_eq!(line("tracker.address", 0), Some("address = \"b\""));
+        assert_eq!(line("human.tau", 0), Some("tau = 1"));
+        assert_eq!(line("item.id", 1), Some("id = \"e\""));
+        assert_eq!(line("form.after", 0), Some("after = [2]"));
+        assert_eq!(line("name", 0), Some("name = \"a\""));
+        assert_eq!(line("display.address", 0), None);
+    }
 }

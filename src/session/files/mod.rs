@@ -1,27 +1,27 @@
-//! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be
-//! valid.
+//! Reads session, layout and recipe files, and the files that they name. Every error names the file, the line, what
+//! was found and what would be valid.
 
 pub mod file_error;
-pub mod known_settings;
-pub mod language;
 pub mod overwrite;
 pub mod parse;
-pub mod place;
 pub mod replace_file;
 pub mod rescue;
-pub mod wall_time;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use self::file_error::{FileError, FileResult, missing, read_regular, read_text};
-use self::language::read_words;
-use self::parse::parse;
-use self::place::place_of;
-use crate::SessionSpec;
+use jiff::Timestamp;
+use serde::Deserialize;
+
+use crate::files::file_error::{FileError, FileResult, missing, place_of, read_regular, read_text};
+use crate::files::parse::{FileKind, ParsedFile, parse};
 use crate::header::RecordedFile;
-use crate::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
-use crate::ranges;
+use crate::plan::{PlanSpec, QuestionnaireSpec, Study};
+use crate::questionnaire::Questionnaire;
 use crate::settings::SettingError;
+use crate::tutorial::Tutorial;
+use crate::wall_display::DisplaySpec;
+use crate::{SessionSpec, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
 use tomcom_core::kitchen::layout::LayoutSpec;
@@ -33,28 +33,25 @@ use tomcom_people::wizard::settings::WizardKind;
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
 pub struct SessionSetup {
-    /// Settings of the session, from the session file.
     pub spec: SessionSpec,
-    /// Kitchen of the session, with its layout and recipe files.
     pub kitchen: KitchenWithSources,
-    /// Key file (key bindings of the console); `None` if the settings name none.
+    /// Key bindings of the console.
     pub keys: Option<RecordedFile>,
-    /// Questionnaires that the study plan names, in the plan's order.
+    /// In the plan's order.
     pub questionnaires: Vec<Questionnaire>,
-    /// Tutorial that the study plan names; `None` if the plan has no tutorial.
     pub tutorial: Option<Tutorial>,
 }
 
 impl SessionSetup {
-    /// The study that these settings plan; `None` if the settings contain no study plan.
+    /// `None` if the settings contain no study plan.
     pub fn study(&self) -> Option<Study> {
         let kitchen = [&*self.kitchen.layout.text, &*self.kitchen.recipes.text];
         Study::new(&self.spec, self.questionnaires.clone(), self.tutorial.clone(), kitchen)
     }
 }
 
-/// Reads a session file, the layout and the key file that it names, and the recipes that the layout names. `language`:
-/// of the texts of the participant's display, in place of that of the session file. Keys are not checked.
+/// Reads a session file and the files that it names. `language` replaces that of the participant's display. Keys are
+/// not checked.
 pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSetup> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
@@ -80,10 +77,8 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
         let model = folder.join(file);
-        if let Err(reason) = std::fs::metadata(&model) {
-            let remedy = "the path of a file with parameters of the human model, relative to the session file";
-            return Err(missing(path, &text, ("human_model", 0, file), reason, remedy));
-        }
+        let remedy = "the path of a file with parameters of the human model, relative to the session file";
+        check_there(&model, path, &text, ("human_model", 0, file), remedy)?;
         spec.human = read_human_model(&model)?;
     }
     read_words(path, &text, &mut spec)?;
@@ -102,10 +97,8 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
         None => Vec::new(),
     };
     let layout_path = folder.join(&spec.layout);
-    if let Err(reason) = std::fs::metadata(&layout_path) {
-        let remedy = "the path of a layout file, relative to the session file";
-        return Err(missing(path, &text, ("layout", 0, &spec.layout), reason, remedy));
-    }
+    let remedy = "the path of a layout file, relative to the session file";
+    check_there(&layout_path, path, &text, ("layout", 0, &spec.layout), remedy)?;
     let keys = read_keys(path, &text, &spec)?;
     let mut kitchen = read_kitchen(&layout_path)?;
     kitchen.layout.path.clone_from(&spec.layout);
@@ -114,7 +107,6 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
     Ok(SessionSetup { spec, kitchen, keys, questionnaires, tutorial })
 }
 
-/// Reads the key file that the session file names; `None` if the session file names no key file.
 fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<RecordedFile>> {
     let Some(name) = &spec.console.keys else { return Ok(None) };
     let path = session.parent().unwrap_or(Path::new(".")).join(name);
@@ -125,7 +117,12 @@ fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Optio
     Ok(Some(RecordedFile { path: path.display().to_string(), text: keys }))
 }
 
-/// Reads the questionnaires that a study plan names, in the plan's order and in the session's language.
+/// A file that a session file names must exist; the setting that names it is given as to [`missing`].
+fn check_there(path: &Path, session: &Path, text: &str, setting: (&str, usize, &str), remedy: &str) -> FileResult<()> {
+    std::fs::metadata(path).map(drop).map_err(|reason| missing(session, text, setting, reason, remedy))
+}
+
+/// In the plan's order, and in the session's language.
 fn read_questionnaires(
     session: &Path,
     text: &str,
@@ -135,10 +132,8 @@ fn read_questionnaires(
     let folder = session.parent().unwrap_or(Path::new("."));
     let read = |(nth, asked): (usize, &QuestionnaireSpec)| {
         let path = in_language(folder.join(&asked.file), spec.display.code());
-        if let Err(reason) = std::fs::metadata(&path) {
-            let remedy = "the path of a questionnaire, relative to the session file";
-            return Err(missing(session, text, ("questionnaire.file", nth, &asked.file), reason, remedy));
-        }
+        let remedy = "the path of a questionnaire, relative to the session file";
+        check_there(&path, session, text, ("questionnaire.file", nth, &asked.file), remedy)?;
         let text = read_text(&path)?;
         let questionnaire: Questionnaire = parse(&path, &text)?;
         questionnaire.check().map_err(|error| wrong_setting(&path, &text, error))?;
@@ -147,14 +142,12 @@ fn read_questionnaires(
     plan.questionnaire.iter().enumerate().map(read).collect()
 }
 
-/// Reads the tutorial that a study plan names, in the session's language, and checks that it fits the kitchen.
+/// In the session's language; it has to fit the kitchen.
 fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitchen) -> FileResult<Option<Tutorial>> {
     let Some(file) = spec.plan.as_ref().and_then(|plan| plan.tutorial.as_ref()) else { return Ok(None) };
     let path = in_language(session.parent().unwrap_or(Path::new(".")).join(file), spec.display.code());
-    if let Err(reason) = std::fs::metadata(&path) {
-        let remedy = "the path of a tutorial, relative to the session file";
-        return Err(missing(session, text, ("plan.tutorial", 0, file), reason, remedy));
-    }
+    let remedy = "the path of a tutorial, relative to the session file";
+    check_there(&path, session, text, ("plan.tutorial", 0, file), remedy)?;
     let text = read_text(&path)?;
     let tutorial: Tutorial = parse(&path, &text)?;
     let checked = tutorial.check().and_then(|()| tutorial.check_kitchen(kitchen));
@@ -171,15 +164,11 @@ fn in_language(path: PathBuf, code: &str) -> PathBuf {
     own.filter(|own| own.is_file()).unwrap_or(path)
 }
 
-/// The error about an invalid setting at its place in a file's text.
 fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
     FileError::at(path, text, place_of(text, &error.path, error.nth), error.found, error.remedy.into_owned())
 }
 
-/// Reads a file with parameters of the human model; parameters that the file does not name have their defaults.
-///
-/// # Errors
-/// The file cannot be read, or a parameter is invalid.
+/// Parameters that the file does not name have their defaults.
 pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     let text = read_text(path)?;
     let model: HumanModel = parse(path, &text)?;
@@ -193,9 +182,6 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
 }
 
 /// The default session with its kitchen; both are part of the program, so that it runs without any file.
-///
-/// # Errors
-/// Occurs only if the program was built from invalid files.
 pub fn built_in_session() -> FileResult<SessionSetup> {
     let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../../sessions/default.toml"))?;
     let layout = (Path::new(&spec.layout), include_str!("../../../layouts/sushi.toml").to_string());
@@ -204,14 +190,12 @@ pub fn built_in_session() -> FileResult<SessionSetup> {
     Ok(SessionSetup { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
 }
 
-/// A compiled kitchen with its source texts, which go into the header of every recording.
+/// With its source texts, which go into the header of every recording.
 #[derive(Clone, Debug)]
 pub struct KitchenWithSources {
-    /// Kitchen, compiled from its layout and recipe files.
     pub kitchen: Kitchen,
-    /// Layout file of the kitchen.
     pub layout: RecordedFile,
-    /// Recipe file of the kitchen; its path is written as in the layout file.
+    /// Its path is written as in the layout file.
     pub recipes: RecordedFile,
 }
 
@@ -232,12 +216,11 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenWithSources> {
     Ok(files)
 }
 
-/// The error about a layout file with a number outside of its allowed range.
 fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
     FileError::at(path, text, error.place, error.found, error.remedy)
 }
 
-/// Compiles a kitchen from the texts of its layout and recipe files. The paths serve error messages only.
+/// The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     layout_ranges::check(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
@@ -258,7 +241,7 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
     }
 }
 
-/// Checks that the robot's arm can reach all of the robot's buttons.
+/// Whether the arm can reach all of the robot's buttons.
 #[cfg(feature = "physics")]
 fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) -> FileResult<()> {
     let Some((button, why)) = tomcom_arm::reach::out_of_reach(kitchen) else { return Ok(()) };
@@ -268,4 +251,57 @@ fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) 
     let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());
     let remedy = "a place about 0.2 to 0.75 m from the robot's base, and not beside or behind it".to_string();
     Err(FileError::at(path, text, place, found, remedy))
+}
+
+/// Translations of the display's texts, by the English originals, for a language that is not built in.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct LanguageFile(pub BTreeMap<String, String>);
+
+impl ParsedFile for LanguageFile {
+    const KIND: FileKind = FileKind::Language;
+}
+
+/// Texts in the session file take precedence over those of its language file.
+fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<()> {
+    let language = &spec.display.language;
+    if DisplaySpec::LANGUAGES.contains(&language.as_str()) {
+        return Ok(());
+    }
+    let path = session.parent().unwrap_or(Path::new(".")).join(language);
+    let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
+    check_there(&path, session, text, ("display.language", 0, language), remedy)?;
+    let LanguageFile(mut words) = parse(&path, &read_text(&path)?)?;
+    words.append(&mut spec.display.words);
+    spec.display.words = words;
+    Ok(())
+}
+
+/// A date and time in UTC, for files beside recordings: from the wall clock, which can be set and can jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WallTime(Timestamp);
+
+impl WallTime {
+    pub fn now() -> WallTime {
+        WallTime(Timestamp::now())
+    }
+
+    /// Since the beginning of 1970.
+    pub fn millis(self) -> i64 {
+        self.0.as_millisecond()
+    }
+
+    pub fn after_millis(self, millis: i64) -> WallTime {
+        WallTime(self.0 + jiff::SignedDuration::from_millis(millis))
+    }
+
+    /// "2026-03-14".
+    pub fn date(self) -> String {
+        self.0.strftime("%F").to_string()
+    }
+
+    /// "2026-03-14T09:26:53.589Z" (RFC 3339).
+    pub fn rfc3339(self) -> String {
+        self.0.strftime("%FT%T.%3fZ").to_string()
+    }
 }

@@ -4,17 +4,14 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
 
-use super::replace_file;
+use crate::files::replace_file;
 
-/// Number of bytes from the beginning of a file in which the file's kind is looked for.
+/// Number of bytes in which a file's kind is looked for.
 const HEAD: u64 = 1 << 16;
 
-/// Checks that a file can be written to this path. `is_own` receives the beginning of an existing file, and returns
-/// whether this program wrote it; `what` names such files in the error message. Empty files, pipes and devices may be
-/// overwritten, since they contain nothing that could be lost.
-///
-/// # Errors
-/// There is a file at the path that this program did not write or that cannot be read.
+/// Whether a file can be written to this path. `is_own` receives the beginning of an existing file and returns whether
+/// this program wrote it; `what` names such files in the error. Empty files, pipes and devices contain nothing that
+/// could be lost.
 pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io::Result<()> {
     match fs::metadata(path) {
         Ok(data) if data.is_file() => {}
@@ -31,12 +28,9 @@ pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io:
     Err(io::Error::new(ErrorKind::AlreadyExists, found))
 }
 
-/// Writes a file under a path that the user gave, after [`check`]. A file is replaced when the new content is complete,
-/// so that a full disk does not destroy the old content; where a link leads, the file is replaced and the link stays.
-/// Pipes and devices cannot be replaced, and are written to.
-///
-/// # Errors
-/// The file or its folder cannot be written to.
+/// Writes a file under a path that the user gave, after [`check`]. The file is replaced when the new content is
+/// complete, so that a full disk does not destroy the old one; where a link leads, the file is replaced and the link
+/// stays. Pipes and devices are written to.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     match fs::metadata(path) {
         Ok(data) if data.is_file() => replace_file::replace(&path.canonicalize()?, bytes),
@@ -45,7 +39,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// The first line of a text, without its line end and without a byte order mark.
+/// Without its line end and without a byte order mark.
 pub fn first_line(head: &[u8]) -> &[u8] {
     let line = head.split(|byte| matches!(byte, b'\r' | b'\n')).next().unwrap_or_default();
     line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)

@@ -5,39 +5,29 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use super::file_error::{FileError, FileResult};
-use super::known_settings::places_of;
 use crate::SessionSpec;
-use crate::plan::{Questionnaire, Tutorial};
+use crate::files::file_error::{FileError, FileResult};
+use crate::questionnaire::Questionnaire;
+use crate::tutorial::Tutorial;
 use tomcom_core::kitchen::layout::LayoutSpec;
 use tomcom_core::kitchen::recipe::RecipesSpec;
 use tomcom_core::mind::model::HumanModel;
 
-/// Kind of a file that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// A session file: the settings of a session.
     Session,
-    /// A layout file of a kitchen: places, buttons and the display.
     Layout,
-    /// A recipe file of a kitchen: dishes and their ingredients.
     Recipes,
-    /// A parameter file of the human model (beliefs and choices of simulated people).
     HumanModel,
-    /// A key file, which changes keys of the console.
     Keys,
-    /// A file with a questionnaire for participants.
     Questionnaire,
-    /// A file with a tutorial for participants.
     Tutorial,
-    /// A file with the texts of the participant's display in a language.
     Language,
-    /// A file with a battery of cohorts of simulated participants.
     Battery,
 }
 
 impl FileKind {
-    /// The kind of file to which a text belongs, judged by the tables in it; `None` if unknown.
+    /// The kind of file that a text is, by the tables in it.
     fn from_text(text: &str) -> Option<FileKind> {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
@@ -55,38 +45,32 @@ impl FileKind {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// What such a file is, and what would be right in the place of another one.
+    fn words(self) -> (&'static str, &'static str) {
         match self {
-            FileKind::Session => "a session file",
-            FileKind::Layout => "a layout file",
-            FileKind::Recipes => "a recipe file",
-            FileKind::HumanModel => "a file with parameters of the human model",
-            FileKind::Keys => "a key file",
-            FileKind::Questionnaire => "a questionnaire",
-            FileKind::Tutorial => "a tutorial",
-            FileKind::Language => "words of the participant's display",
-            FileKind::Battery => "a battery of cohorts",
-        }
-    }
-
-    fn remedy(self) -> &'static str {
-        match self {
-            FileKind::Session => "a session file, like sessions/default.toml",
-            FileKind::Layout => "a layout file, like layouts/sushi.toml",
-            FileKind::Recipes => "a recipe file, like recipes/sushi.toml",
-            FileKind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
-            FileKind::Tutorial => "a tutorial, like sessions/tutorials/sushi.toml",
-            FileKind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
-            FileKind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
-            FileKind::Keys => "a key file, as tomcom keys prints it",
-            FileKind::Battery => "a battery of cohorts, like sessions/people/robustness.toml",
+            FileKind::Session => ("a session file", "a session file, like sessions/default.toml"),
+            FileKind::Layout => ("a layout file", "a layout file, like layouts/sushi.toml"),
+            FileKind::Recipes => ("a recipe file", "a recipe file, like recipes/sushi.toml"),
+            FileKind::HumanModel => (
+                "a file with parameters of the human model",
+                "parameters of the human model, like those that tomcom fit writes",
+            ),
+            FileKind::Keys => ("a key file", "a key file, as tomcom keys prints it"),
+            FileKind::Questionnaire => {
+                ("a questionnaire", "a questionnaire, like sessions/questionnaires/acceptance.toml")
+            }
+            FileKind::Tutorial => ("a tutorial", "a tutorial, like sessions/tutorials/sushi.toml"),
+            FileKind::Language => (
+                "words of the participant's display",
+                "words of the participant's display, lines like \"rice\" = \"riz\"",
+            ),
+            FileKind::Battery => ("a battery of cohorts", "a battery of cohorts, like sessions/people/robustness.toml"),
         }
     }
 }
 
 /// A type into which files of one kind are parsed.
 pub trait ParsedFile: DeserializeOwned {
-    /// The kind of file from which this type is parsed.
     const KIND: FileKind;
 }
 
@@ -114,14 +98,14 @@ impl ParsedFile for HumanModel {
     const KIND: FileKind = FileKind::HumanModel;
 }
 
-/// Parses TOML into `T`; if the text is a file of another kind, the error says so.
+/// If the text is a file of another kind, the error says so.
 pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
+    let (_, right_file) = T::KIND.words();
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
-        Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),
+        Some(other) => FileError::at(path, text, None, other.words().0.to_string(), right_file.to_string()),
         None => {
             let (found, right) = told::<T>(text, &error);
-            let kind = T::KIND.remedy();
-            let remedy = right.map_or(kind.to_string(), |right| format!("{right}; in {kind}"));
+            let remedy = right.map_or(right_file.to_string(), |right| format!("{right}; in {right_file}"));
             FileError::at(path, text, error.span(), found, remedy)
         }
     })
@@ -189,4 +173,49 @@ fn type_name(expected: &str) -> String {
         _ => return expected.replace('`', "\""),
     };
     name.to_string()
+}
+
+const NOBODY: &str = "no_setting_has_this_name";
+/// Number of tables within tables that are looked into.
+const DEEPEST: usize = 3;
+/// A setting that more tables have than these has no place of its own, such as a name.
+const MOST_PLACES: usize = 3;
+
+/// Where files that are parsed into `T` have a setting of this name, in words: "under [human.decision]". `None` if no
+/// table has it, or too many. The parser of `T` is asked: it refuses a setting that no file has, and names those that
+/// the table could have.
+fn places_of<T: DeserializeOwned>(setting: &str) -> Option<String> {
+    let mut tables = Vec::new();
+    collect::<T>("", setting, DEEPEST, &mut tables);
+    if tables.is_empty() || tables.len() > MOST_PLACES {
+        return None;
+    }
+    let place = |table: &String| match (table.as_str(), settings_of::<T>(&joined(table, setting))) {
+        (_, Some(_)) => format!("as [{}]", joined(table, setting)),
+        ("", None) => "above the first table".to_string(),
+        (table, None) => format!("under [{table}]"),
+    };
+    Some(tables.iter().map(place).collect::<Vec<_>>().join(", or "))
+}
+
+fn collect<T: DeserializeOwned>(table: &str, setting: &str, depth: usize, tables: &mut Vec<String>) {
+    let Some(names) = settings_of::<T>(table) else { return };
+    if names.iter().any(|name| name == setting) {
+        tables.push(table.to_string());
+    }
+    if depth > 0 {
+        names.iter().for_each(|name| collect::<T>(&joined(table, name), setting, depth - 1, tables));
+    }
+}
+
+fn joined(table: &str, name: &str) -> String {
+    if table.is_empty() { name.to_string() } else { format!("{table}.{name}") }
+}
+
+/// `None` if it is no table.
+fn settings_of<T: DeserializeOwned>(table: &str) -> Option<Vec<String>> {
+    let header = if table.is_empty() { String::new() } else { format!("[{table}]\n") };
+    let error = toml::from_str::<T>(&format!("{header}{NOBODY} = 0\n")).err()?;
+    let expected = error.message().strip_prefix(&format!("unknown field `{NOBODY}`, expected "))?;
+    Some(expected.split('`').skip(1).step_by(2).map(str::to_string).collect())
 }

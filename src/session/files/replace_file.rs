@@ -7,19 +7,14 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-/// Suffix of the new file's name until the file is renamed.
+/// Until it is renamed, a new file is named after the old one, with `WRITER`, `RANDOM` letters and digits, and `NEW`.
 const NEW: &str = ".new";
-/// What stands between the old file's name and the random part of the new file's name.
 const WRITER: &str = ".tomcom-";
-/// Length of the random part of the new file's name, in letters and digits.
 const RANDOM: usize = 6;
 
-/// Creates an empty file beside `path`, which is removed again if it is not renamed. All users may read it whom the
-/// process's file mode allows to.
-///
-/// # Errors
-/// The folder cannot be written to, or `path` names no file.
-pub fn new_beside(path: &Path) -> io::Result<NamedTempFile> {
+/// An empty file beside `path`, which is removed unless it is renamed. All users may read it whom the process's file
+/// mode allows to.
+pub(crate) fn new_beside(path: &Path) -> io::Result<NamedTempFile> {
     let mut prefix = path.file_name().ok_or(ErrorKind::InvalidInput)?.to_os_string();
     prefix.push(WRITER);
     let mut builder = tempfile::Builder::new();
@@ -29,8 +24,7 @@ pub fn new_beside(path: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(path.parent().unwrap_or(Path::new("")))
 }
 
-/// A file that is being written, and that replaces the old file when it is complete. Nothing of it is left if it is
-/// not completed.
+/// A file that replaces the old one when it is complete; otherwise nothing of it is left.
 #[derive(Debug)]
 pub struct Replacement {
     path: PathBuf,
@@ -39,9 +33,6 @@ pub struct Replacement {
 
 impl Replacement {
     /// Begins a new file beside `path`, under a name that no other file has.
-    ///
-    /// # Errors
-    /// The folder cannot be written to.
     pub fn begin(path: &Path) -> io::Result<Replacement> {
         Ok(Replacement { path: path.to_path_buf(), out: BufWriter::new(new_beside(path)?) })
     }
@@ -56,10 +47,7 @@ impl Replacement {
         self.out.get_ref().path()
     }
 
-    /// Writes the new file to the disk, with the permissions of the old file, if there is one.
-    ///
-    /// # Errors
-    /// The disk is full, or the old file's permissions cannot be read.
+    /// Writes the new file to the disk, with the permissions of the old one.
     pub fn complete(&mut self) -> io::Result<()> {
         self.out.flush()?;
         let file = self.out.get_ref().as_file();
@@ -71,10 +59,7 @@ impl Replacement {
         file.sync_all()
     }
 
-    /// Completes the new file and renames it, so that it replaces the old file.
-    ///
-    /// # Errors
-    /// The folder cannot be written to, or the disk is full.
+    /// Completes the new file and renames it.
     pub fn finish(mut self) -> io::Result<()> {
         self.complete()?;
         self.out.into_inner()?.persist(&self.path)?;
@@ -99,20 +84,13 @@ impl Seek for Replacement {
 }
 
 /// Writes the content to a new file beside `path`, and renames it to `path`.
-///
-/// # Errors
-/// The folder cannot be written to, or the disk is full.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = Replacement::begin(path)?;
     file.write_all(bytes)?;
     file.finish()
 }
 
-/// Writes the content as [`replace`] does, but leaves it to the system when it is on the disk: for files that can be made
-/// again.
-///
-/// # Errors
-/// The folder cannot be written to, or the disk is full.
+/// As [`replace`], but leaves it to the system when it is on the disk: for files that can be made again.
 pub fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = new_beside(path)?;
     file.write_all(bytes)?;
@@ -121,9 +99,6 @@ pub fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Writes a file that must not exist yet.
-///
-/// # Errors
-/// There is a file at the path, the folder cannot be written to, or the disk is full.
 pub fn create(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = new_beside(path)?;
     file.write_all(bytes)?;

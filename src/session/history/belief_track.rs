@@ -8,52 +8,48 @@ use tomcom_core::kitchen::{AspectId, Kitchen, State};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 
-/// Least time between two snapshots of the belief estimate that differ little, in seconds.
+/// Least time between two snapshots that differ little.
 const STEP_S: f64 = 0.2;
 /// Change of a P(truth), the estimated probability of an aspect's true value, for which a snapshot is kept at once.
 const JUMP: f64 = 0.1;
 
-/// Longest period that the console's chart of one state aspect shows, in seconds.
+/// Longest period that the console's chart of a state aspect shows.
 pub const SHOWN_S: f64 = 60.0;
 
-/// Estimate of the participant's belief about one state aspect at one time.
+/// Estimate of the participant's belief about one state aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AspectBeliefSnapshot {
-    /// Index of the value that the participant most probably believes.
+    /// Index of the value most probably believed.
     pub believes: u8,
-    /// Expected probability that the participant gives to the value most probably believed.
+    /// Expected probability of that value.
     pub p: f32,
-    /// Expected probability that the participant gives to the true value.
+    /// Expected probability of the true value.
     pub p_truth: f32,
-    /// Index of the wrong value that the participant most probably believes.
+    /// Index of the wrong value most probably believed.
     pub wrong: u8,
-    /// Expected probability that the participant gives to the wrong value most probably believed.
+    /// Expected probability of that value.
     pub p_wrong: f32,
 }
 
 impl AspectBeliefSnapshot {
-    /// Whether the value that the participant most probably believes is false.
     pub fn is_false(self) -> bool {
         f64::from(self.p_truth) < FALSE_BELOW
     }
 }
 
-/// Estimate of the participant's beliefs about all aspects at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefSnapshot {
-    /// Session time of the estimate.
     pub time: SessionTime,
-    /// Whether only gaze samples, and no other events, came since the previous snapshot.
+    /// Whether only gaze samples came since the previous snapshot.
     by_gaze: bool,
-    /// Estimate of the participant's belief about each state aspect. Copies of a snapshot share it, since a replay and its
-    /// screen both keep the whole history.
+    /// By state aspect. Copies share it, since a replay and its screen both keep the whole history.
     pub held: Arc<[AspectBeliefSnapshot]>,
-    /// For each state aspect, the start of the present false belief about the aspect; `None` where the belief is right.
+    /// Start of the present false belief about each state aspect.
     wrong_since: Arc<[Option<SessionTime>]>,
 }
 
 impl BeliefSnapshot {
-    /// Creates a snapshot of the belief estimate at a time at which the kitchen's true state is `state`.
+    /// `state`: the kitchen's true state at that time.
     pub fn new(
         kitchen: &Kitchen,
         state: State,
@@ -82,20 +78,20 @@ impl BeliefSnapshot {
     }
 }
 
-/// Snapshots of the belief estimate in the order of time.
+/// In the order of time.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefHistory {
     moments: Vec<BeliefSnapshot>,
 }
 
 impl BeliefHistory {
-    /// Session times at which a false belief begins in the estimate.
+    /// Times at which a false belief begins in the estimate.
     pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
         let begins = |moment: &&BeliefSnapshot| moment.wrong_since.contains(&Some(moment.time));
         self.moments.iter().filter(begins).map(|moment| moment.time)
     }
 
-    /// Adds a snapshot of the estimate, unless only gaze samples with little effect came since the previous snapshot.
+    /// Adds a snapshot, unless only gaze samples with little effect came since the previous one.
     pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
             let mut pairs = last.held.iter().zip(moment.held.iter());
@@ -112,8 +108,7 @@ impl BeliefHistory {
         self.moments.push(moment);
     }
 
-    /// Removes snapshots that at `now` are older than `kept_s` seconds on the trial's clock, so that memory does not grow
-    /// with the length of a session.
+    /// Removes snapshots older than `kept_s` on the trial's clock, so that memory does not grow with the session.
     pub fn forget(&mut self, session: &Session, now: SessionTime, kept_s: f64) {
         let old = self.moments.partition_point(|moment| session.age(moment.time, now).as_secs_f64() > kept_s);
         // Old snapshots are removed in batches; the last snapshot before the limit stays, since that estimate still
@@ -123,19 +118,18 @@ impl BeliefHistory {
         }
     }
 
-    /// Appends those snapshots of another history of the same session that are later than the last snapshot of this
-    /// history.
+    /// Appends the later snapshots of another history of the same session.
     pub fn catch_up(&mut self, other: &BeliefHistory) {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);
     }
-    /// Snapshots of the belief estimate up to and including a time.
+    /// Up to and including a time.
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
     }
 }
 
-/// Start of the present false belief about a state aspect; `None` if the belief is right.
+/// Start of the present false belief about a state aspect.
 pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]
 }

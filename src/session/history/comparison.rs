@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use super::belief_track::AspectBeliefSnapshot;
+use crate::event::WizardScreenContent;
+use crate::history::belief_track::AspectBeliefSnapshot;
 use crate::history::wording;
-use crate::wizard_screen::WizardScreenContent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::Signal;
@@ -17,35 +17,31 @@ use tomcom_core::measures::matching::{
 };
 use tomcom_core::measures::sequences::FALSE_BELOW;
 
-/// A belief with a P(truth) of at least this counts as certain.
+/// A P(truth) of at least this counts as certain.
 const SURE: f64 = 0.9;
 
-/// Context of a possible communication: true state, belief estimate, recommendations, and what the wizard saw.
+/// What was known when the assistants were asked for advice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommunicationContext {
-    /// Sequence number of the event after which the assistants were asked for advice.
+    /// Event after which they were asked.
     pub seq: u64,
-    /// The true state of the kitchen at that event.
     pub state: State,
-    /// Estimated belief by state aspect, without the effect of signals that were sent within the matching window.
+    /// By state aspect, without the effect of signals sent within the matching window.
     pub held: Arc<[AspectBeliefSnapshot]>,
-    /// Recommendation of each assistant, in the order of the assistants' lanes.
+    /// Of each assistant, in the order of lanes.
     pub advice: Vec<Recommendation>,
-    /// Content of the wizard's screen; `None` before the screen was first drawn, and without a wizard.
+    /// `None` before the screen was first drawn, and without a wizard.
     pub screen: Option<WizardScreenContent>,
 }
 
-/// What one communication tells the participant: a signal, or proposed presses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommunicationContent {
-    /// A signal that the wizard or an assistant sends.
     Signal(Signal),
-    /// Proposed presses, as the names of their buttons.
+    /// Names of the buttons.
     Proposal(Vec<String>),
 }
 
 impl CommunicationContent {
-    /// Content of a communication that consists of this signal.
     pub fn from_signal(signal: &Signal) -> CommunicationContent {
         match signal {
             Signal::Propose(presses) => CommunicationContent::Proposal(presses.clone()),
@@ -53,7 +49,7 @@ impl CommunicationContent {
         }
     }
 
-    /// Content of the communication in the form that the matching of communications compares.
+    /// In the form that the matching compares.
     pub fn content(&self, kitchen: &Kitchen) -> ComparedContent {
         let kind = match self {
             CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
@@ -72,7 +68,6 @@ impl CommunicationContent {
         }
     }
 
-    /// Content of the communication in words.
     pub fn words(&self) -> String {
         match self {
             CommunicationContent::Signal(signal) => wording::signal(signal),
@@ -81,73 +76,67 @@ impl CommunicationContent {
     }
 }
 
-/// One communication of the wizard or of an assistant.
+/// Of the wizard or of an assistant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
-    /// The communication in the form that the matching compares: number of presses, trial clock and content.
+    /// In the form that the matching compares.
     pub said: CommunicationEvent,
-    /// Session time of the communication.
     pub time: SessionTime,
-    /// The signal, or the proposed presses, that the communication consists of.
     pub what: CommunicationContent,
-    /// Context of the communication: what was known when the assistants were last asked for advice before it.
+    /// When the assistants were last asked before it.
     pub known: Option<Arc<CommunicationContext>>,
 }
 
-/// All communications of one sender (the wizard or one assistant) in a trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SenderCommunications {
-    /// Name of the sender: "wizard", "tom-com".
+    /// "wizard", "tom-com".
     pub name: String,
-    /// Communication concept of the assistant; `None` for the signals that the participant saw.
+    /// `None` for the signals that the participant saw.
     pub concept: Option<ConceptName>,
-    /// Communications of this sender, in the order of time.
+    /// In the order of time.
     pub spoken: Vec<Communication>,
 }
 
 impl SenderCommunications {
-    /// Communications of the sender in the form that the matching takes, in the order of time.
+    /// In the form that the matching takes.
     pub fn said(&self) -> Vec<CommunicationEvent> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
     }
 }
 
-/// A communication of one sender without a match among the communications of another.
+/// A communication in one lane without a match in another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnmatchedCommunication {
-    /// Index of the lane with the communication.
     pub lane: usize,
-    /// Index of the communication in its lane.
+    /// Index in its lane.
     pub index: usize,
-    /// Index of the lane that has no communication matching this one.
+    /// The lane that has no match.
     pub not: usize,
 }
 
-/// Comparison of the first lane, which holds the signals that the participant saw, with an assistant's lane.
+/// The first lane, which the participant saw, compared with an assistant's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SenderMatches {
-    /// Strict matches, as pairs of indices into the first and the other lane.
+    /// Strict matches: indices into the first and the other lane.
     pub matched: Vec<(usize, usize)>,
-    /// Similarity of the two lanes' communications: how many of them match.
     pub similarity: Similarity,
 }
 
-/// Comparison of the wizard's and the assistants' communications in a trial so far.
+/// The wizard's and the assistants' communications in a trial so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SenderComparison {
     /// Two communications can match if at most this many presses of the human lie between them.
     pub window: u32,
-    /// The lanes, one for each sender; the first holds the signals that the participant saw.
+    /// One for each sender; the first holds the signals that the participant saw.
     pub lanes: Vec<SenderCommunications>,
-    /// Comparisons of the first lane with each assistant's lane.
+    /// The first lane with each assistant's.
     pub pairs: Vec<SenderMatches>,
-    /// Communications without a match, in order of time; a communication that a later one can still match is left out.
+    /// In order of time; a communication that a later one can still match is left out.
     pub differences: Vec<UnmatchedCommunication>,
 }
 
 impl SenderComparison {
-    /// Compares the communications of all senders in a trial after `presses` presses of the human; `over` says whether
-    /// the trial has ended.
+    /// `presses`: of the human so far; `over`: the trial has ended.
     pub fn new(lanes: Vec<SenderCommunications>, window: u32, presses: u32, over: bool) -> SenderComparison {
         let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(SenderCommunications::said).collect();
         let pair = |with: &Vec<CommunicationEvent>| {
@@ -174,23 +163,21 @@ impl SenderComparison {
         SenderComparison { window, lanes, pairs, differences }
     }
 
-    /// The communication that is without a match.
     pub fn spoken(&self, difference: &UnmatchedCommunication) -> &Communication {
         &self.lanes[difference.lane].spoken[difference.index]
     }
 
-    /// Index of the assistant's lane in a difference between two lanes.
+    /// Of the two lanes, the assistant's.
     fn assistant(&self, difference: &UnmatchedCommunication) -> usize {
         difference.lane.max(difference.not)
     }
 
-    /// Recommendation, at the time of an unmatched communication, of the assistant that is compared with the first
-    /// lane.
+    /// What that assistant recommended then.
     pub fn advice(&self, difference: &UnmatchedCommunication) -> Option<&Recommendation> {
         self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
     }
 
-    /// An unmatched communication in one line: "4:32  only tom-com: recipe of order 1".
+    /// "4:32  only tom-com: recipe of order 1".
     pub fn headline(&self, difference: &UnmatchedCommunication) -> String {
         let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
         let (clock, words) = (spoken.said.clock, spoken.what.words());
@@ -236,7 +223,7 @@ impl SenderComparison {
     }
 }
 
-/// A recommendation in words; for the concept ToM, the values of its options are expected deviations of beliefs.
+/// With the concept ToM, the values of options are expected deviations of beliefs.
 fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
         return CommunicationContent::Proposal(proposal.presses.clone()).words();
@@ -259,8 +246,7 @@ fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
     }
 }
 
-/// Two lists of state aspects in words: the aspects with false beliefs (lowest P(truth) first), and the aspects with
-/// beliefs that are right but uncertain.
+/// The aspects with false beliefs (lowest P(truth) first), and those with beliefs that are right but uncertain.
 fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let mut doubtful: Vec<(usize, &AspectBeliefSnapshot)> =
         known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
@@ -295,7 +281,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     ]
 }
 
-/// Contents of all locations that are not empty, in words.
+/// Contents of all locations that are not empty.
 fn truly(kitchen: &Kitchen, state: State) -> String {
     let location = |index: usize| {
         let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);

@@ -3,8 +3,5 @@
 
 pub mod belief_track;
 pub mod comparison;
-pub mod landmark;
-mod press_wording;
-pub mod probe_wording;
 pub mod signal_judge;
 pub mod wording;

@@ -12,47 +12,43 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_core::measures::wizard_performance::LATE_PRESSES;
 
-/// Counts of a sender's signals by the judgement of the signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SignalJudgementCounts {
-    /// Number of signals about a false belief of the participant.
+    /// About a false belief.
     pub hits: u64,
-    /// Number of signals about a belief that became right at most [`LATE_PRESSES`] presses of the human before.
+    /// About a belief that became right at most [`LATE_PRESSES`] presses of the human before.
     pub late: u64,
-    /// Number of signals about a belief that was right already.
+    /// About a belief that was right already.
     pub needless: u64,
-    /// Number of signals that the sender took back; these signals also count among hits, late and needless ones.
+    /// They also count among the others.
     pub taken_back: u64,
 }
 
 impl SignalJudgementCounts {
-    /// Number of signals that the sender sent.
     pub fn sent(&self) -> u64 {
         self.hits + self.late + self.needless
     }
 }
 
-/// Whether the participant's belief about one state aspect is false, and when it became right.
+/// Of the belief about one state aspect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Standing {
     is_false: bool,
-    /// Number of the human's presses at the time the belief became right; `None` if the belief was not corrected.
+    /// Number of the human's presses when it became right.
     corrected: Option<u32>,
 }
 
-/// Judges each signal by the participant's beliefs at the time it is sent.
 #[derive(Clone, Debug, Default)]
 pub struct SignalJudge {
     beliefs: Vec<Standing>,
     wizard: SignalJudgementCounts,
     assistant: SignalJudgementCounts,
-    /// Who sent the last signal, the wizard or the assistant; `None` before the first signal of the trial, and after
-    /// the last signal was taken back.
+    /// `None` before the trial's first signal, and after the last one was taken back.
     last: Option<Sender>,
 }
 
 impl SignalJudge {
-    /// Judges the signal in an event that has been applied to the session, by the beliefs noted before the event.
+    /// By the beliefs noted before the event, which has been applied.
     pub fn judge(&mut self, stamped: &TimestampedEvent, session: &Session) {
         match &stamped.event {
             Event::TrialStarted => *self = SignalJudge::default(),
@@ -81,7 +77,7 @@ impl SignalJudge {
         }
     }
 
-    /// Stores which of the participant's beliefs are false now.
+    /// Which beliefs are false now.
     pub fn note(&mut self, session: &Session, is_false: impl Fn(AspectId) -> bool) {
         let presses = session.presses[Agent::Human.index()];
         self.beliefs.resize(session.kitchen.aspects.len(), Standing::default());
@@ -94,7 +90,6 @@ impl SignalJudge {
         }
     }
 
-    /// Counts of the judged signals of a sender so far.
     pub fn tally(&self, by: Sender) -> SignalJudgementCounts {
         match by {
             Sender::Wizard => self.wizard,

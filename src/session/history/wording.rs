@@ -1,11 +1,11 @@
 //! Wording of buttons, locations, signals, phases and events as texts for screens and reports.
 
-use super::{press_wording, probe_wording};
-use crate::accuracy_check::GazeCheckEvent;
-use crate::answer_value::AnswerValue;
 use crate::event::{SignalEndReason, TrialEndReason};
+use crate::gaze_check::GazeCheckEvent;
 use crate::plan::PhaseSpec;
+use crate::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 use crate::protocol::ProtocolEvent;
+use crate::questionnaire::AnswerValue;
 use crate::tracker::{TrackerEvent, TrackerRecording};
 use crate::tutorial::TutorialEvent;
 use crate::wall_display::AnswerDevice;
@@ -24,13 +24,13 @@ use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::moment::ArmPhase;
 use tomcom_core::robot::safety::SafetyMode;
 
-/// A button's label in words: "cutting board", "take rice".
+/// "cutting board", "take rice".
 pub fn button(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonId) -> String {
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
-/// What the robot waits for while it is idle; `waits_for`: names of the human's buttons for which it waits. In shorter
-/// words if the sentence has more signs than `most`, so that the buttons can be read.
+/// What the robot waits for; `waits_for`: names of the human's buttons. In shorter words if the sentence has more signs
+/// than `most`, so that the buttons can be read.
 pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], most: usize) -> String {
     let buttons: Vec<String> = waits_for.iter().map(|name| name.as_ref().replace('_', " ")).collect();
     match reason {
@@ -45,12 +45,11 @@ pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], most: usize) -> S
     }
 }
 
-/// A location of the kitchen in words, such as "cutting board".
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// A rater's code for the cause of an error, in words: "slip", "wrong about cooking pot".
+/// "slip", "wrong about cooking pot".
 pub fn code(code: &ErrorCauseCode) -> String {
     match code {
         ErrorCauseCode::Belief(place) => format!("{} {}", ErrorCauseKind::Belief.title(), location(place)),
@@ -58,15 +57,14 @@ pub fn code(code: &ErrorCauseCode) -> String {
     }
 }
 
-/// Why a press of this button by the human would have no effect now, as text: "no effect: the cooking pot is empty";
-/// `None` if the press would have an effect. The text is short, since it stands beside the keys on a terminal with 80
-/// columns.
+/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty". It is short,
+/// since it stands beside the keys on a terminal with 80 columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
     Some(format!("the press has no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
 }
 
-/// Why a press has no effect, in words; `content` is the content of the location that the reason is about.
+/// `content`: of the location that the reason is about.
 fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &str) -> String {
     let name = kitchen.location(about).label();
     match why {
@@ -83,7 +81,7 @@ fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &
     }
 }
 
-/// Location at which a button acts: the button's own location, or the agent's hand.
+/// Where a button acts: at its own location, or in the agent's hand.
 pub fn place(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
@@ -93,7 +91,7 @@ pub fn place(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonId
     }
 }
 
-/// A signal to the participant in words, such as "recipe of order 1".
+/// "recipe of order 1".
 pub fn signal(signal: &Signal) -> String {
     match signal {
         Signal::ShowRecipe(order) => format!("recipe of {}", location(order)),
@@ -102,13 +100,12 @@ pub fn signal(signal: &Signal) -> String {
     }
 }
 
-/// Proposed presses in words: "press take rice, then cooking pot".
+/// "press take rice, then cooking pot".
 pub fn proposal(presses: &[String]) -> String {
     let presses: Vec<String> = presses.iter().map(|press| location(press)).collect();
     format!("press {}", presses.join(", then "))
 }
 
-/// What an offer to the wizard contains, in words.
 pub fn offered(what: &OfferedCommunication) -> String {
     match what {
         OfferedCommunication::Signal(told) => signal(told),
@@ -116,14 +113,12 @@ pub fn offered(what: &OfferedCommunication) -> String {
     }
 }
 
-/// The reason of a recommendation, with contents in words as screens show them; the recorded reason has the names of
-/// the log.
+/// With contents in the words of screens; the recorded reason has the names of the log.
 pub fn reason(kitchen: &Kitchen, reason: &SignalReason) -> SignalReason {
     let worded = |name: &str| kitchen.worded(name).to_string();
     SignalReason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
 }
 
-/// The sender of a signal in words: wizard or assistant.
 pub fn sender(by: Sender) -> &'static str {
     match by {
         Sender::Wizard => "wizard",
@@ -131,20 +126,19 @@ pub fn sender(by: Sender) -> &'static str {
     }
 }
 
-/// Recipe of an order's dish: "cooked rice + nori + cut tuna".
+/// "cooked rice + nori + cut tuna".
 pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
     let OrderContent::Dish(wanted) = session.state.order(order) else { return None };
     Some(dish(&session.kitchen, session.kitchen.dish(wanted)))
 }
 
-/// The recipe of a dish: "shaped rice + nori + cut salmon".
 pub fn dish(kitchen: &Kitchen, dish: &Dish) -> String {
     let stack = kitchen.content(dish.stack());
     let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).wording.as_str()).collect();
     names.join(" + ")
 }
 
-/// Phase of the study's protocol and phase of the trial, in a word.
+/// Phase of the study's protocol and phase of the trial.
 pub fn stage(session: &Session) -> String {
     match session.study_phase().map(PhaseSpec::phase) {
         Some(around) if !around.has_trial() && session.phase != TrialPhase::Closed => around.name().to_uppercase(),
@@ -152,7 +146,6 @@ pub fn stage(session: &Session) -> String {
     }
 }
 
-/// The phase of the trial in a word.
 pub fn phase(phase: TrialPhase) -> &'static str {
     match phase {
         TrialPhase::Ready => "READY",
@@ -164,7 +157,6 @@ pub fn phase(phase: TrialPhase) -> &'static str {
     }
 }
 
-/// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
         ProtocolEvent::ConsentGiven { on: AnswerDevice::Display, .. } => {
@@ -207,13 +199,13 @@ fn tutorial(event: &TutorialEvent) -> String {
     }
 }
 
-/// An entry of the timeline in words, together with who caused the entry.
+/// Also who caused it.
 pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
         TimelineEvent::Press { agent, button: id, before, after, no_effect } => {
             let did = match no_effect {
                 Some((why, about)) => Some(because(kitchen, *why, *about, "that")),
-                None => press_wording::effect(kitchen, *agent, *id, (*before, *after)),
+                None => press_effect(kitchen, *agent, *id, (*before, *after)),
             };
             let did = did.map_or(String::new(), |did| format!(": {did}"));
             (agent.name(), format!("{}{did}", button(kitchen, *agent, *id)))
@@ -239,7 +231,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Corrected { location } => {
             ("wizard", format!("corrected {}", kitchen.location(*location).label()))
         }
-        TimelineEvent::Probe(event) => ("", probe_wording::event(event)),
+        TimelineEvent::Probe(event) => ("", probe(event)),
         TimelineEvent::Excluded(reason) => ("trial", format!("excluded: {reason}")),
         TimelineEvent::Included => ("trial", "no longer excluded".to_string()),
         TimelineEvent::Focus(false) => ("console", "lost the keyboard focus".to_string()),
@@ -248,7 +240,6 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
     }
 }
 
-/// A protective stop of the arm in words.
 pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) -> String {
     let mode = mode.name().to_lowercase();
     match (force_n, joint) {
@@ -258,7 +249,6 @@ pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) ->
     }
 }
 
-/// Phase of the arm's motion in words.
 pub fn arm_phase(phase: ArmPhase) -> &'static str {
     match phase {
         ArmPhase::Rests => "at rest",
@@ -269,7 +259,7 @@ pub fn arm_phase(phase: ArmPhase) -> &'static str {
     }
 }
 
-/// State of the trial in a few words: "over: time is up".
+/// "over: time is up".
 pub fn trial(phase: TrialPhase) -> &'static str {
     match phase {
         TrialPhase::Ready => "ready",
@@ -284,7 +274,7 @@ pub fn trial(phase: TrialPhase) -> &'static str {
     }
 }
 
-/// An event of the eye tracker in words; `None` for fixations and blinks, which are too frequent.
+/// `None` for fixations and blinks, which are too frequent.
 pub fn tracker(event: &TrackerEvent) -> Option<String> {
     Some(match event {
         TrackerEvent::Connected { device } => format!("eye tracker connected: {device}"),
@@ -324,18 +314,16 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
     })
 }
 
-/// Joins these names, each in quotation marks.
 pub fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }
 
-/// Counts of gaze input that could not be recorded, by kind, in words.
+/// Gaze input that could not be recorded, by kind.
 pub fn drops(counts: &DroppedInputCounts) -> String {
     let kinds = [(counts.malformed, "malformed"), (counts.too_frequent, "too frequent"), (counts.overrun, "overrun")];
     kinds.iter().filter(|(n, _)| *n > 0).map(|(n, kind)| format!("{n} {kind}")).collect::<Vec<_>>().join(", ")
 }
 
-/// An event of the gaze accuracy check in words.
 pub fn calibration(event: &GazeCheckEvent) -> String {
     match event {
         GazeCheckEvent::Begun { targets } => format!("gaze accuracy check begins: {} targets", targets.len()),
@@ -358,8 +346,7 @@ pub fn calibration(event: &GazeCheckEvent) -> String {
     }
 }
 
-/// An error of the human in words: the cost of the press compared with the human's best press, and the cause of the
-/// error, where the cause is known.
+/// The cost of the press compared with the human's best press, and the cause where it is known.
 pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),
@@ -373,4 +360,68 @@ pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
         }
     };
     format!("error, costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
+}
+
+/// What a press with an effect took, put or made: "takes cooked rice", "puts nori"; `None` where the button's name says
+/// it.
+fn press_effect(kitchen: &Kitchen, agent: Agent, button: ButtonId, (before, after): (State, State)) -> Option<String> {
+    let content = |state: State, at: LocationId| kitchen.content_label(state, at);
+    let hand = kitchen.hands[agent.index()];
+    match kitchen.button(agent, button).action {
+        ButtonAction::Take(_) => None,
+        ButtonAction::Use(_) if before.content(hand).is_empty() => Some(format!("takes {}", content(after, hand))),
+        ButtonAction::Use(place) if before.content(place).is_empty() => Some(format!("puts {}", content(before, hand))),
+        ButtonAction::Use(_) => Some(format!("stacks {}", content(before, hand))),
+        ButtonAction::Process(process) => {
+            let place = kitchen.processes[usize::from(process)].place.unwrap_or(hand);
+            Some(format!("makes {}", content(after, place)))
+        }
+        ButtonAction::Trash => Some(format!("discards {}", content(before, hand))),
+        ButtonAction::Serve(order) => Some(format!("serves {}", content(before, order))),
+    }
+}
+
+/// A name from the log, without underscores.
+fn said(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// "cutting board", "recipe of tuna maki".
+pub fn probe_subject(about: &ProbeSubject) -> String {
+    match about {
+        ProbeSubject::Location { location } => said(location),
+        ProbeSubject::Recipe { dish } => format!("recipe of {}", said(dish)),
+        ProbeSubject::NextOrder => "the order that is served next".to_string(),
+        ProbeSubject::NextPress => "the robot's next press".to_string(),
+    }
+}
+
+pub fn probe(event: &ProbeEvent) -> String {
+    match event {
+        ProbeEvent::Requested => "the wizard requests a freeze probe".to_string(),
+        ProbeEvent::Delayed { probe, reason } => format!("freeze probe {probe} is delayed: {}", reason.words()),
+        ProbeEvent::Dropped { probe, reason } => format!("freeze probe {probe} is dropped: {}", reason.words()),
+        ProbeEvent::Begun { probe, origin, questions, .. } => {
+            let by = match origin {
+                ProbeOrigin::Schedule => "",
+                ProbeOrigin::Wizard => ", at the wizard's request",
+            };
+            let about: Vec<String> = questions.iter().map(|question| probe_subject(&question.about)).collect();
+            let questions = count(questions.len() as u64, "question", "questions");
+            format!("freeze probe {probe} begins{by}: the task stands still, {questions}: {}", about.join(", "))
+        }
+        ProbeEvent::Asked { probe, question } => format!("freeze probe {probe} asks question {question}"),
+        ProbeEvent::Answered { question, answer: Some(answer), confidence, .. } => {
+            let sure = confidence.map_or(String::new(), |step| format!(" (confidence {step} of 3)"));
+            format!("answer to probe question {question}: {}{sure}", said(answer))
+        }
+        ProbeEvent::Answered { question, answer: None, .. } => {
+            format!("answer to probe question {question}: I don't know")
+        }
+        ProbeEvent::Skipped { probe, reason } => {
+            format!("the wizard skips the other questions of freeze probe {probe}: {reason}")
+        }
+        ProbeEvent::Closed { probe, reason } => format!("freeze probe {probe} closes: {}", reason.words()),
+        ProbeEvent::Ended { probe } => format!("the task continues after freeze probe {probe}"),
+    }
 }

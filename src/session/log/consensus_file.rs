@@ -4,26 +4,22 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::RecordingWriteError;
-use super::decision_file::check_single;
-use super::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::files::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::files::replace_file;
+use crate::log::RecordingWriteError;
+use crate::log::decisions::check_single;
+use crate::log::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::person_code;
 use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode};
 use tomcom_core::measures::consensus::{ConsensusCode, RaterConsensus};
 
-/// Name of the consensus file in the folder of a recording.
 pub const CONSENSUS_NAME: &str = "consensus.csv";
 
-/// Columns of the consensus file: the code of each rater, then the press and the shared code.
+/// The code of each rater, then the press and the shared code.
 const COLUMNS: [&str; 9] =
     ["rater_1", "cause_1", "aspect_1", "rater_2", "cause_2", "aspect_2", "press", "cause", "aspect"];
 
-/// The raters' consensus about the recording in this folder; `None` if nothing is settled.
-///
-/// # Errors
-/// The file exists but cannot be read, or contains something that cannot be about this recording.
+/// `None` if nothing is settled; an error if the file has what cannot be about this recording.
 pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterConsensus>> {
     let path = folder.join(CONSENSUS_NAME);
     check_single(folder, CONSENSUS_NAME)?;
@@ -65,7 +61,7 @@ pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterCo
     Ok(consensus)
 }
 
-/// A rater's own code in a row of the consensus file; `None` if its cells are empty.
+/// `None` if the cells are empty.
 fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'static str)> {
     match (cause, aspect) {
         ("", "") => Ok(None),
@@ -73,10 +69,7 @@ fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'s
     }
 }
 
-/// Writes the consensus file to the disk; programs that read it meanwhile find the old file or the new one.
-///
-/// # Errors
-/// The folder cannot be written to.
+/// Programs that read the file meanwhile find the old one or the new one.
 pub fn write(folder: &Path, consensus: &RaterConsensus) -> Result<(), RecordingWriteError> {
     let path = folder.join(CONSENSUS_NAME);
     let failed = |reason| RecordingWriteError::unwritable(&path, reason);

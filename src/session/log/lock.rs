@@ -4,36 +4,33 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use super::RecordingWriteError;
 use crate::files::file_error::open_regular;
+use crate::log::RecordingWriteError;
 
-/// Name of the lock file in the folder of a recording that is being written. The lock file contains the writing
-/// program's process id and the network address for viewers.
+/// Contains the writing program's process id and the network address for viewers.
 pub const LOCK_NAME: &str = "lock";
-/// Prefix of the lock file's name while raters' codes are written; the names of the raters follow the prefix.
+/// Prefix of the lock while raters' codes are written; the raters' names follow.
 pub const CODES_LOCK: &str = "lock-codes-";
 /// Number of bytes of a lock file that are read; process id and address are shorter.
 const MAX_BYTES: u64 = 1 << 12;
-/// Number of attempts to take the lock again because the lock's holder removed the file meanwhile.
+/// Attempts to take the lock again, because its holder removed the file meanwhile.
 const ATTEMPTS: usize = 8;
 
 /// The right to write a recording, until the value is dropped. The operating system holds the lock and releases it when
-/// the process ends, so a lock file that a killed program left behind blocks nobody, even if another process has the
-/// killed program's id now.
+/// the process ends, so a lock file that a killed program left blocks nobody, even if another process has its id now.
 #[derive(Debug)]
 pub struct RecordingLock {
     file: File,
     path: PathBuf,
-    /// Folder that was made for the lock alone; it goes with the lock if nothing was recorded in it.
+    /// Folder that was made for the lock alone; it goes with it if nothing was recorded.
     made: Option<PathBuf>,
 }
 
-/// The program that writes a recording at present, as far as the lock file tells.
+/// As far as the lock file tells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LockHolder {
-    /// Process id of the program that writes the recording.
     pub pid: Option<u32>,
-    /// Network address at which viewers can watch the running session.
+    /// Address at which viewers can watch the running session.
     pub viewers: Option<String>,
 }
 
@@ -49,19 +46,12 @@ impl LockHolder {
 }
 
 impl RecordingLock {
-    /// Takes the lock of the recording in this folder.
-    ///
-    /// # Errors
-    /// Another program holds the lock, or the folder cannot be written to.
+    /// It is an error if another program holds the lock.
     pub fn take(folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
         RecordingLock::take_file(folder.join(LOCK_NAME), folder)
     }
 
-    /// Takes the right to code the errors of the recording in this folder as these raters, whose codes are always
-    /// replaced as a whole.
-    ///
-    /// # Errors
-    /// Another program has that right, or the folder cannot be written to.
+    /// Takes the right to code errors as these raters, whose codes are always replaced as a whole.
     pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, RecordingWriteError> {
         let mut raters = raters.to_vec();
         raters.sort_unstable();
@@ -74,11 +64,8 @@ impl RecordingLock {
         })
     }
 
-    /// Takes the right to record a participant of a study plan in this folder, from before the first question until the
-    /// last recording is closed. The folder is made if it does not exist.
-    ///
-    /// # Errors
-    /// Another program has that right, or the folder cannot be written to.
+    /// Takes the right to record a participant of a plan, from before the first question until the last recording is
+    /// closed. The folder is made if it does not exist.
     pub fn take_for_participant(folder: &Path, plan: &str, code: &str) -> Result<RecordingLock, RecordingWriteError> {
         let made = (!folder.exists()).then(|| folder.to_path_buf());
         fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
@@ -124,7 +111,7 @@ impl RecordingLock {
         Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid: None })
     }
 
-    /// The program that writes the recording in this folder; `None` if there is none.
+    /// The program that writes the recording in this folder.
     pub fn holder(folder: &Path) -> Option<LockHolder> {
         let mut file = open_regular(&folder.join(LOCK_NAME)).ok()?;
         match file.try_lock_shared() {
@@ -133,10 +120,7 @@ impl RecordingLock {
         }
     }
 
-    /// Writes the network address at which viewers can watch into the lock file.
-    ///
-    /// # Errors
-    /// The lock file cannot be written to.
+    /// Writes the address at which viewers can watch into the lock file.
     pub fn announce(&mut self, viewers: &str) -> io::Result<()> {
         writeln!(self.file, "{viewers}")
     }

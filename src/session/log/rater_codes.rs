@@ -6,52 +6,44 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use super::RecordingWriteError;
 use crate::files::file_error::{FileError, FileResult, MAX_TEXT, open_regular, read_bytes};
-use crate::files::overwrite;
-use crate::files::replace_file;
+use crate::files::{overwrite, replace_file};
+use crate::log::RecordingWriteError;
 use crate::person_code;
 use tomcom_core::base::spreadsheet::SEPARATORS;
 use tomcom_core::base::words::count;
 use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 
-/// Columns of the file of one rater's codes; an export of several recordings has one column more, before these. The file
-/// says whose codes it has, since its name can change when it is copied.
+/// Of one rater's file, which says whose codes it has, since its name can change when it is copied; an export has one
+/// column more before these.
 const COLUMNS: [&str; 4] = ["rater", "press", "cause", "aspect"];
-/// Columns of a file with exported codes of several recordings.
 pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
-/// Advice for two files with the codes of one rater.
 const KEEP_ONE: &str =
     "one file for each rater: compare the two, keep the codes that hold, and move the other file elsewhere";
-/// Advice for a line of a table of codes that has the wrong number of cells.
 const REMEDY: &str = "as many fields as the first line has";
-/// Endings of the names of spreadsheets' files.
 const SPREADSHEETS: [&str; 4] = [".xlsx", ".xls", ".ods", ".numbers"];
 
-/// A row of a file with exported codes of raters.
+/// Of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RaterCodeRow {
-    /// Line of the row in the file, for error messages.
+    /// For error messages.
     pub line: usize,
-    /// Name of the folder of the coded recording.
+    /// Name of the recording's folder.
     pub recording: String,
-    /// Name of the rater.
     pub rater: String,
     /// Sequence number of the press that was an error.
     pub press: u64,
-    /// Cause of the error, as the rater judged the error.
     pub code: ErrorCauseCode,
 }
 
-/// A file with the codes of one rater, who is named in each of its rows.
+/// The rater is named in each of its rows.
 struct CodeFile {
     path: PathBuf,
     text: String,
     rows: Vec<ParsedRow>,
 }
 
-/// Whether a file of this name in the folder of a recording may have a rater's codes: `codes-R1.csv`, and how people,
-/// file managers, browsers and sync programs name copies of it.
+/// `codes-R1.csv`, and how people, file managers, browsers and sync programs name copies of it.
 pub fn is_codes_file(name: &str) -> bool {
     is_named_as_codes(name, &[".csv"])
 }
@@ -66,11 +58,8 @@ fn is_named_as_codes(name: &str, endings: &[&str]) -> bool {
     is_separate && is_rater && endings.iter().any(|ending| name.ends_with(ending))
 }
 
-/// Names of the files with raters' codes in the folder of a recording: by their names, or by their first lines.
-///
-/// # Errors
-/// The folder cannot be read, or a program has saved a rater's codes as a file of another kind.
-pub fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
+/// Files with raters' codes by their names, or by their first lines; an error if codes were saved as a spreadsheet.
+pub(crate) fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
@@ -88,17 +77,13 @@ pub fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
     Ok(names)
 }
 
-/// Whether the first line of a file is that of a rater's codes.
 fn is_one_raters(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = open_regular(path).and_then(|file| file.take(64).read_to_end(&mut head));
     read.is_ok() && overwrite::first_line(&head) == COLUMNS.join(",").as_bytes()
 }
 
-/// Checks that two raters whom the user named have coded errors, where raters are those who have.
-///
-/// # Errors
-/// One of the two has no codes.
+/// Both raters whom the user named must be among those who have coded.
 pub fn check_named(what: &Path, named: &[String; 2], raters: &BTreeSet<String>) -> FileResult<()> {
     let Some(missing) = named.iter().find(|rater| !raters.contains(*rater)) else { return Ok(()) };
     let known: Vec<&str> = raters.iter().map(String::as_str).collect();
@@ -109,8 +94,7 @@ pub fn check_named(what: &Path, named: &[String; 2], raters: &BTreeSet<String>) 
     Err(FileError::from_finding(what, format!("no codes of the rater {missing}"), remedy))
 }
 
-/// The files with codes in the folder of a recording, by the rater whom each names inside. Files without a row are
-/// nobody's.
+/// By the rater whom each file names inside; files without a row are nobody's.
 fn code_files(folder: &Path) -> FileResult<BTreeMap<String, CodeFile>> {
     let names = code_file_names(folder)?;
     let mut files: BTreeMap<String, CodeFile> = BTreeMap::new();
@@ -158,19 +142,12 @@ fn code_files(folder: &Path) -> FileResult<BTreeMap<String, CodeFile>> {
     Ok(files)
 }
 
-/// Names of the raters who have coded the recording in this folder.
-///
-/// # Errors
-/// The folder or a file with codes cannot be read, or a rater has two files.
+/// It is an error if a rater has two files.
 pub fn raters(folder: &Path) -> FileResult<BTreeSet<String>> {
     Ok(code_files(folder)?.into_keys().collect())
 }
 
-/// The codes of all raters for the recording in this folder, by rater.
-///
-/// # Errors
-/// The folder or a file with codes cannot be read, a rater has two files, or a file contains something that cannot be
-/// about this recording.
+/// By rater; an error if a file has what cannot be about this recording.
 pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<String, RaterCodes>> {
     let mut all = BTreeMap::new();
     for (rater, CodeFile { path, text, rows }) in code_files(folder)? {
@@ -186,10 +163,7 @@ pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<S
     Ok(all)
 }
 
-/// Writes a rater's codes to the disk; programs that read the file meanwhile find the old file or the new one.
-///
-/// # Errors
-/// The folder cannot be written to.
+/// Programs that read the file meanwhile find the old one or the new one.
 pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), RecordingWriteError> {
     let path = folder.join(file_name(rater));
     let failed = |reason| RecordingWriteError::unwritable(&path, reason);
@@ -203,10 +177,6 @@ pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), Recor
     replace_file::replace(&path, &bytes).map_err(failed)
 }
 
-/// Reads an export of the codes of several raters for several recordings.
-///
-/// # Errors
-/// The file cannot be read, or is no export of raters' codes.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     let bytes = read_bytes(path, MAX_TEXT);
     let bytes =
@@ -220,10 +190,6 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     Ok((text, rows))
 }
 
-/// Writes an export of raters' codes into a table file.
-///
-/// # Errors
-/// The file cannot be written, or there is a file of another kind at the path.
 pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> FileResult<()> {
     let failed = |reason| FileError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
@@ -241,10 +207,6 @@ pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> FileResult<()> {
     write().map_err(failed)
 }
 
-/// The text of a table file of raters' codes.
-///
-/// # Errors
-/// A line of the file is not UTF-8.
 pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
@@ -254,18 +216,16 @@ pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     })
 }
 
-/// An error about one line of a table of raters' codes.
 pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &str) -> FileError {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     let length = text[before..].lines().next().map_or(0, str::len);
     FileError::at(path, text, Some(before..before + length), found, remedy.to_string())
 }
 
-/// A parsed row of a raters' table: line number, cells before the code, sequence number of the press, and code.
+/// Line number, cells before the code, sequence number of the press, and code.
 pub(super) type ParsedRow = (usize, Vec<String>, u64, ErrorCauseCode);
 
-/// Reads the rows of a raters' table, whose last three columns are a press and the code of that press. No press may
-/// occur twice for the same rater and recording.
+/// The last three columns are a press and its code. No press may occur twice for the same rater and recording.
 pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     // Spreadsheets of countries with a decimal comma separate columns by semicolons.
     let head = overwrite::first_line(text.as_bytes());
@@ -322,14 +282,13 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
     Ok(rows)
 }
 
-/// Sequence number of the press and its code from the cells of a row, or what was found and what would be valid.
+/// The error: what was found and what would be valid.
 fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, ErrorCauseCode), (String, &'static str)> {
     let number = press.parse();
     let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
     Ok((number, code_of(cause, aspect)?))
 }
 
-/// The code made of a cause and a state aspect, or what was found and what would be valid.
 pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (String, &'static str)> {
     let kind = ErrorCauseKind::named(cause);
     let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;
@@ -338,7 +297,6 @@ pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (Stri
     code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))
 }
 
-/// Name of the file with the codes of a rater.
 fn file_name(rater: &str) -> String {
     format!("codes-{rater}.csv")
 }

@@ -6,36 +6,33 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::correction::correct_header;
-use super::lock::is_same;
-use super::{LOG_NAME, RecordingLock};
 use crate::apply::ApplyError;
 use crate::files::compile_kitchen;
 use crate::files::file_error::{FileError, FileResult, open_regular};
 use crate::header::{FORMAT, PreviousPart, VERSION};
+use crate::log::decisions::correct_header;
+use crate::log::lock::is_same;
+use crate::log::{LOG_NAME, RecordingLock};
 use crate::settings::SettingError;
 use crate::{Event, LogHeader, Session, TimestampedEvent};
 use tomcom_core::kitchen::Kitchen;
 
-/// Longest line of a log, in bytes; a file with a longer line is not a log.
+/// In bytes; a file with a longer line is no log.
 pub const MAX_LINE: usize = 1 << 24;
-/// Number of bytes at the end of a log among which the last event is searched.
+/// Number of bytes at a log's end among which the last event is searched.
 const TAIL: u64 = 1 << 16;
-/// Largest number of parts of a recording.
 const MAX_PARTS: usize = 100;
 
-/// A line of the log with its event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogLine {
-    /// Number of the line in the file, counted from 1; line 1 is the header.
+    /// In its file, from 1; line 1 is the header.
     pub number: usize,
-    /// Line of the log as it is in the file, without its line end.
+    /// Without its line end.
     pub text: String,
-    /// Event that the line of the log contains.
     pub stamped: TimestampedEvent,
 }
 
-/// Place of an event in the files of a recording, from which events can be read again.
+/// From which events of a recording can be read again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogPlace {
     path: Arc<Path>,
@@ -44,15 +41,11 @@ pub struct LogPlace {
 }
 
 impl LogPlace {
-    /// Whether two events are in the same file of a recording.
     pub fn is_in_file_of(&self, other: &LogPlace) -> bool {
         self.path == other.path
     }
 
-    /// Reads this number of events again, all of which are in one file and were read from there before.
-    ///
-    /// # Errors
-    /// The file cannot be read any more, or has changed.
+    /// Reads this number of events again, all of one file; an error if the file has changed.
     pub fn read_again(&self, number: usize) -> FileResult<Vec<TimestampedEvent>> {
         let unreadable =
             |reason| FileError::unreadable(&self.path, reason, "the recording as it was when it was opened");
@@ -69,14 +62,13 @@ impl LogPlace {
     }
 }
 
-/// How a recording ends, as far as its events have been read.
+/// As far as its events have been read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogEnding {
-    /// The recording ends with the regular end of its session.
     Closed,
-    /// A program is still writing the recording, so more events will come.
+    /// A program is still writing, so more events will come.
     Running,
-    /// The session's end is missing in the recording, and no program is writing it.
+    /// The session's end is missing, and no program is writing.
     Cut,
 }
 
@@ -84,32 +76,28 @@ pub enum LogEnding {
 /// being written has grown.
 #[derive(Debug)]
 pub struct LogReader {
-    /// Header of this part of the recording.
+    /// Of this part of the recording.
     pub header: LogHeader,
-    /// Kitchen that the recording's header describes.
     pub kitchen: Arc<Kitchen>,
     path: Arc<Path>,
     /// Number of bytes of the file before the next line.
     offset: u64,
-    /// Previous part of the recording, until all of its continued events are read.
+    /// The previous part, until all of its continued events are read.
     before: Option<Box<LogReader>>,
     input: BufReader<File>,
     number: usize,
     next_seq: u64,
-    /// Last line of the log without its line end: the line was cut off, or is not yet written completely.
+    /// A last line that was cut off, or is not yet written completely.
     partial: Vec<u8>,
-    /// Number of the first line without any text since the last event. At the end of a log such lines are no damage: an
-    /// editor or a copy can add them.
+    /// Number of the first empty line since the last event. At the end of a log such lines are no damage: an editor or
+    /// a copy can add them.
     blank: Option<usize>,
     ended: bool,
 }
 
 impl LogReader {
-    /// Opens a recording by its folder or its log. A recording that continues another one is read from its first part
-    /// on.
-    ///
-    /// # Errors
-    /// The file does not exist, has another format or version or a damaged header, or an earlier part is missing.
+    /// Opens a recording by its folder or its log, to be read from its first part on. It is an error if a log has
+    /// another format or version or a damaged header, or if an earlier part is missing.
     pub fn open(recording: &Path) -> FileResult<LogReader> {
         LogReader::open_part(recording, MAX_PARTS)
     }
@@ -122,9 +110,8 @@ impl LogReader {
         let line = first_line(&mut input).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         if ends_in_header(&line) {
             let found = "a log that ends before the end of its header, which happens in a power failure".to_string();
-            let remedy = "a recording with a whole header; tomcom simulate makes a simulated recording \
-                          again"
-                .to_string();
+            let remedy =
+                "a recording with a whole header; tomcom simulate makes a simulated recording again".to_string();
             return Err(at_line(&path, 1, &String::from_utf8_lossy(&line), line.len(), found, remedy));
         }
         let text = String::from_utf8_lossy(&line).into_owned();
@@ -156,23 +143,19 @@ impl LogReader {
         })
     }
 
-    /// The state of the recorded session before its first event.
+    /// Before its first event.
     pub fn session(&self) -> Session {
         Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial)
     }
 
-    /// Reads the next line of the log with its event; `None` where the log ends at present.
-    ///
-    /// # Errors
-    /// The line is no event, or an event with another sequence number than the next.
+    /// `None` where the log ends at present.
     pub fn next_line(&mut self) -> FileResult<Option<LogLine>> {
         if let Some(before) = self.before.as_mut().filter(|before| before.events() < self.next_seq) {
             let line = before.next_line()?;
             let (found, wanted) = (before.events(), self.next_seq);
             return line.map(Some).ok_or_else(|| {
                 let found = format!(
-                    "the log's end after {found} events, although a later part continues it after \
-                                     {wanted} events"
+                    "the log's end after {found} events, although a later part continues it after {wanted} events"
                 );
                 before.wrong("", 0, &found)
             });
@@ -223,11 +206,8 @@ impl LogReader {
         Ok(LogLine { number: self.number, text, stamped })
     }
 
-    /// The last complete event in the log of this part, wherever the reader is; `None` if there is none, or none that
-    /// can be read. An invalid line is reported when the reader reaches it.
-    ///
-    /// # Errors
-    /// The log cannot be read.
+    /// The last complete event of this part, wherever the reader is; `None` if none can be read. An invalid line is
+    /// reported when the reader reaches it.
     pub fn last_event(&self) -> FileResult<Option<TimestampedEvent>> {
         let unreadable = |reason| FileError::unreadable(&self.path, reason, "a readable recording");
         let mut file = open_regular(&self.path).map_err(unreadable)?;
@@ -241,11 +221,8 @@ impl LogReader {
         Ok(lines.find(|line| !is_blank(line)).and_then(|line| serde_json::from_slice(line).ok()))
     }
 
-    /// Checks that the log that is being read is still at its path: an open file can be read even after it was deleted,
-    /// but nothing is added to it any more.
-    ///
-    /// # Errors
-    /// The log was removed, moved or replaced, or its folder was.
+    /// Whether the log is still at its path: an open file can be read even after it was deleted, but nothing is added
+    /// to it any more.
     pub fn check_there(&self) -> FileResult<()> {
         if is_same(self.input.get_ref(), &self.path) {
             return Ok(());
@@ -266,7 +243,6 @@ impl LogReader {
         !self.ended
     }
 
-    /// How the events read so far end, and whether more events are to come.
     pub fn ending(&self) -> LogEnding {
         match (self.ended, RecordingLock::holder(self.folder())) {
             (true, _) => LogEnding::Closed,
@@ -275,14 +251,14 @@ impl LogReader {
         }
     }
 
-    /// Paths of the logs of all parts of the recording, first part first; to be called before any event was read.
+    /// Of all parts, the first one first; to be called before any event was read.
     pub fn logs(&self) -> Vec<PathBuf> {
         let mut logs = self.before.as_ref().map_or_else(Vec::new, |before| before.logs());
         logs.push(self.path.to_path_buf());
         logs
     }
 
-    /// Place of the next event.
+    /// Of the next event.
     pub fn place(&self) -> LogPlace {
         match self.before.as_ref().filter(|before| before.events() < self.next_seq) {
             Some(before) => before.place(),
@@ -290,27 +266,27 @@ impl LogReader {
         }
     }
 
-    /// Number of events that the reader has read so far.
+    /// Number of events read so far.
     pub fn events(&self) -> u64 {
         self.before.as_ref().map_or(self.next_seq, |before| before.events())
     }
 
-    /// Path of the file that contains the last line read.
+    /// The file that contains the last line read.
     pub fn path(&self) -> &Path {
         self.before.as_ref().map_or(&self.path, |before| before.path())
     }
 
-    /// Path of the log that was opened; for a recording of several parts, of the last part's log.
+    /// The log that was opened; of several parts, the last one's.
     pub fn path_of_last_part(&self) -> &Path {
         &self.path
     }
 
-    /// Folder of the opened recording; for a recording of several parts, the folder of the last part.
+    /// Of the opened recording; of several parts, the last one's.
     pub fn folder(&self) -> &Path {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
-    /// The error about a line of this recording whose event the session refused.
+    /// The session refused the event in this line.
     pub fn refused(&self, line: &LogLine, error: ApplyError) -> FileError {
         at_line(self.path(), line.number, &line.text, 0, error.found, error.remedy)
     }
@@ -321,7 +297,6 @@ impl LogReader {
     }
 }
 
-/// Opens the previous part of the recording.
 fn open_before(
     path: &Path,
     text: &str,
@@ -341,8 +316,7 @@ fn open_before(
     if parts == 0 {
         return Err(wrong(
             format!("more than {MAX_PARTS} parts"),
-            "parts of a recording that lead back to a first \
-                                                                  part",
+            "parts of a recording that lead back to a first part",
         ));
     }
     // The path is resolved, so that the folder of the previous part is also found from a path like `.`.
@@ -357,9 +331,7 @@ fn open_before(
     if !folder.join(LOG_NAME).exists() {
         return Err(wrong(
             format!("a part that continues {name}, a recording that is not there"),
-            "that recording, in \
-                                                                                                  a folder beside \
-                                                                                                  this",
+            "that recording, in a folder beside this",
         ));
     }
     let first = LogReader::open_part(&folder, parts - 1)?;
@@ -373,7 +345,6 @@ fn open_before(
     }
 }
 
-/// Whether a line of a log has no text.
 pub(super) fn is_blank(line: &[u8]) -> bool {
     line.trim_ascii().is_empty()
 }
@@ -386,13 +357,13 @@ pub(super) fn ends_in_header(line: &[u8]) -> bool {
     line.last() != Some(&b'\n') && (is_begun || line.iter().all(|&byte| byte == 0))
 }
 
-/// The first line of a log, including its line end if it has one.
+/// Including its line end if it has one.
 pub fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }
 
-/// An error in one line of a long file; the excerpt in the error message keeps the number of the line.
+/// An error in one line of a long file; the excerpt in the message keeps the line's number.
 pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: String, remedy: String) -> FileError {
     let is_boundary = |index: &usize| text.is_char_boundary(*index);
     let column = (0..=column.min(text.len())).rev().find(is_boundary).unwrap_or(0);
@@ -404,18 +375,13 @@ pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: Str
     FileError::at(path, &excerpt, Some(place..place), found, remedy)
 }
 
-/// The message of `serde_json`, without line and column, which would refer to the single line that was parsed.
+/// Without line and column, which would refer to the single line that was parsed.
 fn json_message(error: &serde_json::Error) -> String {
     let message = error.to_string();
     message.split(" at line ").next().unwrap_or(&message).to_string()
 }
 
-/// Parses the header of the log at this path from the log's first line. Every reader of a recording gets the
-/// participant's code from here, as corrections beside the log say it.
-///
-/// # Errors
-/// The line is no header of a log, or of a format version that this program does not read; or the file with corrections
-/// is damaged.
+/// Every reader of a recording gets the participant's code from here, as corrections beside the log say it.
 pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
     let wrong = |column: usize, found: String, remedy: String| at_line(path, 1, text, column, found, remedy);
     let is_log = "the folder of a recording, or the events.jsonl in it, as tomcom wrote it".to_string();
@@ -441,7 +407,6 @@ pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
     Ok(header)
 }
 
-/// The error about an invalid setting in the header of the log at this path.
 fn wrong_setting(path: &Path, header: &str, error: SettingError) -> FileError {
     at_line(path, 1, header, header.find(error.key()).unwrap_or(0), error.found, error.remedy.into_owned())
 }

@@ -8,18 +8,15 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::consensus_file::CONSENSUS_NAME;
-use super::rater_codes::code_file_names;
-use super::reader::{MAX_LINE, first_line, is_blank};
 use crate::files::file_error::{FileError, FileResult, open_regular};
+use crate::log::consensus_file::CONSENSUS_NAME;
+use crate::log::rater_codes::code_file_names;
+use crate::log::reader::{MAX_LINE, first_line, is_blank};
 
 const REMEDY: &str = "a readable recording";
 
-/// SHA-256 digest of the header of a log, in hexadecimal, without its line end. Each session has a header of its own, so
-/// that only copies of one log have the same digest.
-///
-/// # Errors
-/// The log cannot be read.
+/// SHA-256 of a log's header without its line end, in hexadecimal. Each session has a header of its own, so only copies
+/// have the same.
 pub fn header_digest(log: &Path) -> FileResult<String> {
     let line = open_regular(log).and_then(|file| first_line(&mut BufReader::new(file)));
     let line = line.map_err(|reason| FileError::unreadable(log, reason, REMEDY))?;
@@ -29,18 +26,15 @@ pub fn header_digest(log: &Path) -> FileResult<String> {
 /// Logs of one session, by their indices: copies of each other.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SameLogs {
-    /// The logs with the most events.
+    /// Those with the most events.
     pub longest: Vec<usize>,
-    /// The logs that are a beginning of the longest ones, such as a copy that was made before the session ended.
+    /// Those that are a beginning of the longest ones, such as a copy that was made before the session ended.
     pub beginnings: Vec<usize>,
 }
 
 impl SameLogs {
-    /// Groups logs, each with a key that only logs of one session share, such as its [`header_digest`]. Ends of lines
-    /// make no difference: neither those of other systems, nor empty lines at the end, nor a last one that is missing.
-    ///
-    /// # Errors
-    /// A log cannot be read.
+    /// Groups logs, each with a key that only logs of one session share, such as its [`header_digest`]. Line ends of
+    /// other systems, and missing or empty last lines, make no difference.
     pub fn of(logs: &[(&Path, &str)]) -> FileResult<Vec<SameLogs>> {
         let mut order: Vec<usize> = (0..logs.len()).collect();
         order.sort_by_key(|&index| logs[index].1);
@@ -66,13 +60,13 @@ impl SameLogs {
         Ok(all)
     }
 
-    /// All these logs, the longest first.
+    /// The longest first.
     pub fn all(&self) -> impl Iterator<Item = usize> {
         self.longest.iter().chain(&self.beginnings).copied()
     }
 }
 
-/// Whether a log is equal to another one, a beginning of it, or begins with it; `None` for logs that differ.
+/// Whether a log is equal to another one, a beginning of it, or begins with it; `None` if they differ.
 fn compare(one: &Path, other: &Path) -> FileResult<Option<Ordering>> {
     let (mut one, mut other) = (LogText::open(one)?, LogText::open(other)?);
     loop {
@@ -91,7 +85,7 @@ fn compare(one: &Path, other: &Path) -> FileResult<Option<Ordering>> {
     }
 }
 
-/// The lines of a log with text, one after another, without their ends.
+/// The lines with text, one after another, without their ends.
 struct LogText<'a> {
     path: &'a Path,
     input: BufReader<File>,
@@ -104,7 +98,7 @@ impl LogText<'_> {
         Ok(LogText { path, input: BufReader::with_capacity(1 << 16, file), line: Vec::new() })
     }
 
-    /// Reads the next line; returns false at the end of the log.
+    /// The next line; false at the end.
     fn read(&mut self) -> FileResult<bool> {
         loop {
             self.line.clear();
@@ -118,21 +112,15 @@ impl LogText<'_> {
     }
 }
 
-/// Names of the files with codes of raters, and with their consensus, in the folder of a recording.
-///
-/// # Errors
-/// The folder cannot be read, or has codes of a rater in a file of another kind.
+/// Files with raters' codes, and with their consensus.
 pub fn code_files(folder: &Path) -> FileResult<BTreeSet<String>> {
     let mut names = code_file_names(folder)?;
     names.extend(folder.join(CONSENSUS_NAME).exists().then(|| CONSENSUS_NAME.to_string()));
     Ok(names)
 }
 
-/// The first file with codes of raters beside a log that does not stand with the same content in another folder, and
-/// whether that folder has a file of this name; `None` if nothing is lost without the first folder.
-///
-/// # Errors
-/// A folder or a file with codes cannot be read.
+/// The first file with codes that does not stand with the same content in another folder, and whether one of this name
+/// does.
 pub fn differing_codes(folder: &Path, other: &Path) -> FileResult<Option<(String, bool)>> {
     let text = |path: &Path| {
         let mut bytes = Vec::new();

@@ -6,35 +6,30 @@ use std::fs;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use super::lock::RecordingLock;
-use super::reader::{ends_in_header, first_line};
-use super::writer::is_written_settings;
-use super::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::files::file_error::{open_regular, read_regular};
+use crate::log::lock::RecordingLock;
+use crate::log::reader::{ends_in_header, first_line};
+use crate::log::writer::is_written_settings;
+use crate::log::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::{Event, LogHeader, TimestampedEvent};
 
-/// Upper limit of the length of a complete log's last line, in bytes.
+/// Longest last line of a complete log, in bytes.
 const LAST: u64 = 256;
 
-/// State of a simulated session's log before the simulation.
 #[derive(Debug)]
 pub enum SimulatedLogState {
-    /// The simulated session has no complete log yet: a new log has to be written.
+    /// A new log has to be written.
     Begun {
-        /// Writer of the new log.
         log: Box<LogWriter>,
-        /// New path of an old log that ended before the end of its header and was moved out of the way.
+        /// New path of an old log that ended within its header.
         moved: Option<PathBuf>,
     },
-    /// The simulated recording exists and is complete.
+    /// The recording exists and is complete.
     Whole,
 }
 
 impl SimulatedLogState {
-    /// Starts the recording of a simulated session in this folder, unless the recording exists and is complete.
-    ///
-    /// # Errors
-    /// The errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
+    /// Starts the recording, unless it exists and is complete.
     pub fn open(folder: &Path, header: &LogHeader) -> Result<SimulatedLogState, RecordingWriteError> {
         // A complete recording is not locked, so that several programs can read it at once.
         if is_whole(folder, header) {
@@ -57,11 +52,7 @@ impl SimulatedLogState {
     }
 }
 
-/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header,
-/// and a log that ends before the end of its header.
-///
-/// # Errors
-/// The folder contains another recording.
+/// A simulation may replace a recording with the same header, and a log that ends within its header.
 pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), RecordingWriteError> {
     let path = folder.join(LOG_NAME);
     if !path.exists() {
@@ -86,13 +77,12 @@ pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), Recordin
     Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
 }
 
-/// Whether a log ends before the end of its header.
 fn is_without_header(path: &Path) -> bool {
     let line = open_regular(path).and_then(|file| first_line(&mut BufReader::new(file)));
     line.is_ok_and(|line| ends_in_header(&line))
 }
 
-/// Whether this folder contains the complete recording that has this header.
+/// Whether the folder contains the complete recording with this header.
 fn is_whole(folder: &Path, header: &LogHeader) -> bool {
     let ends = || -> io::Result<bool> {
         let mut log = open_regular(&folder.join(LOG_NAME))?;

@@ -1,30 +1,27 @@
 //! Writer of recordings: creates the folder, the settings file and the log, and appends events to the log.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
 
-use super::guarded::GuardedFile;
-use super::lock::{LOCK_NAME, RecordingLock, is_same};
-use super::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::files::file_error::read_regular;
 use crate::files::replace_file::{self, new_beside, replaced_name};
 use crate::files::rescue::{RescueNote, new_rescue_folder};
+use crate::log::lock::{LOCK_NAME, RecordingLock, is_same};
+use crate::log::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::{LogHeader, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 
-/// Longest time, in session time, for which gaze samples are held back before they are handed to the operating system.
+/// Longest time for which gaze samples are held back before the operating system gets them.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
-/// Largest number of bytes that are handed on at once: less than the buffer, so that they are taken as a whole or not at
-/// all.
+/// Largest number of bytes handed on at once: less than the buffer, so that they are taken as a whole or not at all.
 const PIECE: usize = 1 << 14;
-/// Suffix of the folders of later parts: `<recording>-part2`, `<recording>-part3`, …
+/// Later parts: `<recording>-part2`, `<recording>-part3`, …
 const PART: &str = "-part";
 
-/// Writer of the log of a session, one event per line.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: PathBuf,
@@ -32,18 +29,18 @@ pub struct LogWriter {
     out: BufWriter<GuardedFile>,
     /// Bytes of the last event that `out` has not taken, since the log could not be written.
     left: Vec<u8>,
-    /// Whether events are handed to the operating system at once, because other programs rely on them.
+    /// Whether the operating system gets events at once, because other programs rely on them.
     prompt: bool,
     flushed_at: SessionTime,
     settings: String,
-    /// Original folder of the recording, which stays the same even if the folder is moved or deleted.
+    /// Original folder, which stays the same even if it is moved or deleted.
     home: PathBuf,
     lock: RecordingLock,
 }
 
 impl LogWriter {
-    /// Starts a live recording `<date>-<participant>-<n>` in `root`, with the first free n. Events are handed to the
-    /// operating system at once, gaze samples within 50 ms of session time or by [`LogWriter::flush`].
+    /// Starts the live recording `<date>-<participant>-<n>` in `root`, with the first free n. The operating system gets
+    /// events at once, gaze samples within 50 ms of session time or by [`LogWriter::flush`].
     pub fn create_live(root: &Path, date: &str, header: &LogHeader) -> Result<LogWriter, RecordingWriteError> {
         fs::create_dir_all(root).map_err(|reason| RecordingWriteError::unwritable(root, reason))?;
         let mut n = 1;
@@ -57,10 +54,7 @@ impl LogWriter {
         }
     }
 
-    /// Starts the live recording that continues the recording in `folder`, in a folder beside it.
-    ///
-    /// # Errors
-    /// The recording has already been continued, or cannot be written.
+    /// In a folder beside the recording in `folder`; an error if it has been continued already.
     pub fn create_part(folder: &Path, header: &LogHeader) -> Result<LogWriter, RecordingWriteError> {
         check_continued(folder)?;
         let part = next_part(folder);
@@ -68,8 +62,7 @@ impl LogWriter {
         LogWriter::begin(RecordingLock::take(&part)?, part, header, true)
     }
 
-    /// Creates the log file. The file gets its name when its header is complete, so that no log lacks a header after a
-    /// crash.
+    /// The file gets its name when its header is complete, so that no log lacks a header after a crash.
     pub(super) fn begin(
         lock: RecordingLock,
         folder: PathBuf,
@@ -91,21 +84,16 @@ impl LogWriter {
         Ok(LogWriter { folder, path, out, left, prompt, flushed_at, settings, home, lock })
     }
 
-    /// Folder of the recording that is being written.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Writes the network address at which viewers can watch into the lock file.
     pub fn announce(&mut self, viewers: &str) {
         // An address that cannot be written into the lock file has no further consequences.
         let _ = self.lock.announce(viewers);
     }
 
-    /// Appends an event to the log.
-    ///
-    /// # Errors
-    /// The log cannot be written. Once there is room on a full disk, [`LogWriter::flush`] writes the event.
+    /// Once there is room on a full disk, [`LogWriter::flush`] writes the event.
     pub fn append(&mut self, stamped: &TimestampedEvent) -> Result<(), RecordingWriteError> {
         let written = line(stamped).and_then(|line| {
             self.left.extend(line);
@@ -126,7 +114,6 @@ impl LogWriter {
         flushed.map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
     }
 
-    /// Hands the bytes of the last event on to the buffer, which writes them if it is full.
     fn hand_on(&mut self) -> io::Result<()> {
         while !self.left.is_empty() {
             let piece = self.left.len().min(PIECE);
@@ -136,13 +123,10 @@ impl LogWriter {
         Ok(())
     }
 
-    /// Checks that the log is still at its place and undamaged: an open file accepts every event even after it was
-    /// deleted, moved, cut, overwritten or made read-only. If the log is not, the recording is saved into a folder of
-    /// the same name: at its place, or else below the system's folder for temporary files. Every check compares a part
-    /// of the log with what was written, or `whole`, all of it.
-    ///
-    /// # Errors
-    /// The log is gone or damaged, or must not be written any more.
+    /// Whether the log is still at its place and undamaged: an open file accepts every event even after it was deleted,
+    /// moved, cut, overwritten or made read-only. If not, the recording is saved into a folder of the same name: at its
+    /// place, or else below the system's folder for temporary files. Every check compares a part of the log with what
+    /// was written, or `whole`, all of it.
     pub fn check(&mut self, whole: bool) -> Result<(), RecordingWriteError> {
         if !is_same(self.out.get_ref().file(), &self.path) {
             let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
@@ -162,7 +146,7 @@ impl LogWriter {
         }
     }
 
-    /// Saves the recording into another folder; returns the folder that contains the recording now.
+    /// Returns the folder that contains the recording now.
     fn rescue(&mut self, is_damaged: bool) -> Option<PathBuf> {
         // Events that cannot be handed to the operating system now have not been acknowledged.
         let _ = self.out.flush();
@@ -194,10 +178,7 @@ impl LogWriter {
     }
 }
 
-/// Checks that the recording in this folder has not been continued yet.
-///
-/// # Errors
-/// The recording has already been continued.
+/// It is an error if the recording in this folder has been continued.
 pub fn check_continued(folder: &Path) -> Result<(), RecordingWriteError> {
     let part = next_part(folder);
     match part.join(LOG_NAME).exists() {
@@ -238,18 +219,18 @@ fn holds_nothing(part: &Path) -> bool {
     }
 }
 
-/// Whether a file of this name is a log or a settings file that a program was writing when it was killed.
+/// Whether a program was writing a log or a settings file of this name when it was killed.
 fn is_begun(name: &str) -> bool {
     [LOG_NAME, SETTINGS_NAME].iter().any(|whole| name != *whole && replaced_name(name) == *whole)
 }
 
-/// Whether this program wrote a settings file in the folder of a recording: it has all settings and nothing else.
+/// Whether this program wrote a settings file: it has all settings and nothing else.
 pub fn is_written_settings(text: &str) -> bool {
     let spec = toml::from_str::<SessionSpec>(text).ok();
     spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
 }
 
-/// A line of the log, with its line end.
+/// With its line end.
 fn line(value: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut line = Vec::with_capacity(256);
     value.serialize(&mut serde_json::Serializer::with_formatter(&mut line, FiniteNumbers))?;
@@ -257,12 +238,201 @@ fn line(value: &impl Serialize) -> io::Result<Vec<u8>> {
     Ok(line)
 }
 
-/// JSON serialiser that rejects `null`: in a log, only numbers that are not finite would become `null`, and a log with
-/// a `null` could not be read.
+/// Rejects `null`: only numbers that are not finite would become `null` in a log, which could then not be read.
 struct FiniteNumbers;
 
 impl Formatter for FiniteNumbers {
     fn write_null<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
         Err(io::Error::new(io::ErrorKind::InvalidData, "a number in it is not finite"))
+    }
+}
+
+/// Length of the log's end that every check compares, in bytes (some seconds of gaze).
+const TAIL: u64 = 64 << 10;
+/// Least length of the further stretch that every check compares, in bytes.
+const STRETCH: u64 = 1 << 20;
+/// Largest number of checks whose stretches go through the whole log. With four checks a second, damage anywhere in the
+/// log is found within 10 s, also if the walk has just passed its place.
+const PASS: u64 = 18;
+/// Number of bytes compared at a time.
+#[cfg(unix)]
+const COMPARED: usize = 64 << 10;
+
+/// A log file that is being written, with a guarding copy that no other program can change: the log is compared with
+/// the copy, and saved from it if another program damaged the log.
+#[derive(Debug)]
+struct GuardedFile {
+    file: File,
+    /// A file without a name; `None` if the log is not guarded or the copy could not be written.
+    copy: Option<File>,
+    /// Number of bytes written to the log.
+    length: u64,
+    /// Where the next check's stretch begins, in bytes.
+    next: u64,
+    /// Where the present pass through the log ends, in bytes.
+    pass_end: u64,
+}
+
+impl Write for GuardedFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.length += written as u64;
+        // An incomplete guarding copy is dropped, and the log continues without a copy.
+        self.copy = self.copy.take().filter(|mut copy| copy.write_all(&bytes[..written]).is_ok());
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl GuardedFile {
+    fn unguarded(file: File) -> GuardedFile {
+        GuardedFile { file, copy: None, length: 0, next: 0, pass_end: 0 }
+    }
+
+    /// The copy is in the system's folder for temporary files, or else in this folder.
+    pub(crate) fn guarded(file: File, folder: &Path) -> GuardedFile {
+        let copy = tempfile::tempfile().or_else(|_| tempfile::tempfile_in(folder)).ok();
+        GuardedFile { copy, ..GuardedFile::unguarded(file) }
+    }
+
+    pub(crate) fn file(&self) -> &File {
+        &self.file
+    }
+
+    /// Compares the length, the end and the next stretch of the log with what was written, or the whole log; returns
+    /// the damage in words.
+    pub(crate) fn damage(&mut self, whole: bool) -> Option<String> {
+        let length = match self.file.metadata() {
+            Ok(data) => data.len(),
+            Err(reason) => return Some(format!("cannot be read to be checked: {reason}")),
+        };
+        if length != self.length {
+            let how = if length < self.length { "was cut" } else { "was written to" };
+            return Some(format!("{how} by another program: {length} bytes, {} were recorded", self.length));
+        }
+        let tail = self.length.saturating_sub(TAIL);
+        let stretch = if whole { 0..tail } else { self.next_stretch(tail) };
+        let at = self.difference(tail, self.length).or_else(|| self.difference(stretch.start, stretch.end))?;
+        Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
+    }
+
+    /// The next stretch before `tail`. The end of a pass is fixed where it begins: a walk that followed the growing log
+    /// would never return to its beginning.
+    fn next_stretch(&mut self, tail: u64) -> std::ops::Range<u64> {
+        if self.next >= self.pass_end {
+            (self.next, self.pass_end) = (0, tail);
+        }
+        let length = STRETCH.max(self.pass_end.div_ceil(PASS));
+        let stretch = self.next..(self.next + length).min(self.pass_end);
+        self.next = stretch.end;
+        stretch
+    }
+
+    /// Position of the first byte in this range that differs between log and copy; `None` also without a copy.
+    #[cfg(unix)]
+    fn difference(&mut self, from: u64, until: u64) -> Option<u64> {
+        use std::os::unix::fs::FileExt;
+        let (mut copied, mut found) = ([0; COMPARED], [0; COMPARED]);
+        let mut at = from;
+        while at < until {
+            let size = COMPARED.min((until - at) as usize);
+            let copy = self.copy.as_ref()?;
+            if copy.read_exact_at(&mut copied[..size], at).is_err() {
+                self.copy = None;
+                return None;
+            }
+            // The read failed: the log was cut meanwhile, or the disk is broken.
+            if self.file.read_exact_at(&mut found[..size], at).is_err() {
+                return Some(at);
+            }
+            if copied[..size] != found[..size] {
+                let index = copied.iter().zip(&found).position(|(copied, found)| copied != found);
+                return index.map(|index| at + index as u64);
+            }
+            at += size as u64;
+        }
+        None
+    }
+
+    /// There are no guarding copies on this operating system.
+    #[cfg(not(unix))]
+    fn difference(&mut self, _from: u64, _until: u64) -> Option<u64> {
+        None
+    }
+
+    /// From the guarding copy, or from the log itself if it is undamaged.
+    pub(crate) fn save(&mut self, is_damaged: bool, to: &mut File) -> io::Result<()> {
+        let from = match (&mut self.copy, is_damaged) {
+            (Some(copy), _) => copy,
+            (None, false) => &mut self.file,
+            (None, true) => return Err(io::Error::from(io::ErrorKind::NotFound)),
+        };
+        from.rewind()?;
+        io::copy(from, to)?;
+        to.sync_all()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Damages a guarded log of this length, and compares the reported damage and the saved log with the expected ones.
+    fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let path = folder.join("log");
+        let file = File::options().read(true).write(true).create_new(true).open(&path).unwrap();
+        let mut log = GuardedFile::guarded(file, folder);
+        log.write_all(&vec![b'x'; bytes]).unwrap();
+        // Something is written to the log before every check, as in a live session; the checks have gone through most
+        // of the log when it is damaged.
+        let mut lines = Vec::new();
+        let mut check = |log: &mut GuardedFile| {
+            log.write_all(b"more\n").unwrap();
+            lines.extend_from_slice(b"more\n");
+            log.damage(false)
+        };
+        assert_eq!((0..5).find_map(|_| check(&mut log)), None);
+        harm(&path);
+        let damage = (0..2 * PASS).find_map(|_| check(&mut log));
+        assert_eq!(log.damage(true).is_some(), found.is_some(), "{name}: the whole log");
+        assert_eq!(damage.is_some(), found.is_some(), "{name}: {damage:?}");
+        assert!(damage.iter().all(|damage| damage.contains(found.unwrap_or_default())), "{name}: {damage:?}");
+        let saved = folder.join("saved");
+        log.save(damage.is_some(), &mut File::create(&saved).unwrap()).unwrap();
+        assert_eq!(std::fs::read(saved).unwrap(), [&vec![b'x'; bytes][..], &lines].concat(), "{name}");
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 2, "{name}: the copy has no name");
+    }
+
+    fn overwrite(path: &Path, at: u64, with: &[u8]) {
+        use std::os::unix::fs::FileExt;
+        File::options().write(true).open(path).unwrap().write_all_at(with, at).unwrap();
+    }
+
+    #[test]
+    fn what_another_program_does_to_a_log_is_noticed_and_what_was_recorded_is_saved() {
+        const LONG: usize = 5 << 20;
+        check("untouched", LONG, |_| (), None);
+        // Test: the next write restores the log's length, with zeros in between.
+        check(
+            "cut",
+            LONG,
+            |path| File::create(path).map(drop).unwrap(),
+            Some("overwritten by another program, at byte"),
+        );
+        check(
+            "longer",
+            100,
+            |path| overwrite(path, 125, b"other longer line"),
+            Some("was written to by another program"),
+        );
+        check("end", LONG, |path| overwrite(path, LONG as u64 - 9, b"y"), Some(&format!("at byte {}", LONG - 9)));
+        check("very long", 40 << 20, |path| overwrite(path, 30 << 20, b"y"), Some(&format!("at byte {}", 30 << 20)));
+        check("beginning", LONG, |path| overwrite(path, 3, b"y"), Some("at byte 3 of"));
+        check("middle", LONG, |path| overwrite(path, 3 << 20, b"y"), Some(&format!("at byte {}", 3 << 20)));
     }
 }

@@ -12,11 +12,11 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
+use tomcom_session::event::WizardScreenContent;
 use tomcom_session::history::belief_track::AspectBeliefSnapshot;
 use tomcom_session::history::comparison::{Communication, UnmatchedCommunication};
 use tomcom_session::watcher::SenderComparisonSettings;
 use tomcom_session::wizard_log::{self, WizardSummary};
-use tomcom_session::wizard_screen::WizardScreenContent;
 
 /// Largest number of unmatched communications of each kind that are listed as text.
 const LISTED: usize = 20;

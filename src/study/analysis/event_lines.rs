@@ -10,13 +10,12 @@ use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
 use tomcom_core::mind::{AspectBelief, RecordedBelief};
 use tomcom_core::robot::safety::SafetyMode;
+use tomcom_session::event::WizardScreenContent;
 use tomcom_session::event::{SignalEndReason, TrialEndReason};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::probe_wording;
 use tomcom_session::history::wording::{self, location as said};
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use tomcom_session::wall_display::DisplayEvent;
-use tomcom_session::wizard_screen::WizardScreenContent;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 /// Heading above the text lines of events.
@@ -95,7 +94,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::SignalEnded { reason: SignalEndReason::TakenBack } => "signal taken back".to_string(),
         Event::SignalEnded { reason: SignalEndReason::Outdated } => "signal out of date".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
-        Event::Probe(event) => probe_wording::event(event),
+        Event::Probe(event) => wording::probe(event),
         Event::Protocol(event) => wording::protocol(event),
         Event::Tracker(event) => wording::tracker(event)?,
         Event::Calibration(event) => wording::calibration(event),

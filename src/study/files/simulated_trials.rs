@@ -15,12 +15,12 @@ use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::SessionSetup;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::{
     LogReader, RecordingError, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated,
 };
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{Condition, SessionSpec};
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{LogHeader, TimestampedEvent, headless};
 

@@ -21,9 +21,9 @@ use crate::preregistration::RecordedPlan;
 use crate::study_part::{AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::{LogReader, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
-use tomcom_session::shard::SimulationShard;
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;

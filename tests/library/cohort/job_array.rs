@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::LOG_NAME;
-use tomcom_session::shard::SimulationShard;
 
 use super::{folder, paper, run};
 

@@ -15,8 +15,8 @@ use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_session::TimestampedEvent;
 use tomcom_session::files::SessionSetup;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::LogReader;
-use tomcom_session::shard::SimulationShard;
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cohort").join(name);

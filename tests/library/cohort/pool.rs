@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use tomcom_session::files::SessionSetup;
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::pool::{PoolRequest, simulate};
 use tomcom_study::simulation_pool::{PoolTrialPair, SimulationPool};

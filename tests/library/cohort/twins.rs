@@ -5,9 +5,9 @@ use std::path::Path;
 
 use tomcom::edge::files::read_session;
 use tomcom_core::communication::concept::ConceptName;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::settings::{ArmKind, Condition};
-use tomcom_session::shard::SimulationShard;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::pass::reading::{self, AnalysisScope};
 use tomcom_study::trial_statistics::TrialStatistics;

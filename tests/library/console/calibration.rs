@@ -4,8 +4,8 @@ use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::gaze_advice::AccuracyCheckAction;
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
-use tomcom_session::accuracy_check::GazeCheckEvent;
 use tomcom_session::event::Event;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input};

@@ -2,9 +2,9 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
+use tomcom_session::event::WizardScreenContent;
 use tomcom_session::event::{Event, TrialEndReason};
 use tomcom_session::settings::{ParticipantKind, WizardVisibility};
-use tomcom_session::wizard_screen::WizardScreenContent;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;

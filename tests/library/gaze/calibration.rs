@@ -3,9 +3,9 @@
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure};
-use tomcom_session::accuracy_check::{GazeCheckEvent, RunningGazeCheck};
 use tomcom_session::admit::is_external;
 use tomcom_session::engine::SessionEngine;
+use tomcom_session::gaze_check::{GazeCheckEvent, RunningGazeCheck};
 use tomcom_session::{Event, TimestampedEvent};
 
 use super::engine;

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::parse::parse;
 use tomcom_session::log::LogWriter;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::verify::verify;
 use tomcom_session::{Event, LogHeader};
 

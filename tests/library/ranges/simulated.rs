@@ -12,9 +12,9 @@ use tomcom_core::kitchen::layout_ranges;
 use tomcom_people::wizard::settings::WizardKind;
 use tomcom_session::apply::apply;
 use tomcom_session::files::SessionSetup;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::LogReader;
 use tomcom_session::settings::{ArmKind, Condition, SessionSpec};
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::{Event, ranges};
 
 use super::{every_setting, folder, set};

@@ -10,9 +10,9 @@ use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_session::SessionSpec;
 use tomcom_session::header::VERSION;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource};
-use tomcom_session::shard::SimulationShard;
 
 use super::{by_hand, folder};
 

@@ -26,9 +26,9 @@ use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::event::{SignalEndReason, TrialEndReason};
 use tomcom_session::files::SessionSetup;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::{LOG_NAME, LogWriter};
 use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::{Event, LogHeader};
 
 /// One session for each kitchen.

@@ -8,11 +8,11 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::Agent;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom_session::history::probe_wording;
+use tomcom_session::headless::SimulationShard;
+use tomcom_session::history::wording;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::ArmKind;
-use tomcom_session::shard::SimulationShard;
 use tomcom_session::{Event, TimestampedEvent};
 
 use super::{folder, session, simulated};
@@ -139,13 +139,13 @@ fn a_scene_shows_answers_of_probes_beside_the_estimate() {
                 asked.clone_from(questions);
             }
             ProbeEvent::Asked { question, .. } => {
-                let about = probe_wording::subject(&asked[*question as usize - 1].about);
+                let about = wording::probe_subject(&asked[*question as usize - 1].about);
                 assert_eq!(state(moment.expect("a moment"), "human/probes/asked"), Some(about));
             }
             ProbeEvent::Answered { question, answer, .. } => {
                 answers += 1;
                 let (moment, about) =
-                    (moment.expect("a moment"), probe_wording::subject(&asked[*question as usize - 1].about));
+                    (moment.expect("a moment"), wording::probe_subject(&asked[*question as usize - 1].about));
                 let lane = |kind: &str| {
                     format!("human/probes/{}_{kind}", about.replace(|letter: char| !letter.is_alphanumeric(), "_"))
                 };

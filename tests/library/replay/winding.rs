@@ -8,7 +8,7 @@ use rand::RngExt;
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::ArmKind;
 use tomcom_session::{TimelineEvent, TrialPhase};
 

@@ -7,8 +7,8 @@ use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::OrderContent;
 use tomcom_session::engine::SessionEngine;
+use tomcom_session::event::WizardScreenContent;
 use tomcom_session::settings::{Condition, SessionSpec, WizardVisibility};
-use tomcom_session::wizard_screen::WizardScreenContent;
 use tomcom_session::{Event, offers};
 
 use super::{at, check, engine};

@@ -10,11 +10,12 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::initiative::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
+use tomcom_session::apply::silence_so_far;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::headless;
 use tomcom_session::orders::OrderList;
 use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply, silence};
+use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply};
 
 use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
 
@@ -257,7 +258,7 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
             if session.is_running() && session.robot.idle.is_some() {
                 idle_s += passed_s;
                 let recipes = kitchen.true_recipes();
-                let is_passive = silence::lasted(&session, session.time) >= initiative;
+                let is_passive = silence_so_far(&session, session.time) >= initiative;
                 let can = |cost: &mut CostToGo| {
                     kitchen
                         .orders

@@ -9,8 +9,8 @@ use super::labels::free;
 use super::tsv::{self, BidsFile};
 use tomcom_core::base::spreadsheet::GUARDED;
 use tomcom_session::Session;
-use tomcom_session::answer_value::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem};
+use tomcom_session::questionnaire::AnswerValue;
 
 /// A questionnaire that a participant has filled in.
 #[derive(Clone, Debug, PartialEq)]

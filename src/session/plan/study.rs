@@ -1,0 +1,425 @@
+//! A study: its plan with session settings and questionnaires, the settings of each recording, and the progress of
+//! participants, which follows from the recordings alone, so that the next step is correct after a crash at any time.
+
+use serde::Serialize;
+
+use crate::SessionSpec;
+use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup};
+use crate::protocol::ProtocolEvent;
+use crate::questionnaire::Questionnaire;
+use crate::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, WizardVisibility};
+use crate::stream_settings::RerunSpec;
+use crate::study_arm::StudyArm;
+use crate::tracker::TrackerSpec;
+use crate::tutorial::Tutorial;
+use crate::wall_display::{AnswerDevice, DisplaySpec};
+use tomcom_core::base::rng::mix;
+use tomcom_core::communication::settings::ShadowMode;
+use tomcom_people::wizard::settings::WizardKind;
+
+/// It needs one complete recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct PlannedTrial {
+    /// From 1; `None` for the familiarisation.
+    pub period: Option<u32>,
+    pub condition: StudyArm,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    pub plan: PlanSpec,
+    /// In the order of the plan.
+    pub questionnaires: Vec<Questionnaire>,
+    pub tutorial: Option<Tutorial>,
+    /// Settings that all sessions of the study share.
+    pub session: SessionSpec,
+    /// Of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with another
+    /// digest belong to another study.
+    pub digest: String,
+}
+
+/// A recording of a study that is to be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WantedRecording {
+    /// Index in the plan.
+    pub participant: usize,
+    /// Index of the planned trial in the participant's series.
+    pub slot: usize,
+    /// From 1.
+    pub attempt: u32,
+    /// Whether the participant has completed the instruction.
+    pub instructed: bool,
+}
+
+impl Study {
+    /// `None` if the session file has no plan. `kitchen`: the texts of the kitchen's files.
+    pub fn new(
+        session: &SessionSpec,
+        questionnaires: Vec<Questionnaire>,
+        tutorial: Option<Tutorial>,
+        kitchen: [&str; 2],
+    ) -> Option<Study> {
+        let plan = session.plan.clone()?;
+        let session = SessionSpec { plan: None, ..session.clone() };
+        // Serialisation cannot fail, because all maps have string keys.
+        let all = (&plan, &questionnaires, kitchen, what_can_change_a_trial(&session));
+        let mut text = serde_json::to_string(&all).unwrap_or_default();
+        // Without a tutorial, the digest stays as it was before there were tutorials.
+        if let Some(tutorial) = &tutorial {
+            text += &serde_json::to_string(tutorial).unwrap_or_default();
+        }
+        let digest = digest(&text);
+        Some(Study { plan, questionnaires, tutorial, session, digest })
+    }
+
+    pub fn group(&self, participant: usize) -> StartingGroup {
+        self.plan.group(self.session.seed, participant)
+    }
+
+    pub fn consent_given(&self, on: AnswerDevice) -> ProtocolEvent {
+        let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
+        ProtocolEvent::ConsentGiven { on, text, digest }
+    }
+
+    pub fn slots(&self, participant: usize) -> Vec<PlannedTrial> {
+        let practice = self.plan.familiarisation.as_ref().map(|practice| (None, practice.condition));
+        let trials = self.group(participant).conditions.into_iter().enumerate();
+        let trials = trials.map(|(index, condition)| (Some(index as u32 + 1), condition));
+        practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
+    }
+
+    /// Of a recording with people, and the number of its trial.
+    pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
+        let slots = self.slots(wanted.participant);
+        let slot = slots[wanted.slot];
+        let mut spec = self.session.clone();
+        spec.participant.code = self.plan.code(wanted.participant);
+        set_arm(&mut spec, slot.condition);
+        let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
+        if let Some(practice) = practice {
+            spec.trial.presses = practice.presses;
+            spec.trial.seconds = practice.seconds;
+            spec.trial.orders = Some(practice.orders);
+        }
+        spec.step = Some(PlanPosition {
+            plan: self.plan.name.clone(),
+            digest: self.digest.clone(),
+            participant: wanted.participant as u32,
+            group: self.group(wanted.participant).name,
+            period: slot.period,
+            periods: self.plan.conditions.len() as u32,
+            arm: Some(slot.condition),
+            aims: self.plan.aims,
+            attempt: wanted.attempt,
+            criterion: practice.map(|it| PracticeCriterion { orders: it.orders, error_rate: it.error_rate }),
+            phases: self.phases(slot, wanted),
+        });
+        (spec, trial_number(wanted))
+    }
+
+    /// Of a simulated trial, and its number. It has no instruction and no questionnaire; without a scripted wizard, the
+    /// wizard conditions are unassisted.
+    pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
+        let slots = self.slots(participant);
+        let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
+        let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
+        spec.trial.condition = spec.unattended(spec.trial.condition);
+        let saw_advice = spec.script_reads_offers();
+        let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, saw_advice);
+        if let Some(step) = &mut spec.step {
+            step.phases = vec![PhaseSpec::Trial];
+            step.arm = Some(arm);
+        }
+        (spec, trial)
+    }
+
+    /// `None` if the study has no tutorial.
+    pub fn tutorial_alone(&self, code: &str) -> Option<SessionSpec> {
+        let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
+        let mut spec = self.session.clone();
+        spec.participant.code = code.to_string();
+        spec.step = Some(PlanPosition {
+            plan: format!("{}-tutorial", self.plan.name),
+            digest: self.digest.clone(),
+            participant: 0,
+            group: String::new(),
+            period: None,
+            periods: 0,
+            arm: None,
+            aims: self.plan.aims,
+            attempt: 1,
+            criterion: None,
+            phases,
+        });
+        Some(spec)
+    }
+
+    fn phases(&self, slot: PlannedTrial, wanted: WantedRecording) -> Vec<PhaseSpec> {
+        let mut phases = Vec::new();
+        if !wanted.instructed && !self.plan.instruction.is_empty() {
+            phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
+        }
+        // The tutorial is shown on the participant's display only, not to a participant at the keyboard of the console.
+        let is_there = !wanted.instructed && self.session.participant.kind == ParticipantKind::Display;
+        if let Some(tutorial) = self.tutorial.as_ref().filter(|_| is_there) {
+            phases.push(PhaseSpec::Tutorial { tutorial: tutorial.clone() });
+        }
+        let Some(period) = slot.period else {
+            phases.push(PhaseSpec::Familiarisation);
+            return phases;
+        };
+        let asked = || self.plan.questionnaire.iter().zip(&self.questionnaires);
+        let is_first = period == 1;
+        let before = asked().filter(|(when, _)| is_first && when.before).filter_map(|(_, asked)| asked.before_trials());
+        phases.extend(before.map(|questionnaire| PhaseSpec::Questionnaire { questionnaire }));
+        phases.push(PhaseSpec::Trial);
+        let after = asked().filter(|(when, _)| when.is_asked_after(period));
+        let after = after.filter_map(|(_, asked)| asked.after(slot.condition.condition()));
+        phases.extend(after.map(|questionnaire| PhaseSpec::Questionnaire { questionnaire }));
+        if period as usize == self.plan.conditions.len() && !self.plan.debriefing.is_empty() {
+            phases.push(PhaseSpec::Debriefing { steps: self.plan.debriefing.clone() });
+        }
+        phases
+    }
+}
+
+fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
+    spec.trial.condition = arm.condition();
+    if let Some(concept) = arm.concept() {
+        spec.assistant.concept = concept;
+    }
+    match arm {
+        StudyArm::WizardWithAdvice => {
+            spec.console.visibility = WizardVisibility::Recommendation;
+            spec.assistant.shadow = ShadowMode::On;
+            if spec.wizard.kind == WizardKind::Scripted {
+                spec.wizard.offers.get_or_insert_default();
+            }
+        }
+        StudyArm::Wizard => spec.wizard.offers = None,
+        StudyArm::None | StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev => {}
+    }
+}
+
+/// Without addresses, viewers, appearance and texts of the wizard's console. Who takes part in a recording and which
+/// device its gaze comes from are not part of the plan either: both are chosen at the start of a recording and written
+/// to its header.
+fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
+    let ParticipantSpec { population, .. } = session.participant.clone();
+    let TrackerSpec { surface, corners, distance_m, .. } = session.tracker.clone();
+    let (tracker, display) = (TrackerSpec::default(), DisplaySpec::default());
+    SessionSpec {
+        participant: ParticipantSpec { population, ..ParticipantSpec::default() },
+        tracker: TrackerSpec { surface, corners, distance_m, ..tracker },
+        console: ConsoleSpec { visibility: session.console.visibility, ..ConsoleSpec::default() },
+        display: DisplaySpec { listen: display.listen, port: display.port, ..session.display.clone() },
+        rerun: RerunSpec::default(),
+        // The model's parameters are in `human`, and the layout's text is passed beside the settings.
+        human_model: None,
+        layout: String::new(),
+        ..session.clone()
+    }
+}
+
+/// Unique to a recording of a plan; its decimal digits encode participant, planned trial and attempt.
+fn trial_number(wanted: WantedRecording) -> u64 {
+    (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
+}
+
+/// Sixteen hexadecimal digits.
+fn digest(text: &str) -> String {
+    let sum = text.bytes().fold(text.len() as u64, |sum, byte| mix(sum ^ u64::from(byte)));
+    format!("{sum:016x}")
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "is", rename_all = "snake_case")]
+pub enum RecordingOutcome {
+    /// All its phases are done.
+    Complete,
+    /// Cut off or left early, so that it can be continued.
+    Open,
+    /// A program is making it at present.
+    Running,
+    /// Finished and excluded from the analysis, but not repeated.
+    Excluded { reason: String },
+    /// Finished and invalid: it must be repeated.
+    Void { reason: String },
+}
+
+/// Facts about one recording, over all its parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanRecording {
+    /// Name of its folder; of several parts, the last one's.
+    pub recording: String,
+    pub code: String,
+    /// The code in the log, if it was corrected afterwards.
+    pub recorded_as: Option<String>,
+    /// Of a corrected recording, that of the other participant.
+    pub step: PlanPosition,
+    pub consent: bool,
+    pub instructed: bool,
+    /// Of both agents in the trial.
+    pub presses: u32,
+    pub outcome: RecordingOutcome,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "is", rename_all = "snake_case")]
+pub enum NextRecording {
+    Begin {
+        /// Index of the planned trial in the participant's series.
+        slot: usize,
+        /// From 1.
+        attempt: u32,
+    },
+    /// It is unfinished: the experimenter continues it, or repeats its trial as a new attempt.
+    Choose {
+        recording: String,
+        slot: usize,
+        /// If the trial is repeated.
+        attempt: u32,
+    },
+    /// A program is making it at present.
+    Running { recording: String, slot: usize },
+    /// The participant has completed the series.
+    Finished,
+}
+
+impl NextRecording {
+    /// `None` when all trials are done.
+    pub fn slot(&self) -> Option<usize> {
+        match self {
+            NextRecording::Begin { slot, .. }
+            | NextRecording::Choose { slot, .. }
+            | NextRecording::Running { slot, .. } => Some(*slot),
+            NextRecording::Finished => None,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlannedTrialProgress {
+    #[serde(flatten)]
+    pub slot: PlannedTrial,
+    /// Whether it has a valid recording.
+    pub is_done: bool,
+    /// In order.
+    pub recordings: Vec<TrialAttempt>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrialAttempt {
+    /// Name of its folder; of several parts, the last one's.
+    pub recording: String,
+    pub attempt: u32,
+    /// Of both agents in the trial.
+    pub presses: u32,
+    pub outcome: RecordingOutcome,
+    /// Whether it was recorded under another version of the plan.
+    pub other_version: bool,
+    /// The code in the log, if it was corrected afterwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded_as: Option<String>,
+    /// If it is not that of the plan for this participant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other_arm: Option<StudyArm>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParticipantProgress {
+    pub code: String,
+    /// Index in the plan.
+    #[serde(skip)]
+    pub participant: usize,
+    pub group: String,
+    pub consent: bool,
+    #[serde(skip)]
+    pub instructed: bool,
+    pub steps: Vec<PlannedTrialProgress>,
+    pub next: NextRecording,
+}
+
+impl ParticipantProgress {
+    /// `made`: all recordings of the plan, in any order. The error names one that does not belong to it.
+    pub fn from_recordings(
+        study: &Study,
+        participant: usize,
+        made: &[PlanRecording],
+    ) -> Result<ParticipantProgress, String> {
+        let code = study.plan.code(participant);
+        let group = study.group(participant).name;
+        let own: Vec<&PlanRecording> = made.iter().filter(|made| made.code == code).collect();
+        // A recording whose code was corrected has the group of the participant for whom it was begun.
+        if let Some(other) = own.iter().find(|made| made.recorded_as.is_none() && made.step.group != group) {
+            let (recording, recorded) = (&other.recording, &other.step.group);
+            return Err(format!("{code} was in group {recorded} in {recording}, and is in {group} now"));
+        }
+        let slots = study.slots(participant);
+        let steps: Vec<PlannedTrialProgress> =
+            slots.iter().map(|slot| PlannedTrialProgress::from_recordings(study, *slot, &own)).collect();
+        let next =
+            steps.iter().enumerate().find_map(|(index, stand)| stand.next(index)).unwrap_or(NextRecording::Finished);
+        let consent = own.iter().any(|made| made.consent);
+        let instructed = own.iter().any(|made| made.instructed);
+        Ok(ParticipantProgress { code, participant, group, consent, instructed, steps, next })
+    }
+
+    pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
+        WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
+    }
+
+    /// Makes this planned trial the next one, even if it is done.
+    pub fn redo(&mut self, slot: Option<usize>) {
+        if let Some((slot, stand)) = slot.and_then(|slot| Some((slot, self.steps.get(slot)?))) {
+            self.next = NextRecording::Begin { slot, attempt: stand.attempts() + 1 };
+        }
+    }
+
+    /// Number of completed trials.
+    pub fn done(&self) -> usize {
+        self.steps.iter().filter(|stand| stand.is_done).count()
+    }
+}
+
+impl PlannedTrialProgress {
+    fn from_recordings(study: &Study, slot: PlannedTrial, own: &[&PlanRecording]) -> PlannedTrialProgress {
+        let mut here: Vec<&PlanRecording> =
+            own.iter().filter(|made| made.step.period == slot.period).copied().collect();
+        here.sort_by(|a, b| (a.step.attempt, &a.recording).cmp(&(b.step.attempt, &b.recording)));
+        let attempt = |made: &&PlanRecording| TrialAttempt {
+            recording: made.recording.clone(),
+            attempt: made.step.attempt,
+            presses: made.presses,
+            outcome: made.outcome.clone(),
+            other_version: made.step.digest != study.digest,
+            recorded_as: made.recorded_as.clone(),
+            other_arm: made.step.arm.filter(|arm| made.recorded_as.is_some() && *arm != slot.condition),
+        };
+        // A later attempt at a planned trial replaces earlier ones, since the experimenter asked for the repetition.
+        let is_done = here
+            .last()
+            .is_some_and(|made| matches!(made.outcome, RecordingOutcome::Complete | RecordingOutcome::Excluded { .. }));
+        PlannedTrialProgress { slot, is_done, recordings: here.iter().map(attempt).collect() }
+    }
+
+    /// Number of the last attempt.
+    fn attempts(&self) -> u32 {
+        self.recordings.last().map_or(0, |last| last.attempt)
+    }
+
+    /// `None` if the trial is done.
+    fn next(&self, slot: usize) -> Option<NextRecording> {
+        let attempt = self.attempts() + 1;
+        match self.recordings.last() {
+            _ if self.is_done => None,
+            Some(last) if last.outcome == RecordingOutcome::Open => {
+                Some(NextRecording::Choose { recording: last.recording.clone(), slot, attempt })
+            }
+            Some(last) if last.outcome == RecordingOutcome::Running => {
+                Some(NextRecording::Running { recording: last.recording.clone(), slot })
+            }
+            _ => Some(NextRecording::Begin { slot, attempt }),
+        }
+    }
+}

@@ -10,7 +10,7 @@ use tomcom_arm::controller::ArmController;
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::hand_body::HandPose;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::ArmPhase;
+use tomcom_core::robot::ArmPhase;
 
 /// So much is simulated, in seconds.
 const SIMULATED_S: f64 = 300.0;

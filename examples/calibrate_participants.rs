@@ -21,7 +21,7 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_core::kitchen::files::LayoutSpec;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;

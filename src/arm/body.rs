@@ -1,16 +1,14 @@
 //! The simulated robot arm and the human's hand beside the arm, stepped in session time, and the events that they
 //! report.
 
-use super::controller::{ArmController, ControlCycleResult};
-use super::physics::CYCLE_S;
-use super::reaching::{ReachingBehaviour, ReachingHand};
-use super::report::{ArmCycleReport, PressFailure};
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
+use tomcom_core::base::{rng::stream, time::SessionTime};
 use tomcom_core::kitchen::{ButtonId, Kitchen, State};
-use tomcom_core::robot::moment::{ArmPhase, ArmSample};
-use tomcom_core::robot::safety::SafetyMode;
-use tomcom_core::robot::{AbortReason, RobotEvent};
+use tomcom_core::robot::{AbortReason, ArmPhase, ArmSample, RobotEvent, SafetyMode};
+
+use crate::controller::{ArmController, ControlCycleResult};
+use crate::physics::CYCLE_S;
+use crate::reaching::{ReachingBehaviour, ReachingHand};
+use crate::report::{ArmCycleReport, PressFailure};
 
 /// Interval between recorded samples of a moving robot arm: about twelve per second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);

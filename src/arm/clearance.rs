@@ -4,10 +4,10 @@
 use nalgebra::{Isometry3, Point3};
 use rapier3d::math::Vector;
 use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
+use tomcom_core::robot::{JOINTS, JointAngles};
 
-use super::kinematics::SerialArm;
-use super::link::{CollisionSolid, LinkShape};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use crate::kinematics::SerialArm;
+use crate::link::{CollisionSolid, LinkShape};
 
 /// Least clearance between the arm's links, and between links and table, in metres.
 pub const KEPT_M: f64 = 0.02;

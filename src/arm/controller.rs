@@ -7,18 +7,17 @@
 
 use std::collections::VecDeque;
 
-use super::clearance::ArmSurroundings;
-use super::kinematics::SerialArm;
-use super::physics::hand_body::HandPose;
-use super::physics::{CYCLE_S, ContactForces, PhysicsWorld};
-use super::reach::{BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
-use super::report::PressFailure;
-use super::separation::{MARGIN_M, mode_near, speed_limit};
-use super::touch::ContactTracker;
-use super::trajectory::{LegKind, TrajectoryLeg, way_over, way_to, way_up};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom_core::robot::moment::{ArmPhase, JOINTS, JointAngles};
-use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
+use tomcom_core::robot::{ArmPhase, JOINTS, JointAngles, SLOWS_M, SafetyMode};
+
+use crate::clearance::ArmSurroundings;
+use crate::kinematics::SerialArm;
+use crate::physics::{CYCLE_S, ContactForces, PhysicsWorld, hand_body::HandPose};
+use crate::reach::{BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
+use crate::report::PressFailure;
+use crate::separation::{MARGIN_M, mode_near, speed_limit};
+use crate::touch::ContactTracker;
+use crate::trajectory::{LegKind, TrajectoryLeg, way_over, way_to, way_up};
 
 /// Changes of the arm's share of its planned speed along the path, per second: while the arm slows down, stops, and
 /// speeds up.

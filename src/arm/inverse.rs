@@ -5,9 +5,9 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
+use tomcom_core::robot::{JOINTS, JointAngles};
 
-use super::kinematics::SerialArm;
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use crate::kinematics::SerialArm;
 
 /// The manufacturer's Denavit-Hartenberg parameters of the UR5, in metres.
 const D1: f64 = 0.089159;

@@ -5,10 +5,10 @@
 //! own, written from the manufacturer's published data.
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector6};
+use tomcom_core::robot::JointAngles;
 
-use super::link::{ArmLink, RevoluteJoint};
-use super::urdf::{UrdfError, read_links};
-use tomcom_core::robot::moment::JointAngles;
+use crate::link::{ArmLink, RevoluteJoint};
+use crate::urdf::{UrdfError, read_links};
 
 /// The robot arm UR5 as a URDF.
 pub const UR5: &str = include_str!("ur5.urdf");
@@ -26,7 +26,7 @@ impl SerialArm {
         SerialArm::from_urdf(UR5).expect("our own file")
     }
 
-    /// Reads a robot arm from a URDF: one chain of links with [`tomcom_core::robot::moment::JOINTS`] revolute joints.
+    /// Reads a robot arm from a URDF: one chain of links with [`tomcom_core::robot::JOINTS`] revolute joints.
     ///
     /// # Errors
     /// The text is no URDF, or the URDF does not describe such an arm.
@@ -87,7 +87,7 @@ mod tests {
     use nalgebra::{Matrix4, Vector3};
 
     use super::*;
-    use tomcom_core::robot::moment::JOINTS;
+    use tomcom_core::robot::JOINTS;
 
     /// The parameters d, a, alpha of the manufacturer's Denavit-Hartenberg table.
     const DH: [[f64; 3]; JOINTS] = [

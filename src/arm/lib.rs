@@ -11,7 +11,7 @@
 //!
 //! Control cycles are internal events of the session and happen only while the arm moves, is about to move, or the hand
 //! moves. Above the button, the program decides again whether the press is still useful. A press is a click of the
-//! button. The hand follows the presses and never changes them. The stop thresholds are in `tomcom_core::robot::safety`; a
+//! button. The hand follows the presses and never changes them. The stop thresholds are in `tomcom_core::robot`; a
 //! contact is recorded once, a tenth of a second after the contact began.
 
 #![warn(missing_docs)]

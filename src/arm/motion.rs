@@ -2,12 +2,13 @@
 //! this module interpolates the joint angles with a quintic (Craig, Introduction to Robotics), so that the arm moves
 //! slowly at both ends of each leg: up from the last button, across, and down on the next button.
 
-use super::clearance::ArmSurroundings;
-use super::kinematics::SerialArm;
-use super::reach::{BENT, ButtonPoses};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::{JOINTS, JointAngles};
+
+use crate::clearance::ArmSurroundings;
+use crate::kinematics::SerialArm;
+use crate::reach::{BENT, ButtonPoses};
 
 /// Share of the motion's duration in which the arm goes up (first), and share in which the arm goes down (last).
 const UP: f64 = 0.15;

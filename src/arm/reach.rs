@@ -4,13 +4,12 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-
-use super::clearance::{ArmSurroundings, Obstruction};
-use super::inverse::turned_towards;
-use super::kinematics::SerialArm;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::{AbortReason, JOINTS, JointAngles};
+
+use crate::clearance::{ArmSurroundings, Obstruction};
+use crate::inverse::turned_towards;
+use crate::kinematics::SerialArm;
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;

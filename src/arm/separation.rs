@@ -1,7 +1,7 @@
 //! Speed and separation monitoring (ISO/TS 15066, 5.5.4): the robot arm slows down near a hand and waits for a hand in
 //! its way.
 
-use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
+use tomcom_core::robot::{SLOWS_M, SafetyMode};
 
 /// Protective separation distance in metres: the arm does not approach a hand that is nearer than this.
 const WAITS_M: f64 = 0.03;

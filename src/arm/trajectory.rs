@@ -5,10 +5,11 @@
 //! that speed and acceleration begin and end at 0 and never jump. The duration of a leg follows from the speed and
 //! acceleration limits of the leg's kind, which are the defaults of the manufacturer's commands `movej` and `movel`.
 
-use super::clearance::ArmSurroundings;
-use super::kinematics::SerialArm;
-use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, UnreachableReason};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::{JOINTS, JointAngles};
+
+use crate::clearance::ArmSurroundings;
+use crate::kinematics::SerialArm;
+use crate::reach::{ABOVE_M, BUTTON_M, ButtonPoses, UnreachableReason};
 
 /// Greatest speed of a joint on a leg in joint space, in radians per second.
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;

@@ -1,10 +1,10 @@
 //! Reads a robot arm from a URDF: its links with their shapes and masses, its joints with their limits.
 
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use tomcom_core::robot::JOINTS;
 use urdf_rs::{Geometry, JointType, Pose};
 
-use super::link::{ArmLink, CollisionSolid, LinkInertia, LinkShape, RevoluteJoint};
-use tomcom_core::robot::moment::JOINTS;
+use crate::link::{ArmLink, CollisionSolid, LinkInertia, LinkShape, RevoluteJoint};
 
 /// Error: a URDF does not describe an arm that the program can move.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

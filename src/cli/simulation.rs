@@ -6,7 +6,7 @@ use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
 use crate::edge::files;
 use crate::run::{simulate, sweep};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::settings::WizardKind;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use tomcom_core::kitchen::Kitchen;
-use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
+use tomcom_core::measures::detection::{EstimateBeforePress, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::chosen_thresholds;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};

@@ -8,7 +8,7 @@ use super::simulate::settings_of_trial;
 use crate::edge::battery_file::CohortBattery;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
+use tomcom_core::measures::detection::{EstimateBeforePress, TrialBeliefs};
 use tomcom_session::battery::CohortSpec;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::follower::SessionFollower;

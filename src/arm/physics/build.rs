@@ -5,11 +5,10 @@ use rapier3d::prelude::{
     ColliderBuilder, GenericJointBuilder, JointAxesMask, JointAxis, MassProperties, MotorModel, Pose, RigidBodyBuilder,
     RigidBodyHandle, Rotation,
 };
+use tomcom_core::robot::{JOINTS, JointAngles};
 
-use super::hand_body::single;
-use super::{PhysicsWorld, button};
+use super::{PhysicsWorld, button, hand_body::single};
 use crate::link::{ArmLink, LinkShape};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
 
 /// Reflected rotor inertia of the arm's large and small drives (rotor inertia times gear ratio squared), in kg m². The
 /// values are estimates: the manufacturer does not publish the inertia.

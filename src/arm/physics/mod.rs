@@ -20,12 +20,14 @@ use rapier3d::prelude::{
     JointAxis, MultibodyJointHandle, MultibodyJointSet, NarrowPhase, PhysicsPipeline, RigidBodyHandle, RigidBodySet,
     SoftBodySet, Vector,
 };
+use tomcom_core::robot::{JOINTS, JointAngles};
 
-use super::clearance::Capsule;
-use super::kinematics::SerialArm;
-use button::PhysicalButton;
-use hand_body::{HandPose, PhysicalHand, double, single};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use self::{
+    button::PhysicalButton,
+    hand_body::{HandPose, PhysicalHand, double, single},
+};
+use crate::clearance::Capsule;
+use crate::kinematics::SerialArm;
 
 /// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
 pub const CYCLE_S: f64 = 0.008;

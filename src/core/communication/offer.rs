@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concept_name::ConceptName;
+use super::concept::ConceptName;
 use super::recommendation::SignalReason;
 use super::signal::Signal;
 use crate::base::time::SessionTime;

@@ -10,11 +10,10 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::concept::DecisionPoint;
+use super::concept::{DecisionPoint, RobotIntent};
 use super::recommendation::aspects_told;
 use super::settings::AssistantSpec;
 use super::signal::{Signal, unavailable};
-use super::situation::RobotIntent;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};

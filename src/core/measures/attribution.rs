@@ -14,7 +14,7 @@ use crate::kitchen::{
     AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State, WeightedWorlds, World,
 };
 use crate::mind::belief::Belief;
-use crate::mind::choice_parameters::ChoiceParameters;
+use crate::mind::choice::ChoiceParameters;
 use crate::mind::{ChoiceModel, PressOrigin, RecordedBelief};
 
 /// Least likelihood ratio of belief to truth for a belief related error.

@@ -11,6 +11,7 @@
 
 use std::sync::Arc;
 
+use super::attribution::ErrorCause;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{CostToGo, ProofBudget, ProvenCost};
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -122,4 +123,22 @@ impl PressJudge {
         let recent = |time: SessionTime| now.secs_since(time) <= RACE_S;
         places.iter().any(|place| self.others_changed_at[place.index()].is_some_and(recent))
     }
+}
+
+/// A press of the human with the judgement whether it was an error. The nth judged press is the nth press of the human
+/// on the session's timeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JudgedPress {
+    /// Sequence number of the press event in the log.
+    pub seq: u64,
+    /// Session time of the press.
+    pub time: SessionTime,
+    /// State of the kitchen before the press.
+    pub before: State,
+    /// The regret of the press, and whether it was an error.
+    pub verdict: PressVerdict,
+    /// Whether the human's belief before the press is known.
+    pub belief_known: bool,
+    /// Cause of an error; `None` if the press was no error or the human's belief is not known.
+    pub cause: Option<ErrorCause>,
 }

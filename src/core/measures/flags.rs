@@ -13,7 +13,7 @@
 
 use serde::Serialize;
 
-use super::press_view::{BeliefsBeforePress, TrialBeliefs};
+use super::detection::{BeliefsBeforePress, TrialBeliefs};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
 pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;

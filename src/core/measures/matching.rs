@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::median::median;
+use super::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 

@@ -24,9 +24,9 @@ use crate::ranges;
 use crate::settings::SettingError;
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
-use tomcom_core::kitchen::layout::LayoutSpec;
-use tomcom_core::kitchen::recipe::RecipesSpec;
-use tomcom_core::kitchen::{Kitchen, layout_ranges};
+use tomcom_core::kitchen::files::LayoutSpec;
+use tomcom_core::kitchen::files::RecipesSpec;
+use tomcom_core::kitchen::{Kitchen, files};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_people::wizard::settings::WizardKind;
 
@@ -240,7 +240,7 @@ fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
 /// Compiles a kitchen from the texts of its layout and recipe files. The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
-    layout_ranges::check(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
+    files::check_layout(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {

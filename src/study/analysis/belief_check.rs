@@ -10,20 +10,18 @@ use super::likelihood::PressLogLikelihood;
 use super::probe_figures::ProbeSummary;
 use super::probe_lines;
 use super::seen_contents::LastSeenContents;
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::{count, decimal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{Kitchen, KitchenChange, LocationId, Press};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::belief_detection::{
-    BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs,
-};
+use tomcom_core::measures::detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs};
 use tomcom_core::measures::flags::{FlagThresholds, MOST_FALSE_FLAGS, ThresholdChoice, ThresholdSource};
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::mind::belief::Belief;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Seed of the bootstrap's random numbers: the same recordings give the same interval.

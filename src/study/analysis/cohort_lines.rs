@@ -2,7 +2,7 @@
 //! -100 %.
 
 use super::cohort_table::{CohortRow, RobustnessTable};
-use tomcom_core::base::words::{count, decimal};
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::flags::MOST_FALSE_FLAGS;
 
 /// Heading of the robustness table as text; the column of cohort names is `width` characters wide.

@@ -12,10 +12,10 @@ use super::trial_bootstrap::intervals;
 use super::trial_summary::TrialSummary;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
+use tomcom_core::measures::detection::DetectionScores;
+use tomcom_core::measures::detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::{ThresholdChoice, chosen_thresholds};
-use tomcom_core::measures::resampled_detection::DetectionScores;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;

@@ -20,7 +20,7 @@ use tomcom_arm::physics::hand_body::HandPose;
 use tomcom_arm::report::PressFailure;
 use tomcom_core::base::rng::Stream;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom_core::robot::moment::ArmPhase;
+use tomcom_core::robot::ArmPhase;
 
 static SUSHI: LazyLock<Kitchen> =
     LazyLock::new(|| read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);

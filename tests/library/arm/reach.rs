@@ -12,7 +12,7 @@ use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::JointAngles;
+use tomcom_core::robot::JointAngles;
 
 use super::SUSHI;
 

@@ -7,8 +7,8 @@ use tomcom_arm::physics::hand_body::HandPose;
 use tomcom_arm::reach::UnreachableReason;
 use tomcom_arm::report::PressFailure;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::JOINTS;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::JOINTS;
+use tomcom_core::robot::SafetyMode;
 
 use super::{AT_REST, Came, SUSHI, until_report};
 

@@ -8,7 +8,7 @@ use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom::edge::pupil::{CaptureConfiguration, follow};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_session::settings::GazeSource;
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::{Event, preflight_checks};

@@ -10,7 +10,7 @@ use tomcom::edge::pupil::message::{self, CaptureNotification, PupilMessage};
 use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
 use tomcom::run::options::SettingOverrides;
 use tomcom_core::base::rng::stream;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::settings::GazeSource;
 use tomcom_session::tracker::TrackerSpec;

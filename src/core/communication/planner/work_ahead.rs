@@ -7,11 +7,10 @@
 //! answer is the same with and without working ahead.
 
 use super::Planner;
-use super::lattice::QuasiRandomLattice;
-use super::rollout_human::choice_weights;
+use super::rollout::choice_weights;
+use super::sample::QuasiRandomLattice;
 use crate::base::rng::stream;
-use crate::communication::concept::DecisionPoint;
-use crate::communication::situation::{RobotIntent, Situation};
+use crate::communication::concept::{DecisionPoint, RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use crate::mind::choice::HumanChoice;

@@ -9,13 +9,11 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::classes::CompactState;
-use super::fidelity::Fidelity;
-use super::goal::ServingGoal;
-use super::partial_plan::{BLOCKED, PressPlan};
-use super::rating::RankedAssignments;
+use super::Fidelity;
+use super::goal::{ServingGoal, successors};
+use super::ground::CompactState;
+use super::plan::{BLOCKED, PressPlan, RankedAssignments};
 use super::store::{CostToGo, UNREACHABLE};
-use super::successors::successors;
 use crate::kitchen::{ContentId, State};
 
 /// Limits of a best-first search.

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use rand::RngExt;
 
 use super::person::Particle;
-use super::plausible_looks::{self, LookNeedProbabilities};
+use super::plausible_looks;
+use super::plausible_looks::LookNeedProbabilities;
 use super::reading_effect::LookTracker;
 use super::signal_reading::ReferenceSignalHistory;
 use crate::base::rng::Stream;
@@ -17,7 +18,7 @@ use crate::kitchen::{
     Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
 };
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
-use crate::mind::gaze_presence::UnknownGazeTimer;
+use crate::mind::filter::unseen::UnknownGazeTimer;
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 

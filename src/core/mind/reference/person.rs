@@ -10,9 +10,10 @@ use rand_distr::{Distribution, Gamma};
 use super::reading_effect::LocationReading;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
-use crate::kitchen::{OrderContent, Recipes, State};
-use crate::mind::choice_parameters::ChoiceParameters;
+use crate::kitchen::{
+    Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Recipes, State,
+};
+use crate::mind::choice::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 

@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use tomcom::edge::files::read_kitchen;
 use tomcom_arm::controller::ArmController;
 use tomcom_arm::physics::CYCLE_S;
-use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::physics::bodies::HandPose;
 use tomcom_core::kitchen::{Agent, ButtonId};
 use tomcom_core::robot::ArmPhase;
 

@@ -1,14 +1,15 @@
 //! The simulated robot arm and the human's hand beside the arm, stepped in session time, and the events that they
 //! report.
 
-use tomcom_core::base::{rng::stream, time::SessionTime};
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{ButtonId, Kitchen, State};
 use tomcom_core::robot::{AbortReason, ArmPhase, ArmSample, RobotEvent, SafetyMode};
 
 use crate::controller::{ArmController, ControlCycleResult};
 use crate::physics::CYCLE_S;
 use crate::reaching::{ReachingBehaviour, ReachingHand};
-use crate::report::{ArmCycleReport, PressFailure};
+use crate::worker::{ArmCycleReport, PressFailure};
 
 /// Interval between recorded samples of a moving robot arm: about twelve per second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
@@ -18,7 +19,6 @@ fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts + 0.0
 }
 
-/// The last arm sample that the simulated arm reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
     at: SessionTime,
@@ -32,14 +32,11 @@ struct Told {
 /// The simulated arm with the human's hand and the session time that the simulation has reached.
 #[derive(Clone, Debug)]
 pub struct SimulatedArm {
-    /// The robot arm with its controller in the physics simulation.
     pub arm: ArmController,
     hand: ReachingHand,
-    /// Session time of the last cycle of the arm's controller.
     at: SessionTime,
     /// The button to which the arm moves as soon as it stands still.
     next: Option<ButtonId>,
-    /// Whether the robot has no press to make.
     idle: bool,
     told: Told,
     /// The state of the kitchen in which the present press was last found useful.
@@ -92,7 +89,6 @@ impl SimulatedArm {
         Ok(self.arm.set_out(button)?)
     }
 
-    /// Abandons the arm's present press and the pending press.
     pub fn give_up(&mut self) {
         self.next = None;
         self.arm.give_up();
@@ -173,7 +169,6 @@ impl SimulatedArm {
         self.idle = true;
     }
 
-    /// Stops the arm at the wizard's command.
     pub fn stop(&mut self) -> Option<RobotEvent> {
         self.arm.stop(SafetyMode::EmergencyStop);
         self.safety(None, None)
@@ -190,21 +185,18 @@ impl SimulatedArm {
         self.hand.pressed(now, button_m);
     }
 
-    /// The change of the arm's safety mode since the last report, if there is one.
     fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotEvent> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
         changed.then_some(RobotEvent::Safety { mode, force_n, joint })
     }
 
-    /// Releases the arm at the wizard's command after a stop.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.at = self.at.max(now);
         self.arm.resume();
         self.safety(None, None)
     }
 
-    /// Shifts all pending times of arm and hand by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.at = self.at + by;
         self.told.at = self.told.at + by;

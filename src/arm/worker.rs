@@ -3,22 +3,21 @@
 //! state.
 
 use rand_distr::{Distribution, LogNormal};
-
-use super::body::SimulatedArm;
-#[cfg(feature = "physics")]
-use super::controller::ArmController;
-use super::report::PressFailure;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, State};
-use tomcom_core::robot::policy::{self, PolicyDecision};
-use tomcom_core::robot::{AbortReason, IdleReason, RobotEvent};
+use tomcom_core::robot::policy::PolicyDecision;
+use tomcom_core::robot::{AbortReason, IdleReason, RobotEvent, policy};
+
+use crate::body::SimulatedArm;
+
+#[cfg(feature = "physics")]
+use super::controller::ArmController;
 
 /// Time for which a skipped press of the robot is not chosen again, in seconds.
 pub const SKIP_S: f64 = 5.0;
 
-/// A press to which the robot's arm is moving.
 #[derive(Clone, Copy, Debug)]
 struct OngoingPress {
     button: ButtonId,
@@ -254,7 +253,6 @@ impl RobotTaskExecutor {
         self.give_up(reason)
     }
 
-    /// Excludes this press from the robot's choices for a while.
     fn leave_out(&mut self, now: SessionTime, button: ButtonId) {
         self.skipped.push((button, now + SessionTime::from_secs_f64(SKIP_S)));
         self.idle = None;
@@ -370,4 +368,27 @@ impl RobotTaskExecutor {
             body.postpone(by);
         }
     }
+}
+
+/// Why the robot arm failed to press a button.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressFailure {
+    /// A hand was in the way for too long, so the arm abandoned the press of this button.
+    Blocked(ButtonId),
+    NoClick(ButtonId),
+    /// The arm measured a contact force (newtons) above the threshold; it stops and abandons the press.
+    Contact(f64),
+    /// This joint (number 0 is the first) did not follow its command; the brakes hold the arm, and the press is
+    /// abandoned.
+    Fault(usize),
+}
+
+/// The result of a controller cycle for the arm's press, and the events of the cycle to record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmCycleReport {
+    /// The button that clicked. A click counts as a press even if the arm was about to abandon the press.
+    pub clicked: Option<ButtonId>,
+    pub report: Option<PressFailure>,
+    /// The robot activities to record, in the order of their times.
+    pub news: Vec<RobotEvent>,
 }

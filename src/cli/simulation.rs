@@ -9,7 +9,7 @@ use crate::run::{simulate, sweep};
 use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 use tomcom_session::SessionSpec;
 use tomcom_session::features::Feature;
 use tomcom_session::files::file_error::FileError;

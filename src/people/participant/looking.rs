@@ -1,16 +1,15 @@
 //! Gaze control of the simulated participant: fixation targets, reading of locations, attention capture by changes.
 
 use rand::RngExt;
-
-use super::draws::chance;
-use super::eyes::FixationProgress;
-use super::simulated::SimulatedParticipant;
-use super::true_beliefs::wanted_dish;
-use super::weighted_draw::drawn_by_weight;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{
     Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State, World,
 };
+
+use super::beliefs::wanted_dish;
+use super::eyes::FixationProgress;
+use super::simulated::SimulatedParticipant;
+use super::{chance, drawn_by_weight};
 
 /// Probability that the participant gives to the content that was just read at a location.
 const READ_CERTAINTY: f64 = 0.97;

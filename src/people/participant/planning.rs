@@ -6,14 +6,13 @@
 //! down. The participant waits for what only the robot can do, and for what the robot holds. A press that undoes
 //! something for the sake of another is a detour.
 
-use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
-use super::habits::Habits;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State};
 
-/// A press that backward chaining proposes.
+use super::decision::Habits;
+use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProposedPress {
-    /// The proposed button of the human.
     pub button: ButtonId,
     /// Whether the press is a detour, which only makes room, at the cost of another press later.
     pub is_detour: bool,
@@ -39,7 +38,6 @@ pub struct BackwardChaining<'a> {
 }
 
 impl<'a> BackwardChaining<'a> {
-    /// Starts backward chaining from the goals in a state, those of the order in progress first.
     pub fn new(prospect: &'a GoalContext<'a>, state: State, in_progress: LocationId) -> BackwardChaining<'a> {
         let hand = prospect.kitchen.hands[Agent::Human.index()];
         let goals = Goals::in_state(prospect, state, in_progress);

@@ -1,22 +1,19 @@
 //! What an observer of kitchen and gaze can infer about the participant's knowledge, and which false beliefs explain a
 //! press.
 
-use super::thought::SuspectedFalseBelief;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
+use tomcom_core::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationId, Recipes, State};
 
 /// The kitchen as the participant last saw it, location by location.
 #[derive(Clone, Debug)]
 pub struct ParticipantSeenKitchen {
-    /// The last seen content of every location.
     pub state: State,
     /// Location on which the gaze rests, and the time at which the gaze arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
 impl ParticipantSeenKitchen {
-    /// Creates the kitchen that the participant last saw in this state.
     pub fn new(state: State) -> ParticipantSeenKitchen {
         ParticipantSeenKitchen { state, resting: None }
     }
@@ -40,12 +37,10 @@ impl ParticipantSeenKitchen {
         self.state.set_code(location, truth.code(location));
     }
 
-    /// Whether the participant knows the content of a location.
     pub fn knows(&self, location: LocationId, truth: State) -> bool {
         self.state.code(location) == truth.code(location)
     }
 
-    /// Postpones the gaze's arrival time by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.resting = self.resting.map(|(location, since)| (location, since + by));
     }
@@ -54,11 +49,8 @@ impl ParticipantSeenKitchen {
 /// A press of the participant, with the true state and the last seen state at that time.
 #[derive(Clone, Copy, Debug)]
 pub struct ObservedPress {
-    /// The true state before the press.
     pub truth: State,
-    /// The state of the kitchen as the participant last saw it before the press.
     pub seen: State,
-    /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,
 }
 
@@ -142,5 +134,26 @@ mod tests {
         assert!(!seen.knows(location, truth), "taken before the change");
         seen.gaze(at(10.01), Some(location), Some(truth), 0.1);
         assert!(seen.knows(location, truth), "the gaze still rests there");
+    }
+}
+
+/// A false belief that the wizard suspects and wants to correct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SuspectedFalseBelief {
+    Place(LocationId),
+    /// A false belief about a recipe: the order, its dish, and the stack that the participant takes for the recipe.
+    Recipe(LocationId, DishId, ContentId),
+    /// A wrong guess of the wizard: a location that did not cause the error, but could plausibly have caused it.
+    Guess(LocationId),
+}
+
+impl SuspectedFalseBelief {
+    /// The location that a signal would be about if it corrected the false belief.
+    pub fn location(self) -> LocationId {
+        match self {
+            SuspectedFalseBelief::Place(location)
+            | SuspectedFalseBelief::Recipe(location, ..)
+            | SuspectedFalseBelief::Guess(location) => location,
+        }
     }
 }

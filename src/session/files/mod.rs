@@ -28,7 +28,7 @@ use tomcom_core::kitchen::files::LayoutSpec;
 use tomcom_core::kitchen::files::RecipesSpec;
 use tomcom_core::kitchen::{Kitchen, files};
 use tomcom_core::mind::model::HumanModel;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::Point3;
 use tomcom::edge::files::read_session;
-use tomcom_arm::clearance::Capsule;
 use tomcom_arm::controller::ArmController;
+use tomcom_arm::reach::Capsule;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::settings::ShadowMode;

@@ -9,7 +9,7 @@ use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::base::number_range::NumberRange;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::files::LAYOUT_RANGES;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 use tomcom_session::apply::apply;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::log::LogReader;

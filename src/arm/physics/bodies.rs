@@ -1,12 +1,102 @@
-//! The human's hand and forearm in the physics: one rigid body, held by a spring that stands for the person's arm.
+//! The bodies that the robot arm can touch: buttons, and the human's hand.
 
 use nalgebra::{Point3, Vector3};
-use rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Vector};
+use rapier3d::prelude::{
+    ColliderBuilder, ColliderHandle, ColliderSet, Group, ImpulseJointSet, InteractionGroups, InteractionTestMode,
+    MotorModel, Pose, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation, Vector,
+};
 
-use crate::clearance::Capsule;
+use crate::reach::{BUTTON_M, Capsule};
+
+/// Travel of the button's cap, and the depths of the cap at which the electrical contact closes and opens, in metres.
+const TRAVEL_M: f32 = 0.004;
+const CLOSES_M: f32 = 0.0025;
+const OPENS_M: f32 = 0.001;
+/// Spring constant of a button in N/m, and preload of the spring while the button is released.
+const SPRING_N_M: f32 = 600.0;
+const PRELOAD_M: f32 = 0.003;
+const DAMPING_NS_M: f32 = 3.0;
+const CAP_KG: f32 = 0.02;
+const RADIUS_M: f32 = 0.02;
+
+/// The cap of a button: it slides down on a spring, clicks on the way, and ends at a stop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PhysicalButton {
+    body: RigidBodyHandle,
+    collider: ColliderHandle,
+    up_m: f32,
+    closed: bool,
+}
+
+impl PhysicalButton {
+    /// A button at a position of the table, at rest and out of the simulation.
+    pub fn new(
+        [x, y]: [f64; 2],
+        table_m: f64,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        joints: &mut ImpulseJointSet,
+    ) -> PhysicalButton {
+        let half_m = BUTTON_M as f32 / 2.0;
+        let middle = Vector::new(x as f32, y as f32, table_m as f32 + half_m);
+        let ground = bodies.insert(RigidBodyBuilder::fixed().translation(middle));
+        let cap =
+            RigidBodyBuilder::dynamic().translation(middle).additional_mass(CAP_KG).lock_rotations().enabled(false);
+        let body = bodies.insert(cap);
+        // A cylinder of the physics engine stands along y.
+        let upright = Pose::from_rotation(Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2));
+        let collider = ColliderBuilder::cylinder(half_m, RADIUS_M)
+            .position(upright)
+            .density(0.0)
+            .collision_groups(CAP)
+            .friction(0.4);
+        let collider = colliders.insert_with_parent(collider, body, bodies);
+        let slides = PrismaticJointBuilder::new(Vector::Z)
+            .limits([-TRAVEL_M, 0.0])
+            .motor_model(MotorModel::ForceBased)
+            .motor_position(PRELOAD_M, SPRING_N_M, DAMPING_NS_M);
+        joints.insert(ground, body, slides, true);
+        PhysicalButton { body, collider, up_m: middle.z, closed: false }
+    }
+
+    pub fn collider(&self) -> ColliderHandle {
+        self.collider
+    }
+
+    /// Activates the button in the simulation; or releases the button and deactivates it.
+    pub fn set_active(&mut self, bodies: &mut RigidBodySet, active: bool) {
+        let Some(body) = bodies.get_mut(self.body) else { return };
+        let at = body.translation();
+        body.set_translation(Vector::new(at.x, at.y, self.up_m), active);
+        body.set_linvel(Vector::ZERO, active);
+        body.set_enabled(active);
+        self.closed = false;
+    }
+
+    /// Blocks the button's cap, to simulate a fault.
+    pub fn jam(&mut self, bodies: &mut RigidBodySet) {
+        if let Some(body) = bodies.get_mut(self.body) {
+            body.lock_translations(true, false);
+        }
+    }
+
+    /// Whether the button's electrical contact closed since the last call.
+    pub fn clicks(&mut self, bodies: &RigidBodySet) -> bool {
+        let down_m = bodies.get(self.body).map_or(0.0, |body| self.up_m - body.translation().z);
+        let was_closed = self.closed;
+        self.closed = down_m > if was_closed { OPENS_M } else { CLOSES_M };
+        self.closed && !was_closed
+    }
+}
+
+/// Collision groups of the button's cap: caps collide with the stick only.
+const CAP: InteractionGroups = InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
+/// Collision group of the robot's stick.
+pub(super) const STICK: InteractionGroups =
+    InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);
 
 /// Effective mass of a hand, in kilograms (ISO/TS 15066, annex A).
-const MASS_KG: f32 = 0.6;
+const HAND_KG: f32 = 0.6;
 /// Stiffness of a hand, in N/m (ISO/TS 15066, annex A).
 pub const STIFFNESS_N_M: f64 = 75_000.0;
 /// Damping of skin and flesh in a contact, in N s/m; the damping is small, so that the spring determines the peak
@@ -60,7 +150,7 @@ impl HandPose {
     }
 }
 
-/// The rigid body of hand and forearm.
+/// The rigid body of hand and forearm, held by a spring that stands for the person's arm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhysicalHand {
     body: RigidBodyHandle,
@@ -74,14 +164,13 @@ impl PhysicalHand {
     pub fn new(bodies: &mut RigidBodySet, wanted: HandPose, table_m: f64) -> PhysicalHand {
         let body = RigidBodyBuilder::dynamic()
             .translation(single(wanted.at_m.coords))
-            .additional_mass(MASS_KG)
+            .additional_mass(HAND_KG)
             .lock_rotations()
             .gravity_scale(0.0)
             .can_sleep(false);
         PhysicalHand { body: bodies.insert(body), wanted, table_m }
     }
 
-    /// The rigid body of hand and forearm.
     pub fn body(&self) -> RigidBodyHandle {
         self.body
     }
@@ -94,7 +183,6 @@ impl PhysicalHand {
         HandPose { at_m, elbow_m: self.wanted.elbow_m + (at_m - self.wanted.at_m) }
     }
 
-    /// The velocity of the hand, in metres per second.
     pub fn velocity_m_s(&self, bodies: &RigidBodySet) -> Vector3<f64> {
         bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
     }
@@ -117,7 +205,7 @@ impl PhysicalHand {
     pub fn swing(&self, bodies: &mut RigidBodySet, takes_s: f32) {
         let force = single(self.held_n(bodies));
         let Some(body) = bodies.get_mut(self.body) else { return };
-        let velocity = body.linvel() + force * (takes_s / MASS_KG);
+        let velocity = body.linvel() + force * (takes_s / HAND_KG);
         let at_m = body.translation() + velocity * takes_s;
         body.set_linvel(velocity, true);
         body.set_translation(at_m, true);

@@ -421,7 +421,7 @@ impl StampCheck {
 
     /// Mean delay of samples beyond the shortest one, in seconds, in the last intervals that were over at this time;
     /// `None` if their clock offset was not steady, or not known for long enough.
-    pub fn steady_delay_s(&self, at: SessionTime) -> Option<f64> {
+    pub(crate) fn steady_delay_s(&self, at: SessionTime) -> Option<f64> {
         let over = self.intervals.iter().filter(|one| at.secs_since(one.began) >= INTERVAL_S);
         let points: Vec<OffsetPoint> = over.rev().take(STEADY_FOR).filter_map(|one| point([one])).collect();
         let change = points.first()?.offset - points.last()?.offset;

@@ -7,7 +7,7 @@
 use crate::kitchen::{DisplayArea, Kitchen};
 
 /// The AprilTag ids of the display's corners: top left, top right, bottom right, bottom left.
-pub const IDS: [u16; 4] = [0, 1, 2, 3];
+pub(crate) const IDS: [u16; 4] = [0, 1, 2, 3];
 /// Smallest and largest edge of an AprilTag's black square, in millimetres; the largest edge that fits is used.
 const EDGE_MM: (u32, u32) = (80, 100);
 /// Number of cells along a side of an AprilTag's black square: six cells of data, and the black border.

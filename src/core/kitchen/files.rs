@@ -18,26 +18,26 @@ use crate::base::number_range::{NumberRange, OutOfRange, range_of};
 #[serde(deny_unknown_fields)]
 pub struct LayoutSpec {
     /// Identifier of the kitchen's layout.
-    pub name: String,
+    pub(crate) name: String,
     /// The kitchen's title on screens.
-    pub title: String,
+    pub(crate) title: String,
     /// Path of the recipe file, relative to the layout file.
     pub recipes: Spanned<String>,
     /// The size of the wall display.
-    pub display: WallDisplaySpec,
+    pub(crate) display: WallDisplaySpec,
     /// The height of the table, and the timing of orders.
-    pub table: TabletopSpec,
+    pub(crate) table: TabletopSpec,
     /// The order locations of the kitchen, at least one.
-    pub order: Vec<OrderSpec>,
+    pub(crate) order: Vec<OrderSpec>,
     /// The hands: one for each agent.
-    pub hand: Vec<HandSpec>,
+    pub(crate) hand: Vec<HandSpec>,
     /// The places where agents can put things down.
-    pub place: Vec<PlaceSpec>,
+    pub(crate) place: Vec<PlaceSpec>,
     /// Buttons for processing steps of the recipe file, beside the buttons of the places.
     #[serde(default)]
-    pub process: Vec<ProcessButtonSpec>,
+    pub(crate) process: Vec<ProcessButtonSpec>,
     /// The storages, one for each agent and ingredient.
-    pub storage: Vec<StorageSpec>,
+    pub(crate) storage: Vec<StorageSpec>,
 }
 
 impl LayoutSpec {
@@ -74,23 +74,23 @@ pub fn is_same_key(a: char, b: char) -> bool {
 /// `[display]` of a layout file: the size of the wall display.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct WallDisplaySpec {
+pub(crate) struct WallDisplaySpec {
     /// Width of the wall display in metres.
-    pub width_m: Spanned<f64>,
+    pub(crate) width_m: Spanned<f64>,
     /// Height of the wall display in metres.
-    pub height_m: Spanned<f64>,
+    pub(crate) height_m: Spanned<f64>,
 }
 
 /// `[table]` of a layout file: the height of the table, and the timing of orders.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TabletopSpec {
+pub(crate) struct TabletopSpec {
     /// Height of the table in the frame of the robot's base, in metres.
-    pub height_m: f64,
+    pub(crate) height_m: f64,
     /// Time for which an order is shown as served, in seconds.
-    pub served_shown_s: Spanned<f64>,
+    pub(crate) served_shown_s: Spanned<f64>,
     /// Time from serving an order to the next order at its location, in seconds.
-    pub new_order_after_s: Spanned<f64>,
+    pub(crate) new_order_after_s: Spanned<f64>,
 }
 
 /// A physical button: its position on the table in the frame of the robot's base, and the human's key for the button.
@@ -102,98 +102,98 @@ pub struct ButtonSpec {
     pub at_m: Spanned<[f64; 2]>,
     /// The key on the human's keyboard that presses this button; `None`: the human cannot press it by keyboard.
     #[serde(default)]
-    pub key: Option<Spanned<char>>,
+    pub(crate) key: Option<Spanned<char>>,
     /// Number of the button on the human's gamepad (W3C Gamepad API), counted from 0.
     #[serde(default)]
-    pub gamepad: Option<Spanned<u8>>,
+    pub(crate) gamepad: Option<Spanned<u8>>,
     /// The colour of the button's cap, which the display shows beside the button's action.
     #[serde(default)]
-    pub colour: Option<ButtonColour>,
+    pub(crate) colour: Option<ButtonColour>,
     /// The name of the button's area on the table.
     #[serde(default)]
-    pub area: Option<Spanned<String>>,
+    pub(crate) area: Option<Spanned<String>>,
 }
 
 /// `[[order]]` of a layout file: a location that shows which dish is ordered.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct OrderSpec {
+pub(crate) struct OrderSpec {
     /// Identifier of the order location.
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The order's area on the wall display.
-    pub display: Spanned<DisplayArea>,
+    pub(crate) display: Spanned<DisplayArea>,
     /// The wizard's key for the signal that shows the recipe of this order.
     #[serde(default)]
-    pub signal: Option<Spanned<char>>,
+    pub(crate) signal: Option<Spanned<char>>,
     /// The button that serves this order from the plate.
-    pub serve: ButtonSpec,
+    pub(crate) serve: ButtonSpec,
 }
 
 /// `[[hand]]` of a layout file: the hand of one agent, which holds at most one content.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct HandSpec {
+pub(crate) struct HandSpec {
     /// Identifier of the hand's location.
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The agent to whom the hand belongs.
-    pub agent: Spanned<Agent>,
+    pub(crate) agent: Spanned<Agent>,
     /// The hand's area on the wall display.
-    pub display: Spanned<DisplayArea>,
+    pub(crate) display: Spanned<DisplayArea>,
     /// The wizard's key for the signal about this hand.
     #[serde(default)]
-    pub signal: Option<Spanned<char>>,
+    pub(crate) signal: Option<Spanned<char>>,
     /// The button that throws away what the hand holds.
-    pub trash: ButtonSpec,
+    pub(crate) trash: ButtonSpec,
 }
 
 /// `[[place]]` of a layout file: a location where contents are put down and picked up.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PlaceSpec {
+pub(crate) struct PlaceSpec {
     /// Identifier of the place.
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// Whether items are stacked at this place: true for exactly one place.
     #[serde(default)]
-    pub stacks: bool,
+    pub(crate) stacks: bool,
     /// Whether orders are served from this place: true for exactly one place.
     #[serde(default)]
-    pub serves: bool,
+    pub(crate) serves: bool,
     /// Contents that the place accepts: "anything", "ingredients", "dishes", or a group of the recipe file.
-    pub accepts: Vec<Spanned<String>>,
+    pub(crate) accepts: Vec<Spanned<String>>,
     /// The place's area on the wall display.
-    pub display: Spanned<DisplayArea>,
+    pub(crate) display: Spanned<DisplayArea>,
     /// The wizard's key for the signal about this place.
     #[serde(default)]
-    pub signal: Option<Spanned<char>>,
+    pub(crate) signal: Option<Spanned<char>>,
     /// The button that puts the hand's content down at this place, or picks up the content of the place.
-    pub button: ButtonSpec,
+    pub(crate) button: ButtonSpec,
     /// Appearance of the place on the display: a shape and colours.
     #[serde(default)]
-    pub look: Option<Spanned<String>>,
+    pub(crate) look: Option<Spanned<String>>,
 }
 
 /// `[[process]]` of a layout file: the button of a processing step.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ProcessButtonSpec {
+pub(crate) struct ProcessButtonSpec {
     /// The processing step, as the recipe file names it.
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The button of the processing step.
-    pub button: ButtonSpec,
+    pub(crate) button: ButtonSpec,
 }
 
 /// `[[storage]]` of a layout file: an endless supply of one ingredient.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StorageSpec {
+pub(crate) struct StorageSpec {
     /// The agent who can take from the storage.
-    pub agent: Agent,
+    pub(crate) agent: Agent,
     /// The ingredient, as the recipe file names it.
-    pub ingredient: Spanned<String>,
+    pub(crate) ingredient: Spanned<String>,
     /// The storage's area on the wall display.
-    pub display: Spanned<DisplayArea>,
+    pub(crate) display: Spanned<DisplayArea>,
     /// The button that takes one piece from the storage into the hand.
-    pub button: ButtonSpec,
+    pub(crate) button: ButtonSpec,
 }
 
 const SECONDS: &str = "s";
@@ -253,126 +253,126 @@ pub struct RecipesSpec {
     /// Identifier of the recipe file's menu.
     pub name: String,
     /// The ingredients of the kitchen with their possible states.
-    pub ingredient: Vec<IngredientSpec>,
+    pub(crate) ingredient: Vec<IngredientSpec>,
     /// The processing steps, such as cutting.
     #[serde(default)]
-    pub process: Vec<ProcessingStepSpec>,
+    pub(crate) process: Vec<ProcessingStepSpec>,
     /// The slots of a dish: a dish has at most one item from each slot.
-    pub slot: Vec<SlotSpec>,
+    pub(crate) slot: Vec<SlotSpec>,
     /// Names for sets of items that places can accept.
     #[serde(default)]
-    pub group: Vec<GroupSpec>,
+    pub(crate) group: Vec<GroupSpec>,
     /// The dishes of the menu.
-    pub dish: Vec<DishSpec>,
+    pub(crate) dish: Vec<DishSpec>,
     /// How people may misremember the recipes of dishes.
     #[serde(default)]
-    pub deviation: Vec<DeviationSpec>,
+    pub(crate) deviation: Vec<DeviationSpec>,
     /// Words of screens for items, ingredients and dishes: by language, then by name.
     #[serde(default)]
-    pub words: BTreeMap<String, BTreeMap<String, Spanned<String>>>,
+    pub(crate) words: BTreeMap<String, BTreeMap<String, Spanned<String>>>,
 }
 
 /// `[[ingredient]]` of a recipe file: an ingredient with its states.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct IngredientSpec {
+pub(crate) struct IngredientSpec {
     /// The ingredient's name: "salmon".
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The states of the ingredient in order; a storage supplies the ingredient in the first state. Empty for an
     /// ingredient with a single state.
     #[serde(default)]
-    pub states: Vec<Spanned<String>>,
+    pub(crate) states: Vec<Spanned<String>>,
     /// Ingredients for which this ingredient can be mistaken at a glance.
     #[serde(default)]
-    pub looks_like: Vec<Spanned<String>>,
+    pub(crate) looks_like: Vec<Spanned<String>>,
     /// Appearance of the ingredient on the display: a shape and colours for each state.
     #[serde(default)]
-    pub look: Vec<Spanned<String>>,
+    pub(crate) look: Vec<Spanned<String>>,
 }
 
 /// `[[process]]` of a recipe file: a processing step, in which a press turns one item into another.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ProcessingStepSpec {
+pub(crate) struct ProcessingStepSpec {
     /// The name of the processing step: "cut".
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// Location of the processing step: a place of the layout, or "hand".
-    pub at: Spanned<String>,
+    pub(crate) at: Spanned<String>,
     /// The agents who can do the processing step.
-    pub agents: Vec<Agent>,
+    pub(crate) agents: Vec<Agent>,
     /// The conversions of the processing step: which item becomes which other item.
-    pub steps: Vec<ItemConversionSpec>,
+    pub(crate) steps: Vec<ItemConversionSpec>,
 }
 
 /// One conversion of a processing step: an item becomes another item.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ItemConversionSpec {
+pub(crate) struct ItemConversionSpec {
     /// The item before the conversion, as "ingredient state".
-    pub from: Spanned<String>,
+    pub(crate) from: Spanned<String>,
     /// The item after the conversion, as "ingredient state".
-    pub to: Spanned<String>,
+    pub(crate) to: Spanned<String>,
 }
 
 /// `[[slot]]` of a recipe file: items that have the same role in a dish, such as toppings.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SlotSpec {
+pub(crate) struct SlotSpec {
     /// The slot's name: "topping".
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The items of the slot, as "ingredient state"; each item is in at most one slot.
-    pub items: Vec<Spanned<String>>,
+    pub(crate) items: Vec<Spanned<String>>,
 }
 
 /// `[[group]]` of a recipe file: a name for items that a place accepts.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct GroupSpec {
+pub(crate) struct GroupSpec {
     /// The name of the group of items.
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The items that belong to the group, as "ingredient state"; a stack belongs to the group if each of its items
     /// does.
-    pub made_of: Vec<Spanned<String>>,
+    pub(crate) made_of: Vec<Spanned<String>>,
 }
 
 /// `[[dish]]` of a recipe file: a dish of the menu.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DishSpec {
+pub(crate) struct DishSpec {
     /// The dish's name.
-    pub name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The items of the dish, as "ingredient state": the true recipe.
-    pub items: Spanned<Vec<Spanned<String>>>,
+    pub(crate) items: Spanned<Vec<Spanned<String>>>,
     /// Appearance of the finished dish on the display, which must not reveal the recipe.
     #[serde(default)]
-    pub look: Option<Spanned<String>>,
+    pub(crate) look: Option<Spanned<String>>,
 }
 
 /// `[[deviation]]` of a recipe file: how people misremember the recipes of some dishes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DeviationSpec {
+pub(crate) struct DeviationSpec {
     /// The deviation applies to dishes with at least one of these items.
-    pub dishes_with: Vec<Spanned<String>>,
+    pub(crate) dishes_with: Vec<Spanned<String>>,
     /// How deviations in several slots may be combined.
-    pub combine: DeviationCombinationRule,
+    pub(crate) combine: DeviationCombinationRule,
     /// The slots of a dish that people can misremember.
-    pub slots: Vec<DeviationSlotSpec>,
+    pub(crate) slots: Vec<DeviationSlotSpec>,
 }
 
 /// A slot of a deviation, with the items that people may remember instead.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DeviationSlotSpec {
+pub(crate) struct DeviationSlotSpec {
     /// The name of the slot that can be misremembered.
-    pub slot: Spanned<String>,
+    pub(crate) slot: Spanned<String>,
     /// The items that may be remembered in this slot.
-    pub items: Vec<Spanned<String>>,
+    pub(crate) items: Vec<Spanned<String>>,
 }
 
 /// How deviations of a remembered recipe in several slots may be combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum DeviationCombinationRule {
+pub(crate) enum DeviationCombinationRule {
     /// At most one slot deviates from the true recipe.
     #[serde(rename = "one at a time")]
     OneAtATime,

@@ -207,7 +207,7 @@ impl DisplayArea {
     }
 
     /// The least distance in metres between two areas of the display; 0 if the areas touch.
-    pub fn gap_m(self, other: DisplayArea, display_m: [f64; 2]) -> f64 {
+    pub(crate) fn gap_m(self, other: DisplayArea, display_m: [f64; 2]) -> f64 {
         let gap = |a: f64, a_len: f64, b: f64, b_len: f64| (b - a - a_len).max(a - b - b_len).max(0.0);
         let dx = gap(self.x, self.w, other.x, other.w) * display_m[0];
         let dy = gap(self.y, self.h, other.y, other.h) * display_m[1];

@@ -7,7 +7,7 @@ use super::parts::{Agent, AspectId, ButtonId, ContentId, DishId, LocationId};
 /// Largest number of locations in a kitchen.
 pub const MAX_LOCATIONS: usize = 16;
 /// Largest number of dishes on a menu.
-pub const MAX_DISHES: usize = 16;
+pub(crate) const MAX_DISHES: usize = 16;
 
 /// Content of every location, one byte each: a [`ContentId`], or an [`OrderContent`] at an order location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -166,7 +166,7 @@ impl WeightedWorlds {
 
 impl WeightedWorlds<u32> {
     /// Copies another set of weighted worlds into this one, reusing this set's memory.
-    pub fn copy_from(&mut self, other: &WeightedWorlds<u32>) {
+    pub(crate) fn copy_from(&mut self, other: &WeightedWorlds<u32>) {
         self.all.clear();
         self.all.extend_from_slice(&other.all);
     }

@@ -18,7 +18,7 @@ use crate::mind::choice::ChoiceParameters;
 use crate::mind::{ChoiceModel, PressOrigin, RecordedBelief};
 
 /// Least likelihood ratio of belief to truth for a belief related error.
-pub const LIKELIER: f64 = 3.0;
+pub(crate) const LIKELIER: f64 = 3.0;
 /// Least probability of a false belief about a target that can be part of a pair of causes.
 const DOUBTFUL: f64 = 0.1;
 

@@ -19,9 +19,9 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, KitchenChange, Pres
 
 /// Time in seconds after a change by somebody else within which a press at the same place is a race: the press comes
 /// too early to be a reaction to the change.
-pub const RACE_S: f64 = 0.3;
+pub(crate) const RACE_S: f64 = 0.3;
 /// Largest excess regret of a press that counts as preparation of the other order.
-pub const PREPARATION_EXCESS: i32 = 2;
+pub(crate) const PREPARATION_EXCESS: i32 = 2;
 
 /// Judgement of a press of the human: its regret, and whether it is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

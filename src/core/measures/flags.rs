@@ -16,11 +16,11 @@ use serde::Serialize;
 use super::detection::{BeliefsBeforePress, TrialBeliefs};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
-pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;
+pub(crate) const MOST_WRONGLY_FLAGGED: f64 = 0.05;
 /// Largest number of false flags (on aspects that are believed right) per [`PER_PRESSES`] presses of the human.
 pub const MOST_FALSE_FLAGS: f64 = 0.7;
 /// The unit of the rate of false flags, in presses of the human.
-pub const PER_PRESSES: f64 = 20.0;
+pub(crate) const PER_PRESSES: f64 = 20.0;
 /// Least number of errors of a false belief episode that counts for detection.
 const ERRORS: u32 = 2;
 /// A false belief episode must be flagged before the error with this number to count as detected.

@@ -19,7 +19,7 @@ use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, State};
 use crate::mind::belief::Belief;
 
 /// Largest number of correct presses between two errors of a sequence.
-pub const MAX_APART: u32 = 3;
+pub(crate) const MAX_APART: u32 = 3;
 /// A belief is false if its P(truth) is below this value.
 pub const FALSE_BELOW: f64 = 0.5;
 

@@ -84,7 +84,7 @@ impl ChoiceModel {
     }
 
     /// The choice model for beliefs represented by exactly `draws` drawn worlds. Softmax weights are not truncated.
-    pub fn for_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
+    pub(crate) fn for_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
         let row = (0..=draws * MOST_PRESSES).map(|more| parameters.weight(more, draws));
         model.weights.resize(draws, Vec::new());
@@ -163,7 +163,7 @@ impl ChoiceModel {
     /// Likelihood p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses,
     /// summed over the drawn worlds that represent the belief b. Needs a model from [`ChoiceModel::for_draws`].
     #[inline]
-    pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
+    pub(crate) fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
         let weight = relative_weights(self.draws_row(), sums, fewest(sums));
         let total: f64 = (0..sums.len()).map(&weight).sum();
         let intended = (1.0 - self.parameters.lapse) * weight(button.index());
@@ -174,7 +174,7 @@ impl ChoiceModel {
 
     /// p(a | b) of every button, given that a button is pressed, from the same sums as
     /// [`ChoiceModel::press_likelihood`].
-    pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
+    pub(crate) fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
         let (intended, total) = all_weights(self.draws_row(), sums, fewest(sums));
         let weight = |button: usize| intended[button];
         let mut pressed = [0.0; MAX_BUTTONS];
@@ -217,7 +217,7 @@ impl ChoiceModel {
     }
 
     /// The choice that the human executes, slips included; the random number `draw` is uniform in [0, 1).
-    pub fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
+    pub(crate) fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
         let HumanChoice::Press(button) = intended else { return intended };
         let ChoiceParameters { lapse, lapse_anywhere: anywhere, .. } = self.parameters;
         if draw >= lapse {
@@ -283,7 +283,7 @@ impl ChoiceParameters {
 
     /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, whichever is
     /// intended, and the probability that it slips to the neighbour or, respectively, to the look-alike.
-    pub fn slip_probabilities(&self, buttons: usize) -> [f64; 2] {
+    pub(crate) fn slip_probabilities(&self, buttons: usize) -> [f64; 2] {
         [self.lapse * self.lapse_anywhere / buttons as f64, self.lapse * (1.0 - self.lapse_anywhere) / 2.0]
     }
 

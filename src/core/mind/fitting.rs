@@ -199,7 +199,7 @@ impl HumanModelParameter {
 /// "I don't know".
 const ANSWERED_FROM: f64 = 0.5;
 /// Share of answers to freeze probes that are given at random, by mistake.
-pub const ANSWERS_AT_RANDOM: f64 = 0.02;
+pub(crate) const ANSWERS_AT_RANDOM: f64 = 0.02;
 
 /// A participant's answer to a question of a freeze probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

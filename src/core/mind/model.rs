@@ -158,7 +158,7 @@ model_table! {
 }
 
 /// Range of confidence over which the time of a gaze sample turns from unknown to known.
-pub const CONFIDENCE_RAMP: f64 = 0.4;
+pub(crate) const CONFIDENCE_RAMP: f64 = 0.4;
 
 model_table! {
     /// Perception: how gaze near a location becomes an observation of the location's content.
@@ -227,7 +227,7 @@ impl PerceptionModel {
     }
 
     /// The rate of reading something that is read `full_hz` times a second at distance 0.
-    pub fn rate_of(&self, full_hz: f64) -> LocationReadingRate {
+    pub(crate) fn rate_of(&self, full_hz: f64) -> LocationReadingRate {
         LocationReadingRate { full_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
@@ -349,7 +349,7 @@ impl SignalModel {
     }
 
     /// Probability that a signal about a location of this kind is noticed.
-    pub fn noticed_at(&self, kind: LocationKind) -> f64 {
+    pub(crate) fn noticed_at(&self, kind: LocationKind) -> f64 {
         match kind {
             LocationKind::Order => self.noticed,
             _ => self.highlight_noticed.unwrap_or(self.noticed),
@@ -359,7 +359,7 @@ impl SignalModel {
     /// Hazard that a signal is read under unknown gaze between two times since its beginning, in seconds, by somebody
     /// who notices it with the probability `noticed`: over all time, 1 - exp(-hazard) = `noticed`. Hazards of parts add
     /// up.
-    pub fn reading_hazard(&self, noticed: f64, from_s: f64, until_s: f64) -> f64 {
+    pub(crate) fn reading_hazard(&self, noticed: f64, from_s: f64, until_s: f64) -> f64 {
         let waits = |time_s: f64| (-time_s.max(0.0) / self.delay_s).exp();
         -(-noticed.min(MOST_NOTICED)).ln_1p() * (waits(from_s) - waits(until_s)).max(0.0)
     }
@@ -406,7 +406,7 @@ impl SignalReadingForecast {
 // give are those of `plain`. `docs/paper.md` lists what differs.
 
 /// The half-life of beliefs about recipes with which nothing is forgotten, in seconds.
-pub const NEVER_FORGOTTEN_S: f64 = 1e18;
+pub(crate) const NEVER_FORGOTTEN_S: f64 = 1e18;
 
 /// The model `plain`.
 pub const PLAIN: HumanModel = HumanModel {

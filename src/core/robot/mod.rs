@@ -177,10 +177,10 @@ fn is_nothing(force_n: &f64) -> bool {
 }
 
 /// Contact force above which the arm stops at normal speed, in newtons (power and force limiting, ISO/TS 15066, 5.5.5).
-pub const STOP_N: f64 = 60.0;
+pub(crate) const STOP_N: f64 = 60.0;
 /// Contact force above which the arm stops while it moves slowly near a hand, in newtons: the contacts of a slow arm
 /// are weaker.
-pub const STOP_REDUCED_N: f64 = 20.0;
+pub(crate) const STOP_REDUCED_N: f64 = 20.0;
 /// Distance between the human's hand and the arm below which the arm moves slowly, in metres.
 pub const SLOWS_M: f64 = 0.25;
 /// Safety modes of the robot arm's controller, with the names of the manufacturer (Universal Robots); only the modes

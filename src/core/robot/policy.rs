@@ -198,7 +198,7 @@ pub fn decide(
 // within reach: every press leaves a lower one within reach, or the same one a press nearer.
 
 /// Largest number of the robot's presses in a way that serves an order.
-pub const MOST_PRESSES: u32 = 12;
+pub(crate) const MOST_PRESSES: u32 = 12;
 /// Number of the robot's presses that preparation looks ahead: put down what the hand holds, take an ingredient, put it
 /// at a station, process it.
 const PREPARED_PRESSES: u32 = 4;

@@ -339,7 +339,7 @@ impl PairedDifferences {
 
     /// Standard error of the mean saving if one further rollout saved three presses: while no rollout differed, the
     /// plain standard error would be 0.
-    pub fn cautious_error(&self) -> f64 {
+    pub(crate) fn cautious_error(&self) -> f64 {
         self.error_with(9.0)
     }
 
@@ -350,7 +350,7 @@ impl PairedDifferences {
     }
 
     /// The choice that the signal prevents with the largest saving, and the choice that replaces it.
-    pub fn turning_point(&self) -> Option<[HumanChoice; 2]> {
+    pub(crate) fn turning_point(&self) -> Option<[HumanChoice; 2]> {
         let all = self.divergences.iter();
         let most = all.reduce(|best, one| if one.surely_saved() > best.surely_saved() { one } else { best })?;
         (most.sum > 0.0).then_some([most.baseline, most.signalled])

@@ -18,7 +18,6 @@ use super::parts::{
     ProcessingStep, StateAspect,
 };
 use super::state::OrderContent;
-pub use places::{MAX_ORDERS, MIN_GAP_M};
 
 /// Largest number of places where items are processed (stations).
 const MAX_STATIONS: usize = 8;

@@ -10,9 +10,9 @@ use crate::kitchen::parts::{
 use crate::kitchen::state::MAX_LOCATIONS;
 
 /// Largest number of simultaneous orders; the cost to go is computed for one and for two orders.
-pub const MAX_ORDERS: usize = 2;
+const MAX_ORDERS: usize = 2;
 /// Least distance between locations on the display, in metres, so that gaze can tell them apart.
-pub const MIN_GAP_M: f64 = 0.15;
+const MIN_GAP_M: f64 = 0.15;
 
 pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     let location =

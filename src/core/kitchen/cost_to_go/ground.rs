@@ -146,7 +146,7 @@ fn moves(kitchen: &Kitchen) -> Vec<(Agent, ButtonAction)> {
 }
 
 /// Largest number of target dishes (ordered dishes that are still to be served), see
-/// [`crate::kitchen::compile::MAX_ORDERS`].
+/// `MAX_ORDERS` of `compile`.
 pub const MAX_TARGETS: usize = 2;
 /// The class of useless contents (obstacles); class 0 is empty.
 pub const USELESS: u8 = 1;

@@ -25,7 +25,8 @@ mod search;
 mod store;
 
 pub use proof::{ProofBudget, ProvenCost};
-pub use store::{CostToGo, DecisionCosts, EvaluationCounts, MAX_BUTTONS, MAX_STATES, UNREACHABLE};
+pub(crate) use store::MAX_STATES;
+pub use store::{CostToGo, DecisionCosts, EvaluationCounts, MAX_BUTTONS};
 
 /// How exactly a cost to go is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@ impl CostToGo {
     }
 
     /// Number of presses until all present orders are served, at a given fidelity.
-    pub fn all_orders_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes) -> u32 {
+    pub(crate) fn all_orders_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
         self.cost(fidelity, state, &mut targets[..count])
     }
@@ -24,7 +24,7 @@ impl CostToGo {
     }
 
     /// Number of presses until the order at this location is served, at a given fidelity.
-    pub fn order_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, order: LocationId) -> u32 {
+    pub(crate) fn order_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, order: LocationId) -> u32 {
         match state.order(order) {
             OrderContent::Dish(dish) => self.cost(fidelity, state, &mut [recipes.get(dish)]),
             _ => 0,
@@ -33,7 +33,7 @@ impl CostToGo {
 
     /// Whether the order's cost to go is below `limit`, where `limit` is at most one press above the cost; cheaper than
     /// computing the cost to go.
-    pub fn order_is_below(
+    pub(crate) fn order_is_below(
         &mut self,
         fidelity: Fidelity,
         state: State,
@@ -138,7 +138,7 @@ impl CostToGo {
     /// Cost to go of the state and after every button of `agent`, at a given fidelity. Values of other fidelities are
     /// not reused, so that a result never depends on earlier requests.
     #[inline]
-    pub fn decision_with(
+    pub(crate) fn decision_with(
         &mut self,
         fidelity: Fidelity,
         state: State,
@@ -162,7 +162,7 @@ impl CostToGo {
 
     /// Prefetches the cache line of a decision that will be requested soon.
     #[inline]
-    pub fn prefetch(&self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) {
+    pub(crate) fn prefetch(&self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) {
         let question = question(&self.targets(state, recipes).0, fidelity, agent);
         std::hint::black_box(self.decisions.fetch(state, question));
     }

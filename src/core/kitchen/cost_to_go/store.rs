@@ -9,7 +9,7 @@ use crate::base::rng::mix;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, OrderContent, Recipes, State};
 
 /// The cost to go of states from which the goal cannot be reached.
-pub const UNREACHABLE: u32 = 255;
+pub(crate) const UNREACHABLE: u32 = 255;
 /// Number of bits of the cache sizes: 2^18 values and 2^15 decisions, 2 MiB each. Larger caches were slower without
 /// more hits.
 const CACHE_BITS: u32 = 18;
@@ -17,7 +17,7 @@ const DECISION_BITS: u32 = 15;
 /// Number of bits of a cache key for the goal and the kind of value together.
 pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
 /// Largest number of joint contents of all locations other than orders, for which the remaining bits of a key are enough.
-pub const MAX_STATES: u128 = 1 << (KEY_BITS - SLOT_BITS);
+pub(crate) const MAX_STATES: u128 = 1 << (KEY_BITS - SLOT_BITS);
 
 /// Computes costs to go of a kitchen's states, with caches.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ pub struct EvaluationCounts {
     /// Number of requests for the cost to go of a single state.
     pub values: u64,
     /// Number of values that had to be computed, because no cache held them.
-    pub values_missed: u64,
+    pub(crate) values_missed: u64,
     /// Number of values for which a search was needed, because bounds and plans differed.
     pub searches: u64,
 }
@@ -186,10 +186,10 @@ impl CostToGo {
 pub const MAX_BUTTONS: usize = 40;
 
 /// Number of low bits of a cache key that tell the kind of value; all kinds of value of one state share a bucket.
-pub const KIND_BITS: u32 = 2;
+pub(crate) const KIND_BITS: u32 = 2;
 
 /// Number of bits of a cache key; an entry holds the key and the value of one byte.
-pub const KEY_BITS: u32 = u64::BITS - u8::BITS;
+pub(crate) const KEY_BITS: u32 = u64::BITS - u8::BITS;
 
 /// Marks an empty cache entry, and is larger than any key. All entries are written at creation, so that the memory is
 /// mapped before use.

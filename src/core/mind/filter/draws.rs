@@ -68,12 +68,12 @@ impl PolyaUrn {
     }
 
     /// The value that represents the tail of improbable values; `None` without a tail.
-    pub fn stand_in(&self) -> Option<usize> {
+    pub(crate) fn stand_in(&self) -> Option<usize> {
         self.stand_in.map(usize::from)
     }
 
     /// Whether a value belongs to the tail of a distribution with these expected probabilities.
-    pub fn is_tail(mean: &[f64], value: usize) -> bool {
+    pub(crate) fn is_tail(mean: &[f64], value: usize) -> bool {
         mean.len() > MANY && mean[value] < TAIL
     }
 
@@ -109,7 +109,7 @@ impl PolyaUrn {
 
     /// First draws for many samples by stratified sampling from the mean (or from the mixture of [`PolyaUrn::spread`]),
     /// in random order.
-    pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
+    pub(crate) fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
         let from = if self.proposal.is_empty() { &self.order } else { &self.proposal };
         let step = 1.0 / out.len() as f64;
         let offset = random.random::<f64>();
@@ -129,7 +129,7 @@ impl PolyaUrn {
     /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; then the content of
     /// `drawn` is undefined.
     #[inline]
-    pub fn draw_on(&self, random: &mut Stream, first: u8, drawn: &mut [u8]) -> bool {
+    pub(crate) fn draw_on(&self, random: &mut Stream, first: u8, drawn: &mut [u8]) -> bool {
         let mut next_new = self.next_new(random, 0);
         let (other, value) = loop {
             if next_new == drawn.len() {
@@ -167,7 +167,7 @@ impl PolyaUrn {
 }
 
 /// The value at a point, from 0 to 1, of a cumulative distribution with these probabilities.
-pub fn value_at(distribution: &[f64], point: f64) -> u8 {
+pub(crate) fn value_at(distribution: &[f64], point: f64) -> u8 {
     let mut left = point;
     let reached = distribution.iter().position(|p| {
         left -= p;
@@ -345,7 +345,7 @@ impl DistinctWorlds {
     /// Recomputes costs with [`Fidelity::PlanBound`] for worlds that have lower bounds only and whose posterior weight
     /// (`weights` by world, with total `sum`) is now relevant: a lower bound that is one press too low would be strong
     /// but wrong evidence. Returns whether there were such worlds.
-    pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
+    pub(crate) fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (rated, &weight) in self.known.iter_mut().zip(weights) {
             if weight >= COUNTS * sum && rated.costs.is_some_and(|costs| costs.fidelity == Fidelity::LowerBound) {

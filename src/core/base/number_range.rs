@@ -53,7 +53,6 @@ impl NumberRange {
         (self.least..=self.most).contains(&value)
     }
 
-    /// The error message for a value outside of the range.
     pub(crate) fn violation(&self, path: &str, value: f64) -> OutOfRange {
         let key = path.rsplit('.').next().unwrap_or(path);
         OutOfRange {

@@ -244,7 +244,6 @@ impl TomConcept {
         TomConcept { kitchen, threshold }
     }
 
-    /// Whether the paper has this signal.
     fn is_of_paper(&self, signal: &Signal) -> bool {
         match signal {
             Signal::ShowRecipe(_) => true,

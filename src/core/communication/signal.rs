@@ -150,11 +150,9 @@ const PROBABLY_READ: f64 = 0.5;
 /// signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalRepeatRule {
-    /// The last signal about each location.
     told: [Option<Told>; MAX_LOCATIONS],
 }
 
-/// Content of a signal that the display showed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Told {
     /// Code of the location's content at the time when the signal was shown.

@@ -37,7 +37,6 @@ pub struct DeviceClock {
     /// Beginnings of the last intervals in which samples confirmed the clock offset, with the least difference between
     /// arrival and device time in each, in nanoseconds.
     offsets: VecDeque<(SessionTime, i128)>,
-    /// Number of samples that confirmed the clock offset.
     confirmed: usize,
     /// The newest of successive samples in doubt: arrival and clock offset; and the arrival of the first of them.
     doubt: VecDeque<(SessionTime, i128)>,
@@ -299,14 +298,12 @@ impl StampFault {
     }
 }
 
-/// Result of the check of the stamps that arrived lately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum StampVerdict {
     Sound,
     Faulty(StampFault),
 }
 
-/// The samples that arrived in one interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StampInterval {
     began: SessionTime,
@@ -323,7 +320,6 @@ struct StampInterval {
     stands: bool,
 }
 
-/// Smallest clock offset of an interval or a group of intervals.
 struct OffsetPoint {
     /// Time of the first interval's beginning, and of the arrival of the sample with the smallest offset.
     began: SessionTime,
@@ -334,7 +330,6 @@ struct OffsetPoint {
     samples: u32,
 }
 
-/// Checks of one tracker's time stamps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct StampCheck {
     /// Intervals in which samples arrived; the last one is not over.
@@ -388,7 +383,6 @@ impl StampCheck {
         verdict
     }
 
-    /// The verdict about the intervals before this time.
     fn verdict(&self, now: SessionTime) -> Option<StampVerdict> {
         let in_group = |group: usize| {
             let age = move |one: &&StampInterval| (now.secs_since(one.began) / GROUP_S).ceil() as usize == group;

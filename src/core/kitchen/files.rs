@@ -17,26 +17,19 @@ use crate::base::number_range::{NumberRange, OutOfRange, range_of};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayoutSpec {
-    /// Identifier of the kitchen's layout.
     pub(crate) name: String,
-    /// The kitchen's title on screens.
     pub(crate) title: String,
     /// Path of the recipe file, relative to the layout file.
     pub recipes: Spanned<String>,
-    /// The size of the wall display.
     pub(crate) display: WallDisplaySpec,
-    /// The height of the table, and the timing of orders.
     pub(crate) table: TabletopSpec,
-    /// The order locations of the kitchen, at least one.
     pub(crate) order: Vec<OrderSpec>,
-    /// The hands: one for each agent.
     pub(crate) hand: Vec<HandSpec>,
     /// The places where agents can put things down.
     pub(crate) place: Vec<PlaceSpec>,
     /// Buttons for processing steps of the recipe file, beside the buttons of the places.
     #[serde(default)]
     pub(crate) process: Vec<ProcessButtonSpec>,
-    /// The storages, one for each agent and ingredient.
     pub(crate) storage: Vec<StorageSpec>,
 }
 
@@ -71,13 +64,10 @@ pub fn is_same_key(a: char, b: char) -> bool {
     a.to_lowercase().eq(b.to_lowercase())
 }
 
-/// `[display]` of a layout file: the size of the wall display.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct WallDisplaySpec {
-    /// Width of the wall display in metres.
     pub(crate) width_m: Spanned<f64>,
-    /// Height of the wall display in metres.
     pub(crate) height_m: Spanned<f64>,
 }
 
@@ -87,7 +77,6 @@ pub(crate) struct WallDisplaySpec {
 pub(crate) struct TabletopSpec {
     /// Height of the table in the frame of the robot's base, in metres.
     pub(crate) height_m: f64,
-    /// Time for which an order is shown as served, in seconds.
     pub(crate) served_shown_s: Spanned<f64>,
     /// Time from serving an order to the next order at its location, in seconds.
     pub(crate) new_order_after_s: Spanned<f64>,
@@ -109,7 +98,6 @@ pub struct ButtonSpec {
     /// The colour of the button's cap, which the display shows beside the button's action.
     #[serde(default)]
     pub(crate) colour: Option<ButtonColour>,
-    /// The name of the button's area on the table.
     #[serde(default)]
     pub(crate) area: Option<Spanned<String>>,
 }
@@ -118,14 +106,11 @@ pub struct ButtonSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OrderSpec {
-    /// Identifier of the order location.
     pub(crate) name: Spanned<String>,
-    /// The order's area on the wall display.
     pub(crate) display: Spanned<DisplayArea>,
     /// The wizard's key for the signal that shows the recipe of this order.
     #[serde(default)]
     pub(crate) signal: Option<Spanned<char>>,
-    /// The button that serves this order from the plate.
     pub(crate) serve: ButtonSpec,
 }
 
@@ -133,16 +118,11 @@ pub(crate) struct OrderSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HandSpec {
-    /// Identifier of the hand's location.
     pub(crate) name: Spanned<String>,
-    /// The agent to whom the hand belongs.
     pub(crate) agent: Spanned<Agent>,
-    /// The hand's area on the wall display.
     pub(crate) display: Spanned<DisplayArea>,
-    /// The wizard's key for the signal about this hand.
     #[serde(default)]
     pub(crate) signal: Option<Spanned<char>>,
-    /// The button that throws away what the hand holds.
     pub(crate) trash: ButtonSpec,
 }
 
@@ -150,7 +130,6 @@ pub(crate) struct HandSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlaceSpec {
-    /// Identifier of the place.
     pub(crate) name: Spanned<String>,
     /// Whether items are stacked at this place: true for exactly one place.
     #[serde(default)]
@@ -160,25 +139,20 @@ pub(crate) struct PlaceSpec {
     pub(crate) serves: bool,
     /// Contents that the place accepts: "anything", "ingredients", "dishes", or a group of the recipe file.
     pub(crate) accepts: Vec<Spanned<String>>,
-    /// The place's area on the wall display.
     pub(crate) display: Spanned<DisplayArea>,
-    /// The wizard's key for the signal about this place.
     #[serde(default)]
     pub(crate) signal: Option<Spanned<char>>,
     /// The button that puts the hand's content down at this place, or picks up the content of the place.
     pub(crate) button: ButtonSpec,
-    /// Appearance of the place on the display: a shape and colours.
     #[serde(default)]
     pub(crate) look: Option<Spanned<String>>,
 }
 
-/// `[[process]]` of a layout file: the button of a processing step.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ProcessButtonSpec {
     /// The processing step, as the recipe file names it.
     pub(crate) name: Spanned<String>,
-    /// The button of the processing step.
     pub(crate) button: ButtonSpec,
 }
 
@@ -186,13 +160,9 @@ pub(crate) struct ProcessButtonSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StorageSpec {
-    /// The agent who can take from the storage.
     pub(crate) agent: Agent,
-    /// The ingredient, as the recipe file names it.
     pub(crate) ingredient: Spanned<String>,
-    /// The storage's area on the wall display.
     pub(crate) display: Spanned<DisplayArea>,
-    /// The button that takes one piece from the storage into the hand.
     pub(crate) button: ButtonSpec,
 }
 
@@ -252,9 +222,7 @@ fn in_value(value: &Spanned<DeValue>, path: &str) -> Result<(), OutOfRange> {
 pub struct RecipesSpec {
     /// Identifier of the recipe file's menu.
     pub name: String,
-    /// The ingredients of the kitchen with their possible states.
     pub(crate) ingredient: Vec<IngredientSpec>,
-    /// The processing steps, such as cutting.
     #[serde(default)]
     pub(crate) process: Vec<ProcessingStepSpec>,
     /// The slots of a dish: a dish has at most one item from each slot.
@@ -262,7 +230,6 @@ pub struct RecipesSpec {
     /// Names for sets of items that places can accept.
     #[serde(default)]
     pub(crate) group: Vec<GroupSpec>,
-    /// The dishes of the menu.
     pub(crate) dish: Vec<DishSpec>,
     /// How people may misremember the recipes of dishes.
     #[serde(default)]
@@ -272,7 +239,6 @@ pub struct RecipesSpec {
     pub(crate) words: BTreeMap<String, BTreeMap<String, Spanned<String>>>,
 }
 
-/// `[[ingredient]]` of a recipe file: an ingredient with its states.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct IngredientSpec {
@@ -294,17 +260,12 @@ pub(crate) struct IngredientSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ProcessingStepSpec {
-    /// The name of the processing step: "cut".
     pub(crate) name: Spanned<String>,
-    /// Location of the processing step: a place of the layout, or "hand".
     pub(crate) at: Spanned<String>,
-    /// The agents who can do the processing step.
     pub(crate) agents: Vec<Agent>,
-    /// The conversions of the processing step: which item becomes which other item.
     pub(crate) steps: Vec<ItemConversionSpec>,
 }
 
-/// One conversion of a processing step: an item becomes another item.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ItemConversionSpec {
@@ -318,7 +279,6 @@ pub(crate) struct ItemConversionSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SlotSpec {
-    /// The slot's name: "topping".
     pub(crate) name: Spanned<String>,
     /// The items of the slot, as "ingredient state"; each item is in at most one slot.
     pub(crate) items: Vec<Spanned<String>>,
@@ -328,18 +288,15 @@ pub(crate) struct SlotSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GroupSpec {
-    /// The name of the group of items.
     pub(crate) name: Spanned<String>,
     /// The items that belong to the group, as "ingredient state"; a stack belongs to the group if each of its items
     /// does.
     pub(crate) made_of: Vec<Spanned<String>>,
 }
 
-/// `[[dish]]` of a recipe file: a dish of the menu.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DishSpec {
-    /// The dish's name.
     pub(crate) name: Spanned<String>,
     /// The items of the dish, as "ingredient state": the true recipe.
     pub(crate) items: Spanned<Vec<Spanned<String>>>,
@@ -356,7 +313,6 @@ pub(crate) struct DeviationSpec {
     pub(crate) dishes_with: Vec<Spanned<String>>,
     /// How deviations in several slots may be combined.
     pub(crate) combine: DeviationCombinationRule,
-    /// The slots of a dish that people can misremember.
     pub(crate) slots: Vec<DeviationSlotSpec>,
 }
 
@@ -364,7 +320,6 @@ pub(crate) struct DeviationSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DeviationSlotSpec {
-    /// The name of the slot that can be misremembered.
     pub(crate) slot: Spanned<String>,
     /// The items that may be remembered in this slot.
     pub(crate) items: Vec<Spanned<String>>,

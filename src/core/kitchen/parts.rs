@@ -138,7 +138,6 @@ pub const SCREEN_LANGUAGE: &str = "en";
 pub struct KitchenWords(BTreeMap<String, BTreeMap<String, String>>);
 
 impl KitchenWords {
-    /// Creates the table of words from words by language and name.
     pub(super) fn new(languages: BTreeMap<String, BTreeMap<String, String>>) -> KitchenWords {
         KitchenWords(languages)
     }

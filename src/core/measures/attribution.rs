@@ -114,11 +114,9 @@ impl ErrorCause {
 #[derive(Clone, Debug)]
 pub struct ErrorAttributor {
     model: ChoiceParameters,
-    /// Seed of the random streams from which worlds are drawn.
     seed: u64,
 }
 
-/// Data of the error whose cause is being determined.
 struct Inquiry<'a> {
     kitchen: &'a Kitchen,
     model: ChoiceModel,

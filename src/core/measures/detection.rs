@@ -266,7 +266,6 @@ impl FalseBeliefDetection {
     }
 }
 
-/// Function that scores one aspect before a press.
 pub(super) type Score<'a> = &'a dyn Fn(&BeliefsBeforePress, usize) -> Option<f64>;
 
 /// Scores of aspects before every press, each with whether the belief about the aspect was false; pairs are included
@@ -288,7 +287,6 @@ fn aspects(kitchen: &Kitchen, recipes: bool) -> Vec<usize> {
     (0..kitchen.aspects.len()).filter(|index| is_recipe(index) == recipes).collect()
 }
 
-/// The mean of the numbers; `None` without numbers.
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))

@@ -69,7 +69,6 @@ impl MatchCriterion {
     /// All match criteria, the strictest first.
     pub const ALL: [MatchCriterion; 3] = [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any];
 
-    /// Equivalence class of a communication's content under this match criterion.
     fn class(self, content: ComparedContent) -> Option<ComparedContent> {
         match self {
             MatchCriterion::Signal => Some(content),

@@ -173,7 +173,6 @@ impl CodableErrors {
         Some((format!("the aspect \"{aspect}\""), format!("one of {}", self.places.join(", "))))
     }
 
-    /// Log numbers of the errors closest to a press, as text.
     fn nearest(&self, press: u64) -> String {
         let after = self.errors.partition_point(|&error| error < press);
         let around = [after.checked_sub(1).map(|before| self.errors[before]), self.errors.get(after).copied()];

@@ -40,7 +40,6 @@ pub struct ChoiceProbabilities {
 #[derive(Clone, Copy, Debug)]
 pub struct ChoiceWeights {
     wait: f64,
-    /// Softmax weight of each button, by [`ButtonId`].
     press: [f64; MAX_BUTTONS],
     total: f64,
 }

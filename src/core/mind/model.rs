@@ -348,7 +348,6 @@ impl SignalModel {
         self.delay_s > 0.0
     }
 
-    /// Probability that a signal about a location of this kind is noticed.
     pub(crate) fn noticed_at(&self, kind: LocationKind) -> f64 {
         match kind {
             LocationKind::Order => self.noticed,
@@ -494,7 +493,6 @@ impl HumanModel {
     }
 }
 
-/// Collects the paths at which two values differ.
 fn differ(own: &Value, named: &Value, path: &str, found: &mut Vec<String>) {
     let (Value::Object(own), Value::Object(named)) = (own, named) else {
         if own != named {

@@ -39,7 +39,6 @@ pub struct Planner {
     seed: u64,
     choice: ChoiceModel,
     foresight: f64,
-    /// Looking model of the rollouts: where, and how often, the human looks.
     looking: LookingModel,
     involved: Vec<Vec<AspectId>>,
     /// For each button of the human, the aspects at which the human looks before a press: the locations involved and,
@@ -49,12 +48,10 @@ pub struct Planner {
     samples: BeliefSamples,
     baseline: BaselineRollout,
     state: RolloutState,
-    /// Weighted worlds that represent the human's belief.
     believed: WeightedWorlds<u32>,
     draws: Vec<DecisionDraws>,
 }
 
-/// A signal whose expected saving is estimated.
 #[derive(Clone, Debug)]
 struct Candidate {
     signal: Signal,

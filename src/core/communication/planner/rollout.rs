@@ -33,7 +33,6 @@ pub struct DecisionDraws {
 }
 
 impl DecisionDraws {
-    /// Draws the random numbers of one rollout from this stream.
     pub fn draw(random: &mut Stream) -> DecisionDraws {
         let mut draws = DecisionDraws { decision: random.random(), slip: random.random(), ..DecisionDraws::default() };
         draws.looks.iter_mut().for_each(|draw| *draw = random.random());
@@ -54,19 +53,14 @@ impl DecisionDraws {
 
 /// Data shared by all rollouts of one recommendation.
 pub struct RolloutContext<'a> {
-    /// The kitchen in which the rollout is simulated.
     pub kitchen: &'a Kitchen,
-    /// The true recipes of all dishes in the rollout.
     pub recipes: Recipes,
-    /// The human's choice model.
     pub choice: &'a ChoiceModel,
     /// For each button of the human, the state aspects of the locations on which the button's effect depends.
     pub involved: &'a [Vec<AspectId>],
     /// For each button of the human, the state aspects at which the human looks before the press.
     pub watched: &'a [Vec<AspectId>],
-    /// Settings of the rollouts: their horizon, their number and their accuracy.
     pub model: &'a RolloutSettings,
-    /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
     /// Probability that the human looks at a location that the next press needs, before that press.
     pub looks: f64,
@@ -78,12 +72,9 @@ pub struct RolloutContext<'a> {
     pub foresight: f64,
 }
 
-/// State of a rollout before a decision of the human.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RolloutState {
-    /// The true state of the kitchen.
     pub kitchen: State,
-    /// The weighted worlds that represent the human's belief.
     pub worlds: WeightedWorlds<u32>,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
@@ -156,15 +147,10 @@ impl RolloutState {
     }
 }
 
-/// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
-    /// The data that all rollouts for one recommendation share.
     pub context: &'a RolloutContext<'a>,
-    /// The cost to go, with its caches.
     pub cost: &'a mut CostToGo,
-    /// The robot's policy, with its caches.
     pub policy: &'a mut RobotPolicy,
-    /// The random numbers of each decision of the human, in order.
     pub draws: &'a [DecisionDraws],
     /// Time of the human's first decision, in seconds since the start of the rollout.
     pub first_s: f64,
@@ -293,7 +279,6 @@ impl Rollout<'_> {
         }
     }
 
-    /// Lets the human look at locations, decide, and press.
     fn decide(&mut self, state: &mut RolloutState, step: usize) -> HumanChoice {
         let (context, draws) = (self.context, &self.draws[step]);
         for (index, &draw) in draws.looks[..context.kitchen.locations.len()].iter().enumerate() {
@@ -531,10 +516,8 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
     mix(mix(state as u64 ^ mix((state >> 64) as u64)) ^ mix(recipes as u64 ^ mix((recipes >> 64) as u64)))
 }
 
-/// The press towards which the robot's arm is moving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OngoingRobotPress {
-    /// The button of the press, as an index into the robot's buttons.
     pub button: ButtonId,
     /// Time at which the arm touches the button, in seconds since the start of the rollout.
     pub due_s: f64,
@@ -549,7 +532,6 @@ impl OngoingRobotPress {
     }
 }
 
-/// The state of the kitchen after this press of the robot.
 fn press_of_robot(kitchen: &Kitchen, state: State, recipes: &Recipes, button: ButtonId) -> State {
     kitchen.press(state, recipes, Agent::Robot, button).unwrap_or(state)
 }

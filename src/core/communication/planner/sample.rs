@@ -121,7 +121,6 @@ pub struct QuasiRandomLattice {
 }
 
 impl QuasiRandomLattice {
-    /// The quasi-random points with a random shift.
     pub fn shifted(random: &mut Stream) -> QuasiRandomLattice {
         QuasiRandomLattice { shift: std::array::from_fn(|_| random.random()) }
     }

@@ -26,21 +26,16 @@ const LEAST_SHARE: f64 = 0.05;
 /// A change of the trial that may come next.
 #[derive(Clone, Copy)]
 enum NextChange {
-    /// The robot finishes its ongoing press.
     RobotPress,
-    /// The human presses this button.
     HumanPress(ButtonId),
-    /// An order for this dish appears at this location.
     NewOrder(LocationId, DishId),
 }
 
-/// A situation of the trial that may come next.
 struct NextSituation {
     state: State,
     belief: DirichletBelief,
     changed: Vec<AspectId>,
     robot: RobotIntent,
-    /// Number of presses of both agents when the situation comes.
     presses: u32,
 }
 
@@ -133,7 +128,6 @@ impl Planner {
         Some(next)
     }
 
-    /// New orders of each dish where there is no order now.
     fn new_orders(&self, moment: &DecisionPoint) -> impl Iterator<Item = NextChange> {
         let state = moment.situation.state;
         let is_empty = move |order: &&LocationId| !matches!(state.order(**order), OrderContent::Dish(_));
@@ -150,7 +144,6 @@ fn unchanged(state: State, moment: &DecisionPoint) -> NextSituation {
     NextSituation { state, belief: belief.clone(), changed: Vec::new(), robot, presses: moment.presses }
 }
 
-/// Makes the estimate certain of the true value of a state aspect.
 fn make_certain(kitchen: &Kitchen, belief: &mut DirichletBelief, aspect: AspectId, state: State) {
     let truth = kitchen.true_value(state, aspect);
     let dirichlet = &mut belief.aspects[aspect.index()];

@@ -103,7 +103,6 @@ fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result
     looks.get(items.state[item]).map(|text| look(KitchenFileKind::Recipes, text)).transpose()
 }
 
-/// All stacks of two or more items, smaller stacks first.
 fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<ContentId>>> {
     let mut stacks: Vec<Vec<ContentId>> = vec![Vec::new()];
     let mut of_slots: Vec<ContentId> = Vec::new();
@@ -253,7 +252,6 @@ fn check_distinct(
     Ok(())
 }
 
-/// Sets the wording of each content for screens of the program.
 pub(super) fn word(contents: &mut [Content], words: &KitchenWords) {
     let wordings: Vec<String> =
         contents.iter().map(|content| words.content(SCREEN_LANGUAGE, content, contents)).collect();

@@ -270,7 +270,6 @@ pub struct KitchenFileError {
     pub remedy: String,
 }
 
-/// Result of a step that compiles a kitchen from its files.
 pub(super) type Result<T> = std::result::Result<T, KitchenFileError>;
 
 /// An error at a position in a layout or recipe file.

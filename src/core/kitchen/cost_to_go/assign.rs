@@ -13,7 +13,6 @@ pub const MAX_TASKS: usize = 16;
 pub struct Assignment {
     /// The tasks of the assignment; only the first [`Self::count`] are valid.
     pub tasks: [DeliveryTask; MAX_TASKS],
-    /// Number of valid tasks in the assignment.
     pub count: usize,
     /// The target dishes in the order in which they will be served.
     pub order: [usize; MAX_TARGETS],
@@ -187,7 +186,6 @@ impl Assignment {
         Assignment { order: [self.order[1], self.order[0]], ..*self }
     }
 
-    /// Bit set of all tasks of this assignment.
     pub fn all(&self) -> u32 {
         (1 << self.count) - 1
     }
@@ -198,7 +196,6 @@ impl Assignment {
 pub struct TaskRequirements {
     /// Number of presses that the tasks would take without obstacles.
     presses: u32,
-    /// Bit set of the locations whose content the tasks use.
     used: u32,
     /// Free hands and places that the items' journeys to the board require.
     needs: JourneyNeeds,
@@ -211,7 +208,6 @@ pub struct TaskRequirements {
 }
 
 impl TaskRequirements {
-    /// The requirements of these tasks, with the tasks' items at their present places.
     pub fn from_tasks(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -320,9 +316,7 @@ struct AllAssignments<'a> {
     least_from: Vec<u32>,
     tasks: [DeliveryTask; MAX_TASKS],
     count: usize,
-    /// Locations whose content the present assignment uses, one bit each.
     used: u32,
-    /// The least bound of the assignments so far.
     least: u32,
     steps: u32,
 }
@@ -421,7 +415,6 @@ impl<'a> AllAssignments<'a> {
         self.with(task, |all| all.fill(target, have | one.bits, presses + one.presses));
     }
 
-    /// Goes on with one more task.
     fn with(&mut self, task: DeliveryTask, go_on: impl FnOnce(&mut Self)) {
         if self.count == MAX_TASKS {
             return;

@@ -4,52 +4,26 @@ use super::goal::{DeliveryTask, STORAGE};
 use super::ground::FreeMask;
 use super::plan::PressPlan;
 
-/// Largest number of alternative moves in a set.
 const MAX_MOVES: usize = 32;
 
 /// A move of one or two presses in a cost-to-go plan that frees a hand or a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClearingMove {
     /// The move throws away a useless content of a hand.
-    Throw {
-        /// The location index of the hand.
-        hand: usize,
-    },
-    /// The move picks up a useless content from its place.
+    Throw { hand: usize },
     PickUp {
-        /// The location index of the content.
         from: usize,
         /// The location index of the hand that picks the content up.
         hand: usize,
     },
     /// The move brings the item of a task to a place or into a hand.
-    Bring {
-        /// The index of the task whose item is brought.
-        task: usize,
-        /// The location index to which the item is brought.
-        to: usize,
-    },
+    Bring { task: usize, to: usize },
     /// The move throws away the item of a task, which can be taken anew from a storage.
-    Discard {
-        /// The index of the task whose item is thrown away.
-        task: usize,
-    },
+    Discard { task: usize },
     /// The move takes an item of this class from a storage early and brings it to a place on its way to the board.
-    Fetch {
-        /// The index of the task for which the item is taken.
-        task: usize,
-        /// The equivalence class of the item that is taken.
-        class: u8,
-        /// The location index of the hand that takes the item.
-        hand: usize,
-        /// The location index to which the item is brought.
-        to: usize,
-    },
+    Fetch { task: usize, class: u8, hand: usize, to: usize },
     /// Two tasks exchange their items in the assignment, without a press.
-    Exchange {
-        /// The indices of the two tasks that exchange their items.
-        tasks: [usize; 2],
-    },
+    Exchange { tasks: [usize; 2] },
 }
 
 /// A set of distinct moves that free a hand or a place.
@@ -60,7 +34,6 @@ pub struct ClearingMoves {
 }
 
 impl ClearingMoves {
-    /// An empty set of moves.
     pub fn new() -> ClearingMoves {
         ClearingMoves { all: [ClearingMove::Throw { hand: 0 }; MAX_MOVES], count: 0 }
     }
@@ -73,7 +46,6 @@ impl ClearingMoves {
         }
     }
 
-    /// The moves, in the order in which they were added.
     pub fn all(&self) -> &[ClearingMove] {
         &self.all[..self.count]
     }
@@ -115,10 +87,8 @@ impl PressPlan<'_> {
     }
 }
 
-/// Hands and places that the work on a target dish requires.
 #[derive(Clone, Copy, Debug)]
 pub struct RequiredFreePlaces {
-    /// The index of the target dish.
     pub target: usize,
     /// Whether parts of the target dish still have to be brought to the board.
     pub assembling: bool,

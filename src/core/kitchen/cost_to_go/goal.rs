@@ -22,7 +22,6 @@ impl ItemValue {
         self.0 as u8
     }
 
-    /// The index of the item's location.
     #[inline]
     pub fn location(self) -> u8 {
         !((self.0 >> 8) as u8)
@@ -34,7 +33,6 @@ impl ItemValue {
 pub struct ServingGoal {
     /// The stacks (dishes) to be served, in ascending order of their ids.
     pub targets: Vec<ContentId>,
-    /// The equivalence class of each content.
     pub class_of: Vec<u8>,
     /// For each class of contents, one content that belongs to the class.
     pub content: Vec<ContentId>,
@@ -55,9 +53,7 @@ pub struct ServingGoal {
     pub fresh: [Vec<(u8, JourneyNeeds)>; MAX_TARGETS],
     /// For each target dish, the component index of its j-th item (see `journeys`).
     pub components: [Vec<usize>; MAX_TARGETS],
-    /// For each target dish, the bit set of all its items.
     pub complete: [u8; MAX_TARGETS],
-    /// For each target dish, the class of its complete stack.
     pub target_class: [u8; MAX_TARGETS],
     /// `[target][bits]`: the class of a stack of these items of the target dish.
     pub part_class: [Vec<u8>; MAX_TARGETS],
@@ -80,7 +76,6 @@ pub struct ServingGoal {
 }
 
 impl ServingGoal {
-    /// The tables for these target dishes in this kitchen.
     pub fn new(kitchen: &Kitchen, ground: &KitchenTables, targets: Vec<ContentId>) -> ServingGoal {
         let journeys = &ground.journeys;
         let mut content = vec![ContentId::EMPTY];
@@ -342,7 +337,6 @@ pub const STORAGE: u8 = u8::MAX;
 /// A task: an item to bring to the board, or a complete stack to serve.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DeliveryTask {
-    /// The index of the target dish for which the task is done.
     pub target: u8,
     /// Bit set of the target dish's items that the task provides; all bits for a complete stack.
     pub bits: u8,

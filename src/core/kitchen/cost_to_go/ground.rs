@@ -4,20 +4,15 @@ use std::ops::Range;
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
 
-/// Tables of one kitchen for the cost to go that hold for all goals.
 #[derive(Clone, Debug)]
 pub struct KitchenTables {
     /// Numbers of presses that bring items through processing steps onto the board.
     pub journeys: JourneyTables,
-    /// Index of the first physical location.
     pub first: usize,
-    /// One past the index of the last physical location.
     pub last: usize,
     /// The location index of each agent's hand.
     pub hands: [usize; 2],
-    /// The location index of the board.
     pub board: usize,
-    /// The location index of the plate.
     pub plate: usize,
     /// Places where any content can be put down temporarily.
     spare: Vec<usize>,
@@ -36,7 +31,6 @@ pub struct KitchenTables {
 }
 
 impl KitchenTables {
-    /// Computes the cost-to-go tables of this kitchen.
     pub fn new(kitchen: &Kitchen) -> KitchenTables {
         let contents = kitchen.contents.len();
         let first = kitchen.orders.len();
@@ -90,13 +84,11 @@ impl KitchenTables {
         self.first..self.last
     }
 
-    /// Whether the location with this index is a hand.
     #[inline]
     pub fn is_hand(&self, location: usize) -> bool {
         self.is_hand[location]
     }
 
-    /// Whether the location `location`, when empty, accepts the content `content`.
     #[inline]
     pub fn accepts(&self, location: usize, content: ContentId) -> bool {
         self.accepts[location * self.contents + content.index()]
@@ -108,7 +100,6 @@ impl KitchenTables {
         self.last_presses[location]
     }
 
-    /// Bit mask of the free hands and places in a state.
     #[inline]
     pub fn free(&self, state: &CompactState) -> FreeMask {
         let mut free = 0;
@@ -174,7 +165,6 @@ pub struct JourneyTables {
     pub bit: Vec<FreeMask>,
     /// The mask bit for a place where an item can be put down temporarily.
     pub spare_bit: FreeMask,
-    /// The free mask in which all hands and places are free.
     pub all_free: FreeMask,
     /// The components: items that are part of a dish.
     pub components: Vec<ContentId>,
@@ -192,7 +182,6 @@ pub struct JourneyTables {
 pub type JourneyNeeds = u16;
 
 impl JourneyTables {
-    /// The journey tables of this kitchen.
     pub fn new(kitchen: &Kitchen) -> JourneyTables {
         let mut stations: Vec<LocationId> = kitchen.processes.iter().filter_map(|process| process.place).collect();
         stations.sort_unstable();

@@ -8,7 +8,6 @@ use super::ground::{CompactState, FreeMask, KitchenTables, MAX_TARGETS, NEVER};
 /// Length, in presses, that stands for a plan that cannot be completed.
 pub const BLOCKED: u32 = 1000;
 
-/// A cost-to-go plan under construction.
 pub struct PressPlan<'a> {
     pub(super) ground: &'a KitchenTables,
     pub(super) goal: &'a ServingGoal,
@@ -68,7 +67,6 @@ impl<'a> PressPlan<'a> {
         })
     }
 
-    /// The first remaining task of a target dish.
     fn first_of(&self, target: usize) -> Option<(usize, DeliveryTask)> {
         self.tasks().find(|(_, task)| usize::from(task.target) == target)
     }
@@ -351,7 +349,6 @@ impl PressPlan<'_> {
 pub struct RankedAssignments {
     choices: [Assignment; 2],
     count: usize,
-    /// The lower bound of the cost to go, in presses.
     pub lower: u32,
 }
 

@@ -59,7 +59,6 @@ struct Open {
 /// A search for the least number of presses, which ends with a proof or with the budget.
 struct ProofSearch<'a> {
     costs: &'a mut CostToGo,
-    /// Length of the shortest way so far.
     best: u32,
     open: BinaryHeap<Open>,
     /// Least number of presses to each state so far, by the state's key.

@@ -204,7 +204,6 @@ impl CostToGo {
         alike
     }
 
-    /// Computes the costs to go for a decision and stores them in the cache.
     fn decide(
         &mut self,
         index: usize,
@@ -223,7 +222,6 @@ impl CostToGo {
         self.decisions.set(index, state, question, here, after);
     }
 
-    /// Computes the costs to go of a decision independently, one by one.
     fn each(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);

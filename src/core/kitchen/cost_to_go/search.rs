@@ -16,10 +16,8 @@ use super::plan::{BLOCKED, PressPlan, RankedAssignments};
 use super::store::{CostToGo, UNREACHABLE};
 use crate::kitchen::{ContentId, State};
 
-/// Limits of a best-first search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchLimits {
-    /// Largest number of states that the search expands.
     expansions: usize,
     /// Whether the search takes items from a storage before their way to the board is free.
     takes: bool,
@@ -55,7 +53,6 @@ struct Open {
     state: CompactState,
 }
 
-/// One best-first search over single presses.
 pub struct BestFirstSearch<'a> {
     costs: &'a mut CostToGo,
     slot: usize,
@@ -63,7 +60,6 @@ pub struct BestFirstSearch<'a> {
     /// Length of the best solution found so far, in presses.
     best: u32,
     open: BinaryHeap<Open>,
-    /// Number of states added to the search so far.
     met: usize,
     /// Least number of presses found to each state, by the state's key.
     seen: FxHashMap<u64, u32>,

@@ -33,7 +33,6 @@ pub struct CostToGo {
     pub(super) counts: EvaluationCounts,
     /// `[agent][content]`: whether an agent can take the content again after throwing it away.
     pub(super) takes: [Vec<bool>; 2],
-    /// For each agent, whether the agent has a trash button.
     pub(super) trashes: [bool; 2],
 }
 
@@ -50,16 +49,13 @@ pub struct EvaluationCounts {
     pub searches: u64,
 }
 
-/// Cache slot of a state's cost to go.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CacheSlot {
-    /// The slot of the goal, and the key of the state in that slot.
     At(usize, u64),
     /// No slot: the cost to go is constant, because there are no orders or an order cannot be served.
     Always(u32),
 }
 
-/// A state after one press, with bounds of its cost to go.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SuccessorState {
     pub(super) button: usize,
@@ -122,7 +118,6 @@ impl CostToGo {
         Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
     }
 
-    /// Cache key of a state's searched cost to go.
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &CompactState) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
     }
@@ -213,7 +208,6 @@ pub struct ValueCache {
 }
 
 impl ValueCache {
-    /// A cache with room for 2^`bits` values.
     pub fn new(bits: u32) -> ValueCache {
         let buckets = 1usize << (bits - 3);
         ValueCache { buckets: vec![Bucket([EMPTY; 8]); buckets], mask: buckets as u64 - 1, turn: 0 }
@@ -231,7 +225,6 @@ impl ValueCache {
         self.buckets[self.bucket(key)].0[0]
     }
 
-    /// The cached value of this key; `None` if the cache does not hold it.
     #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
         let Bucket(bucket) = &self.buckets[self.bucket(key)];
@@ -274,7 +267,6 @@ pub struct DecisionCache {
 }
 
 impl DecisionCache {
-    /// A cache with room for 2^`bits` decisions.
     pub fn new(bits: u32) -> DecisionCache {
         let empty = DecisionCosts { state: State::default(), question: u32::MAX, here: 0, after: [0; MAX_BUTTONS] };
         DecisionCache { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
@@ -307,7 +299,6 @@ impl DecisionCache {
         &self.lines[index]
     }
 
-    /// Replaces the cache entry at this index.
     pub fn set(&mut self, index: usize, state: State, question: u32, here: u8, after: [u8; MAX_BUTTONS]) {
         self.lines[index] = DecisionCosts { state, question, here, after };
     }

@@ -179,7 +179,6 @@ pub(crate) fn value_at(distribution: &[f64], point: f64) -> u8 {
 /// Sampler of one Dirichlet. Gamma variates are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia and
 /// Tsang 2000), since variates with small alphas would underflow.
 pub struct DirichletSampler {
-    /// For each component, the distribution Gamma(a + 1), and the parameter a itself.
     of: Vec<(Option<Gamma<f64>>, f64)>,
 }
 
@@ -227,7 +226,6 @@ pub(super) struct Alike {
     pub(super) draws: u32,
 }
 
-/// The groups of equal draws in one belief sample.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DistinctDraws {
     pub(super) groups: Vec<Alike>,
@@ -286,7 +284,6 @@ struct RatedWorld {
 /// The costs to go of the human's decision in one world.
 #[derive(Clone, Copy, Debug)]
 struct WorldCosts {
-    /// Cost to go after a press of each button of the human.
     after: [u8; MAX_BUTTONS],
     fidelity: Fidelity,
 }

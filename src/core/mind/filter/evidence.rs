@@ -37,11 +37,8 @@ pub struct PressEvidence {
 
 /// The models that define the likelihood of a press of the human.
 pub struct EvidenceModel<'a> {
-    /// The kitchen, with the rules of its buttons.
     pub kitchen: &'a Kitchen,
-    /// The human's choice model.
     pub choice: &'a ChoiceModel,
-    /// Sample sizes of the inference.
     pub inference: &'a InferenceSettings,
     /// For each button of the human, the bit set of locations at which the human looks before the press.
     pub watched: &'a [u32],
@@ -71,7 +68,6 @@ pub struct BeliefSampler {
     pub(super) runs: Vec<Run>,
     /// The groups of equal draws in the present belief sample.
     alike: DistinctDraws,
-    /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
     pub(super) looks: Vec<SampleLookEffects>,
@@ -100,7 +96,6 @@ impl Sample {
 }
 
 impl BeliefSampler {
-    /// A sampler of beliefs about this kitchen.
     pub fn new(kitchen: &Kitchen) -> BeliefSampler {
         BeliefSampler {
             wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(),
@@ -227,7 +222,6 @@ impl BeliefSampler {
         mixed
     }
 
-    /// Counts the distinct worlds of the newest belief sample.
     fn count_worlds(&mut self, kitchen: &Kitchen, states: usize) {
         let index = self.samples.len() - 1;
         let Sample { rows, .. } = self.samples[index];
@@ -240,7 +234,6 @@ impl BeliefSampler {
         self.samples[index].runs[1] = self.runs.len();
     }
 
-    /// The world of one draw of a belief sample.
     pub(super) fn world_of(&self, kitchen: &Kitchen, index: usize, draw: usize, states: usize) -> World {
         let aspects = self.urns.len();
         let Sample { mixed, rows, .. } = self.samples[index];
@@ -280,7 +273,6 @@ impl BeliefSampler {
         &sums[..model.kitchen.buttons[Agent::Human.index()].len()]
     }
 
-    /// The distinct worlds of one belief sample.
     #[inline]
     fn runs_of(&self, sample: &Sample) -> &[Run] {
         &self.runs[sample.runs[0]..sample.runs[1]]
@@ -354,7 +346,6 @@ fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
 /// proposes may be made because of the proposal, which is equally likely under any belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProposalMixture {
-    /// The button that the human pressed.
     pub button: ButtonId,
     /// Probability that the human presses the button because the display proposes it.
     pub proposed: f64,
@@ -399,7 +390,6 @@ pub struct MixtureMoments<'a> {
 }
 
 impl MixtureMoments<'_> {
-    /// Starts the accumulation with the moments of the prior.
     pub fn from_prior(prior: &Dirichlet) -> MixtureMoments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();

@@ -150,7 +150,6 @@ impl BeliefFilter {
         (self.needs, self.stretch) = (None, None);
     }
 
-    /// Updates the estimate with an event's evidence at the session time `now`.
     fn update(&mut self, now: SessionTime, what: &ObservedEvidence, cost: &mut CostToGo) {
         match *what {
             ObservedEvidence::Started { state } => {

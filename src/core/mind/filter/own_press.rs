@@ -102,7 +102,6 @@ pub struct ExchangeUpdate {
 struct Side {
     aspect: AspectId,
     empty: usize,
-    /// Kind of each value of the aspect, and number of kinds.
     kind_of: Vec<usize>,
     kinds: usize,
     /// For each value, the same content's value on the other side (hand or location); `None` if that side cannot hold
@@ -111,7 +110,6 @@ struct Side {
 }
 
 impl ExchangeUpdate {
-    /// The update for the human's button of this location.
     pub fn new(kitchen: &Kitchen, location: LocationId) -> ExchangeUpdate {
         let hand_at = kitchen.hands[Agent::Human.index()];
         let aspects = [AspectId::of_location(hand_at), AspectId::of_location(location)];
@@ -426,7 +424,6 @@ struct Tally {
 }
 
 impl ServingUpdate {
-    /// The update for the human's button that serves this order.
     pub fn new(kitchen: &Kitchen, order: LocationId) -> ServingUpdate {
         let (order, plate) = (AspectId::of_location(order), AspectId::of_location(kitchen.plate));
         let [ordered, on_plate] = [order, plate].map(|aspect| &kitchen.aspects[aspect.index()]);

@@ -30,7 +30,6 @@ struct Look {
     survived: f64,
     /// Code of the content that the display showed at the last sample of the look.
     code: u8,
-    /// Time of the last sample of the look.
     last: SessionTime,
 }
 
@@ -227,7 +226,6 @@ struct ValueClass {
 }
 
 impl SampleObservations {
-    /// The update for this kitchen.
     pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> SampleObservations {
         let mut all: Vec<f64> = Vec::new();
         let mut index_of = |weight: f64| {
@@ -282,7 +280,6 @@ impl SampleObservations {
         *belief = Dirichlet::of_moments(mean, second);
     }
 
-    /// Computes the integrals of all classes that have values.
     fn integrate(&self, classes: &mut [ValueClass], precision: f64) {
         let used: Vec<usize> = (0..classes.len()).filter(|&index| classes[index].alpha > 0.0).collect();
         let points = self.weights[used[0]].0.len();

@@ -127,7 +127,6 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
     together
 }
 
-/// Whether any active order shows this content.
 fn is_wanted(kitchen: &Kitchen, state: State, content: OrderContent) -> bool {
     kitchen.orders.iter().any(|&order| state.order(order) == content)
 }

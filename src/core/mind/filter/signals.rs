@@ -139,7 +139,6 @@ impl BeliefFilter {
         }
     }
 
-    /// The signal on the display is read with the probability `chance`.
     fn read_signal(&mut self, chance: f64) {
         if let Some(standing) = &mut self.signals.standing {
             standing.unread *= 1.0 - chance;

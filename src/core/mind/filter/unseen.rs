@@ -108,7 +108,6 @@ impl UnknownGazeTimer {
         self.accounted = self.accounted + by;
     }
 
-    /// Session time at which the unknown time after the last sample with known gaze starts.
     fn unknown_from(&self) -> SessionTime {
         self.dark_since + SessionTime::from_secs_f64(self.allowance_s)
     }

@@ -107,7 +107,7 @@ impl SimulatedArm {
     }
 
     /// Confirms that the press is useful in this state of the kitchen: an arm above the button presses the button.
-    pub fn go_for_it(&mut self, may_press: bool, state: State) {
+    pub(crate) fn go_for_it(&mut self, may_press: bool, state: State) {
         self.found_useful = Some(state);
         if self.arm.phase() == ArmPhase::Hovers && may_press {
             self.arm.press();
@@ -165,7 +165,7 @@ impl SimulatedArm {
     }
 
     /// Tells the arm that the robot has no press to make: the arm stays idle until the next press.
-    pub fn has_nothing_to_do(&mut self) {
+    pub(crate) fn has_nothing_to_do(&mut self) {
         self.idle = true;
     }
 

@@ -38,7 +38,7 @@ const MAY_TOUCH_M: f64 = 0.01;
 /// Longest time to wait for the click of a button that the arm pushes down, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
 /// The arm counts as standing still if all joints are slower than this, in radians per second.
-pub const STILL_RAD_S: f64 = 0.02;
+pub(crate) const STILL_RAD_S: f64 = 0.02;
 
 /// Hands further away from the arm than this, in metres, do not influence the arm.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
@@ -141,7 +141,7 @@ impl ArmController {
     ///
     /// # Errors
     /// The reason why the arm cannot reach the button.
-    pub fn takes_s(&self, button: ButtonId) -> Result<f64, UnreachableReason> {
+    pub(crate) fn takes_s(&self, button: ButtonId) -> Result<f64, UnreachableReason> {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }
 
@@ -174,13 +174,13 @@ impl ArmController {
     }
 
     /// Whether the arm is away from its waiting pose without a press to make.
-    pub fn is_out(&self) -> bool {
+    pub(crate) fn is_out(&self) -> bool {
         let is_away = (0..JOINTS).any(|joint| (self.here[joint] - self.home[joint]).abs() > 1e-3);
         self.way.is_empty() && !self.mode.is_stopped() && is_away
     }
 
     /// Moves the arm back to its waiting pose; the arm stays in place if there is no collision-free path.
-    pub fn go_home(&mut self) {
+    pub(crate) fn go_home(&mut self) {
         match way_over(&self.arm, &self.here, &self.home, &self.around) {
             Ok(way) => (self.way, self.since_s, self.rate) = (way.into(), 0.0, 0.0),
             Err(_) => self.home = self.here,
@@ -188,7 +188,7 @@ impl ArmController {
     }
 
     /// Whether the arm moves without a button that it is to press.
-    pub fn withdraws(&self) -> bool {
+    pub(crate) fn withdraws(&self) -> bool {
         self.goal.is_none() && self.rate > 0.0
     }
 
@@ -401,11 +401,11 @@ const CREEPS_M_S: f64 = 0.02;
 /// Speed limit of the arm's tip for motion away from a hand, in m/s.
 const LEAVES_M_S: f64 = 0.1;
 /// Hysteresis of the distances between hand and arm in metres, so that the safety mode does not flicker.
-pub const MARGIN_M: f64 = 0.03;
+pub(crate) const MARGIN_M: f64 = 0.03;
 
 /// The speed limit of the arm's tip in m/s for a hand at this distance, depending on whether the arm approaches the
 /// hand.
-pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
+pub(crate) fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
     let by_distance = match distance_m {
         far if far >= SLOWS_M => f64::INFINITY,
         near => SLOWED_M_S * (near - WAITS_M).max(0.0) / (SLOWS_M - WAITS_M),
@@ -419,7 +419,7 @@ pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
 
 /// The safety mode for a hand at this distance while the arm is not stopped. `waits` says whether the arm must not move
 /// at all.
-pub fn mode_near(before: SafetyMode, distance_m: f64, waits: bool) -> SafetyMode {
+pub(crate) fn mode_near(before: SafetyMode, distance_m: f64, waits: bool) -> SafetyMode {
     let is_out = distance_m >= SLOWS_M + if before == SafetyMode::Normal { 0.0 } else { MARGIN_M };
     match (waits, is_out) {
         (true, _) => SafetyMode::Safeguard,
@@ -463,7 +463,7 @@ impl ContactTracker {
     }
 
     /// Whether there is a contact that has not been reported yet.
-    pub fn is_to_be_told(&self) -> bool {
+    pub(crate) fn is_to_be_told(&self) -> bool {
         self.0.is_some_and(|contact| contact.cycles < CYCLES)
     }
 }

@@ -77,7 +77,7 @@ pub fn wrapped(angle: f64) -> f64 {
 
 /// The same pose of the arm, with every joint turned by whole turns so that the joint is nearest to the same joint in
 /// the other pose.
-pub fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
+pub(crate) fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 

@@ -25,7 +25,7 @@ impl SerialArm {
     ///
     /// # Errors
     /// The text is no URDF, or the URDF does not describe such an arm.
-    pub fn from_urdf(text: &str) -> Result<SerialArm, UrdfError> {
+    pub(crate) fn from_urdf(text: &str) -> Result<SerialArm, UrdfError> {
         Ok(SerialArm { links: read_links(text)? })
     }
 
@@ -59,7 +59,7 @@ impl SerialArm {
 
     /// The pose of the arm's tip in the frame of the base, and the geometric Jacobian of the tip: metres, then radians,
     /// per radian of each joint.
-    pub fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
+    pub(crate) fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
         let places = self.forward(joints);
         let tip = places.last().copied().unwrap_or_else(Isometry3::identity);
         let mut jacobian = Matrix6::zeros();
@@ -170,18 +170,18 @@ pub struct RevoluteJoint {
     /// The axis of rotation, in the joint's frame.
     pub axis: Unit<Vector3<f64>>,
     /// Least and greatest angle of the joint, in radians.
-    pub range_rad: [f64; 2],
-    pub torque_nm: f64,
-    pub speed_rad_s: f64,
+    pub(crate) range_rad: [f64; 2],
+    pub(crate) torque_nm: f64,
+    pub(crate) speed_rad_s: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkInertia {
-    pub mass_kg: f64,
+    pub(crate) mass_kg: f64,
     /// The centre of mass in the frame of the link, in metres.
-    pub centre_m: Point3<f64>,
+    pub(crate) centre_m: Point3<f64>,
     /// Moments of inertia about the centre of mass, along the link's axes, in kg m².
-    pub inertia_kg_m2: Vector3<f64>,
+    pub(crate) inertia_kg_m2: Vector3<f64>,
 }
 
 /// A link of a robot arm, with the joint that connects it to the previous link.
@@ -189,7 +189,7 @@ pub struct LinkInertia {
 pub struct ArmLink {
     pub name: String,
     /// Pose of the joint in the frame of the previous link, at joint angle 0.
-    pub parent_from_joint: Isometry3<f64>,
+    pub(crate) parent_from_joint: Isometry3<f64>,
     /// The joint between the link and the previous one; none if the link is fixed to the previous link.
     pub turns: Option<RevoluteJoint>,
     /// Mass and inertia of the link; none if the link has no mass.
@@ -209,7 +209,7 @@ pub struct UrdfError {
 ///
 /// # Errors
 /// The text is no URDF, or the URDF does not describe such an arm.
-pub fn read_links(text: &str) -> Result<Vec<ArmLink>, UrdfError> {
+pub(crate) fn read_links(text: &str) -> Result<Vec<ArmLink>, UrdfError> {
     let wrong = |found: String, remedy| UrdfError { found, remedy };
     let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;
     let is_root = |link: &&urdf_rs::Link| robot.joints.iter().all(|joint| joint.child.link != link.name);

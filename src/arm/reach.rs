@@ -15,10 +15,10 @@ use crate::kinematics::{CollisionSolid, LinkShape, SerialArm};
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
 /// Height of the arm's tip above the buttons while the arm moves across, in metres.
-pub const ABOVE_M: f64 = 0.08;
+pub(crate) const ABOVE_M: f64 = 0.08;
 /// Preferred posture of the arm: elbow up, stick down. Of all solutions of the inverse kinematics, the one nearest to
 /// this posture is chosen.
-pub const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+pub(crate) const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
 /// Index of the elbow joint, and limit of the elbow's angle in radians.
 const ELBOW: usize = 2;
 const ELBOW_RAD: f64 = PI;
@@ -69,7 +69,7 @@ pub struct ButtonPoses {
 }
 
 /// The pose of the arm's tip at this position in the frame of the base (metres), with the stick down.
-pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
+pub(crate) fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at_m), UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI))
 }
 
@@ -86,7 +86,7 @@ impl SerialArm {
     ///
     /// # Errors
     /// The reason why the arm cannot reach the position in the solution nearest to `like`.
-    pub fn standing_at(
+    pub(crate) fn standing_at(
         &self,
         at_m: [f64; 3],
         like: &JointAngles,
@@ -145,7 +145,7 @@ pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, UnreachableReason)> 
 // Distance of the robot arm from the table, from its own links and from obstacles. Solids are approximated by capsules.
 
 /// Least clearance between the arm's links, and between links and table, in metres.
-pub const KEPT_M: f64 = 0.02;
+pub(crate) const KEPT_M: f64 = 0.02;
 
 /// A capsule: all points within a radius of a line segment. Links, hands and obstacles are approximated by capsules.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -138,7 +138,7 @@ impl ReachingHand {
     }
 
     /// Reacts to a contact: the person withdraws the hand, and watches the robot arm from now on.
-    pub fn feels_the_arm(&mut self) {
+    pub(crate) fn feels_the_arm(&mut self) {
         self.heedless = false;
         if self.way.is_none_or(|way| way.presses) {
             (self.planned, self.leaves) = (None, None);

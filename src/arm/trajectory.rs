@@ -10,21 +10,21 @@ use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen};
 use tomcom_core::robot::{JOINTS, JointAngles};
 
 use crate::kinematics::SerialArm;
-use crate::reach::{ABOVE_M, ArmSurroundings, BENT, BUTTON_M, ButtonPoses, UnreachableReason};
+use crate::reach::{ABOVE_M, ArmSurroundings, BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
 
 /// Greatest speed of a joint on a leg in joint space, in radians per second.
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;
 /// Greatest acceleration of a joint on a leg in joint space, in radians per second squared.
-pub const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
+pub(crate) const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
 /// Greatest speed of the arm's tip on a straight leg, in metres per second.
-pub const TIP_SPEED_M_S: f64 = 0.25;
+pub(crate) const TIP_SPEED_M_S: f64 = 0.25;
 /// Greatest acceleration of the arm's tip on a straight leg, in metres per second squared.
-pub const TIP_ACCELERATION_M_S2: f64 = 1.2;
+pub(crate) const TIP_ACCELERATION_M_S2: f64 = 1.2;
 /// The greatest speed and acceleration of the quintic time law from 0 to 1 within a time of 1.
 const QUINTIC_SPEED: f64 = 1.875;
 const QUINTIC_ACCELERATION: f64 = 5.7735;
 /// Depth below a button's top at which the arm's tip aims, in metres; this is more than the click needs.
-pub const BELOW_M: f64 = 0.006;
+pub(crate) const BELOW_M: f64 = 0.006;
 /// Number of points of a leg that are checked for joint limits and clearance.
 const LOOKS: usize = 24;
 /// Additional heights that are tried if the arm's path is blocked, in metres.
@@ -46,7 +46,7 @@ pub struct TrajectoryLeg {
     /// Four poses of the arm at equal distances along the leg.
     poses: [JointAngles; 4],
     /// Duration of the leg at full speed, in seconds.
-    pub takes_s: f64,
+    pub(crate) takes_s: f64,
 }
 
 impl TrajectoryLeg {
@@ -122,7 +122,7 @@ impl TrajectoryLeg {
 ///
 /// # Errors
 /// What blocks the arm's path, after higher paths were tried.
-pub fn way_to(
+pub(crate) fn way_to(
     arm: &SerialArm,
     from: &JointAngles,
     to: &ButtonPoses,
@@ -143,7 +143,7 @@ pub fn way_to(
 ///
 /// # Errors
 /// What blocks the arm's path.
-pub fn way_up(
+pub(crate) fn way_up(
     arm: &SerialArm,
     from: &JointAngles,
     around: &ArmSurroundings,
@@ -159,7 +159,7 @@ pub fn way_up(
 ///
 /// # Errors
 /// What blocks every path that was tried.
-pub fn way_over(
+pub(crate) fn way_over(
     arm: &SerialArm,
     from: &JointAngles,
     to: &JointAngles,
@@ -211,9 +211,7 @@ impl JointMotion {
         let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let at_button = |button: &Button| arm.at_button(button.at_m, &around).ok();
         let buttons: Vec<Option<ButtonPoses>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();
-        let above: Vec<&JointAngles> = buttons.iter().flatten().map(|poses| &poses.above).collect();
-        let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
-        let rest = if above.is_empty() { BENT } else { std::array::from_fn(mean) };
+        let rest = resting_pose(&buttons.iter().flatten().collect::<Vec<_>>());
         JointMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
     }
 

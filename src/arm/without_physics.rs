@@ -27,7 +27,7 @@ impl SimulatedArm {
         match *self {}
     }
 
-    pub fn go_for_it(&mut self, _: bool, _: State) {
+    pub(crate) fn go_for_it(&mut self, _: bool, _: State) {
         match *self {}
     }
 
@@ -39,7 +39,7 @@ impl SimulatedArm {
         match *self {}
     }
 
-    pub fn has_nothing_to_do(&mut self) {
+    pub(crate) fn has_nothing_to_do(&mut self) {
         match *self {}
     }
 

@@ -16,7 +16,7 @@ use crate::body::SimulatedArm;
 use super::controller::ArmController;
 
 /// Time for which a skipped press of the robot is not chosen again, in seconds.
-pub const SKIP_S: f64 = 5.0;
+pub(crate) const SKIP_S: f64 = 5.0;
 
 #[derive(Clone, Copy, Debug)]
 struct OngoingPress {

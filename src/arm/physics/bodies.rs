@@ -59,12 +59,12 @@ impl PhysicalButton {
         PhysicalButton { body, collider, up_m: middle.z, closed: false }
     }
 
-    pub fn collider(&self) -> ColliderHandle {
+    pub(crate) fn collider(&self) -> ColliderHandle {
         self.collider
     }
 
     /// Activates the button in the simulation; or releases the button and deactivates it.
-    pub fn set_active(&mut self, bodies: &mut RigidBodySet, active: bool) {
+    pub(crate) fn set_active(&mut self, bodies: &mut RigidBodySet, active: bool) {
         let Some(body) = bodies.get_mut(self.body) else { return };
         let at = body.translation();
         body.set_translation(Vector::new(at.x, at.y, self.up_m), active);
@@ -98,10 +98,10 @@ pub(super) const STICK: InteractionGroups =
 /// Effective mass of a hand, in kilograms (ISO/TS 15066, annex A).
 const HAND_KG: f32 = 0.6;
 /// Stiffness of a hand, in N/m (ISO/TS 15066, annex A).
-pub const STIFFNESS_N_M: f64 = 75_000.0;
+pub(crate) const STIFFNESS_N_M: f64 = 75_000.0;
 /// Damping of skin and flesh in a contact, in N s/m; the damping is small, so that the spring determines the peak
 /// force.
-pub const FLESH_NS_M: f64 = 40.0;
+pub(crate) const FLESH_NS_M: f64 = 40.0;
 /// Stiffness and damping of the person's arm, in N/m and N s/m: the stiffness is near measured values for an arm at
 /// rest (Mussa-Ivaldi, Hogan and Bizzi 1985), and the damping is critical.
 const HELD_N_M: f64 = 400.0;
@@ -183,12 +183,12 @@ impl PhysicalHand {
         HandPose { at_m, elbow_m: self.wanted.elbow_m + (at_m - self.wanted.at_m) }
     }
 
-    pub fn velocity_m_s(&self, bodies: &RigidBodySet) -> Vector3<f64> {
+    pub(crate) fn velocity_m_s(&self, bodies: &RigidBodySet) -> Vector3<f64> {
         bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
     }
 
     /// Overlap of the hand with the table in metres; 0 above it.
-    pub fn depth_in_table_m(&self, bodies: &RigidBodySet) -> f64 {
+    pub(crate) fn depth_in_table_m(&self, bodies: &RigidBodySet) -> f64 {
         (self.table_m + HAND_M - self.place(bodies).at_m.z).max(0.0)
     }
 
@@ -202,7 +202,7 @@ impl PhysicalHand {
     }
 
     /// Moves the hand for this many seconds without the physics engine, by the same forces, where nothing can touch it.
-    pub fn swing(&self, bodies: &mut RigidBodySet, takes_s: f32) {
+    pub(crate) fn swing(&self, bodies: &mut RigidBodySet, takes_s: f32) {
         let force = single(self.held_n(bodies));
         let Some(body) = bodies.get_mut(self.body) else { return };
         let velocity = body.linvel() + force * (takes_s / HAND_KG);

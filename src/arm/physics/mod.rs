@@ -56,7 +56,7 @@ pub struct ContactForces {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
     /// The greatest force of the stick on the button, in newtons.
-    pub button_n: f64,
+    pub(crate) button_n: f64,
     /// Whether the button under the stick closed its contact.
     pub clicked: bool,
 }
@@ -208,7 +208,7 @@ impl PhysicsWorld {
     }
 
     /// Selects the button that the stick can touch; `None` while the stick is above all buttons.
-    pub fn aim_at(&mut self, button: Option<usize>) {
+    pub(crate) fn aim_at(&mut self, button: Option<usize>) {
         if let Some(before) = self.active.filter(|_| self.active != button) {
             self.buttons[before].set_active(&mut self.bodies, false);
         }
@@ -218,7 +218,7 @@ impl PhysicsWorld {
         self.active = button;
     }
 
-    pub fn aimed_at(&self) -> Option<usize> {
+    pub(crate) fn aimed_at(&self) -> Option<usize> {
         self.active
     }
 
@@ -345,7 +345,7 @@ impl PhysicsWorld {
     }
 
     /// Applies the brakes: every joint stays where it is, whatever its motor does.
-    pub fn brake(&mut self) {
+    pub(crate) fn brake(&mut self) {
         self.fail(None);
         self.commanded = self.joints().0;
     }

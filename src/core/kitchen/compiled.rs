@@ -71,8 +71,18 @@ impl Kitchen {
 
     /// The locations whose contents differ between two states.
     pub fn changed(&self, before: State, after: State) -> impl Iterator<Item = LocationId> + use<> {
-        let locations = (0..self.locations.len()).map(|index| LocationId(index as u8));
+        let locations = self.location_ids();
         locations.filter(move |&location| before.code(location) != after.code(location))
+    }
+
+    /// The locations of this kitchen.
+    pub fn location_ids(&self) -> impl Iterator<Item = LocationId> + Clone + use<> {
+        (0..self.locations.len()).map(|index| LocationId(index as u8))
+    }
+
+    /// The buttons of this agent.
+    pub fn button_ids(&self, agent: Agent) -> impl Iterator<Item = ButtonId> + Clone + use<> {
+        (0..self.buttons[agent.index()].len()).map(|index| ButtonId(index as u8))
     }
 
     /// The location of this kitchen with this id.

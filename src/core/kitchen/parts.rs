@@ -352,20 +352,15 @@ pub struct Button {
 }
 
 /// Colour of a button's cap: one of the colours in which arcade buttons are sold.
+#[allow(missing_docs, reason = "the names say it")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ButtonColour {
-    /// The button has a red cap.
     Red,
-    /// The button has a yellow cap.
     Yellow,
-    /// The button has a green cap.
     Green,
-    /// The button has a blue cap.
     Blue,
-    /// The button has a white cap.
     White,
-    /// The button has a black cap.
     Black,
 }
 

@@ -123,7 +123,7 @@ impl Kitchen {
                 content.index() >= self.contents.len() || (!content.is_empty() && !self.accepts(location, content))
             }
         };
-        (0..self.locations.len()).map(|index| LocationId(index as u8)).find(|&location| is_misplaced(location))
+        self.location_ids().find(|&location| is_misplaced(location))
     }
 }
 

@@ -55,17 +55,21 @@ pub enum ErrorCause {
 }
 
 impl FalseBeliefTarget {
-    /// All targets that a false belief of the human can be about in a state of the kitchen.
-    pub fn all(kitchen: &Kitchen, state: State) -> Vec<FalseBeliefTarget> {
-        let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
-        let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
+    /// The target of a false belief about what this location shows in a state of the kitchen.
+    pub(crate) fn of_location(kitchen: &Kitchen, state: State, location: LocationId) -> FalseBeliefTarget {
+        match (kitchen.location(location).kind, state.order(location)) {
             (LocationKind::Order, OrderContent::Dish(dish)) => FalseBeliefTarget::Order(location, Some(dish)),
             (LocationKind::Order, _) => FalseBeliefTarget::Order(location, None),
             _ => FalseBeliefTarget::Place(location),
-        };
+        }
+    }
+
+    /// All targets that a false belief of the human can be about in a state of the kitchen.
+    pub fn all(kitchen: &Kitchen, state: State) -> Vec<FalseBeliefTarget> {
+        let locations = kitchen.location_ids().map(|location| FalseBeliefTarget::of_location(kitchen, state, location));
         let dishes = (0..kitchen.dishes.len()).map(|index| DishId(index as u8));
         let unwanted = dishes.filter(|dish| kitchen.wanted(state).all(|(_, wanted)| wanted != *dish));
-        locations.map(of_location).chain(unwanted.map(FalseBeliefTarget::Recipe)).collect()
+        locations.chain(unwanted.map(FalseBeliefTarget::Recipe)).collect()
     }
 
     /// The state aspects that this target of a false belief covers.

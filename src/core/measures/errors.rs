@@ -92,7 +92,7 @@ impl PressJudge {
             false => 1 + presses(cost.proven_all_orders(state, &recipes, &mut budget)) - here,
         };
         let regret = regret_to(after);
-        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let buttons = kitchen.button_ids(Agent::Human);
         let least = buttons
             .filter_map(|button| kitchen.press(before, &recipes, Agent::Human, button))
             .map(&mut regret_to)

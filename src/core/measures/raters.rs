@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::attribution::{ErrorCause, FalseBeliefTarget};
 use super::errors::JudgedPress;
 use super::matching::kappa;
-use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
+use crate::kitchen::{Kitchen, State};
 
 /// Cause of an error as coded by a rater.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -29,18 +29,14 @@ pub enum ErrorCauseCode {
 }
 
 /// Kinds of causes of an error, without what a false belief is about.
+#[allow(missing_docs, reason = "as in `ErrorCauseCode`")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorCauseKind {
-    /// A false belief of the participant caused the error.
     Belief,
-    /// A slip of hand or attention caused the error.
     Slip,
-    /// A race caused the error: the robot changed the location before the participant could react.
     Race,
-    /// Another cause of the error than the kinds listed here.
     Other,
-    /// Confused buttons: the participant wanted to press another button.
     Buttons,
 }
 
@@ -137,12 +133,7 @@ impl ErrorCauseCode {
 
     /// Target of the coded false belief, in the state before the press; `None` for other causes.
     pub fn target(&self, kitchen: &Kitchen, state: State) -> Option<FalseBeliefTarget> {
-        let location = kitchen.location_named(self.aspect()?)?;
-        Some(match (kitchen.location(location).kind, state.order(location)) {
-            (LocationKind::Order, OrderContent::Dish(dish)) => FalseBeliefTarget::Order(location, Some(dish)),
-            (LocationKind::Order, _) => FalseBeliefTarget::Order(location, None),
-            _ => FalseBeliefTarget::Place(location),
-        })
+        Some(FalseBeliefTarget::of_location(kitchen, state, kitchen.location_named(self.aspect()?)?))
     }
 }
 
@@ -512,19 +503,14 @@ pub fn of_most(numbers: &BTreeMap<String, u64>) -> Option<(Vec<String>, u64)> {
 }
 
 /// The source from which an analysis takes causes of errors and false beliefs; the most reliable source first.
+#[allow(missing_docs, reason = "`words` says each")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BeliefSource {
-    /// Beliefs that a simulated participant recorded before each press.
     Recorded,
-    /// Answers to freeze probes; the answers reveal false beliefs, but not the causes of errors.
     Probes,
-    /// Consensus of two raters on the cause of every error.
     Consensus,
-    /// Codes of two raters for the cause of every error; an error is belief related if both coded a false belief.
     Raters,
-    /// The assistant's estimate of the participant's beliefs; the estimate is not sufficient for the main results of a
-    /// study.
     Estimate,
 }
 

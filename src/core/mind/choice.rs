@@ -66,7 +66,7 @@ pub struct ChoiceModel {
 impl ChoiceModel {
     /// The choice model for beliefs that are represented by weighted worlds.
     pub fn new(kitchen: &Kitchen, parameters: &ChoiceParameters) -> ChoiceModel {
-        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let buttons = kitchen.button_ids(Agent::Human);
         let slips = |button| {
             let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
             [next, kitchen.look_alike_button(Agent::Human, button).unwrap_or(next)]

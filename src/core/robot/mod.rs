@@ -9,30 +9,20 @@ use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
 
 /// Why the robot abandoned a press that it had begun or planned.
+#[allow(missing_docs, reason = "`words` says each")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AbortReason {
-    /// When the arm was about to touch the button, a press of the button was no longer useful.
     NoLongerUseful,
-    /// The wizard stopped the robot.
     Stopped,
-    /// The wizard skipped this press of the robot.
     Skipped,
-    /// The wizard chose another press for the robot.
     Driven,
-    /// The button is outside of the arm's workspace.
     OutOfReach,
-    /// The arm's pose at the button is singular.
     Singular,
-    /// Every path of the arm to the button is blocked by an obstacle or by the arm itself.
     Obstructed,
-    /// A hand was in the arm's way for too long.
     HandInTheWay,
-    /// The arm pushed the button down, but the button did not click.
     NoClick,
-    /// The arm measured a contact force above the threshold and stopped.
     Contact,
-    /// A joint did not follow its command, and the arm stopped.
     Fault,
 }
 

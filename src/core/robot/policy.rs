@@ -31,7 +31,7 @@ pub fn best_presses(
     recipes: &Recipes,
 ) -> Vec<ButtonId> {
     let nearer = cost.nearer(fidelity, state, recipes, Agent::Robot);
-    let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+    let buttons = kitchen.button_ids(Agent::Robot);
     buttons.filter(|button| nearer >> button.0 & 1 == 1).collect()
 }
 
@@ -216,7 +216,7 @@ pub struct OwnWays {
 
 /// The robot's presses that change the state, each with the state after it.
 fn steps<'a>(kitchen: &'a Kitchen, state: State, recipes: &'a Recipes) -> impl Iterator<Item = (ButtonId, State)> + 'a {
-    let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+    let buttons = kitchen.button_ids(Agent::Robot);
     buttons.filter_map(move |button| Some((button, kitchen.press(state, recipes, Agent::Robot, button)?)))
 }
 
@@ -339,7 +339,7 @@ pub fn preparation(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes
         }
         states = nexts;
     }
-    let buttons = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+    let buttons = kitchen.button_ids(Agent::Robot);
     buttons.filter(|button| least.2 >> button.0 & 1 == 1).collect()
 }
 
@@ -353,7 +353,7 @@ fn needed_next(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &R
         ButtonAction::Use(place) => kitchen.location(place).kind == LocationKind::Place,
         _ => false,
     };
-    let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+    let buttons = kitchen.button_ids(Agent::Human);
     buttons.filter(|button| nearer >> button.0 & 1 == 1 && puts_down(*button)).collect()
 }
 

@@ -22,7 +22,7 @@ const RESIDUE: f64 = 1e-6;
 impl ParticipantBeliefs {
     /// Beliefs with probability `sure` on each aspect's value in `state` and on the true recipes; the participant's
     /// memory changes the beliefs about recipes afterwards.
-    pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
+    pub(crate) fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
         let mut beliefs = ParticipantBeliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
         for index in 0..kitchen.aspects.len() {
             let aspect = AspectId(index as u8);
@@ -108,7 +108,7 @@ impl ParticipantBeliefs {
 }
 
 /// The dish that an order wants, as the participant believes.
-pub fn wanted_dish(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, order: LocationId) -> Option<DishId> {
+pub(crate) fn wanted_dish(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, order: LocationId) -> Option<DishId> {
     let aspect = AspectId::of_location(order);
     match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {
         OrderContent::Dish(dish) => Some(dish),
@@ -239,7 +239,7 @@ impl RecipeMemory {
 
     /// Lets the participant lose the thread while working on an order: the recipe is recalled again from a partly faded
     /// memory.
-    pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
+    pub(crate) fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         beliefs.mix(kitchen.aspect_of_dish(dish), &self.faded[dish.index()], 0.5);
         self.recall(kitchen, beliefs, dish);
     }

@@ -35,7 +35,7 @@ pub struct ParticipantPlan {
     /// order.
     pub order: Option<(LocationId, SessionTime)>,
     /// The stack that the participant served last.
-    pub last_dish: Option<ContentId>,
+    pub(crate) last_dish: Option<ContentId>,
     /// Lapses (omissions and habits) that hold for the decisions until the next press.
     pub lapses: Lapses,
 }
@@ -63,13 +63,13 @@ pub enum Impatience {
 pub struct DecisionContext<'a> {
     pub kitchen: &'a Kitchen,
     pub knowledge: &'a TaskKnowledge,
-    pub habits: &'a Habits,
+    pub(crate) habits: &'a Habits,
     /// Number of own presses ahead that the participant thinks through.
     pub depth: usize,
-    pub in_progress: Option<LocationId>,
-    pub last_dish: Option<ContentId>,
+    pub(crate) in_progress: Option<LocationId>,
+    pub(crate) last_dish: Option<ContentId>,
     pub lapses: Lapses,
-    pub urgency: Impatience,
+    pub(crate) urgency: Impatience,
 }
 
 /// The result of a participant's decision: an order and the next presses.
@@ -237,7 +237,7 @@ impl DecisionContext<'_> {
 }
 
 /// The human's presses that change the state of a world, each with the state after the press.
-pub fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
+pub(crate) fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);
         Some((button, kitchen.press(world.state, &world.recipes, Agent::Human, button)?))
@@ -272,7 +272,7 @@ impl Habits {
 
     /// The part of the last dish that the participant takes by habit instead of a part of the present dish. Both parts
     /// belong in the same slot of a dish, so that they do not stack.
-    pub fn part_instead(&self, kitchen: &Kitchen, stack: ContentId, part: ContentId) -> Option<ContentId> {
+    pub(crate) fn part_instead(&self, kitchen: &Kitchen, stack: ContentId, part: ContentId) -> Option<ContentId> {
         let last = &kitchen.content(self.last?).items;
         let own = &kitchen.content(stack).items;
         if last.contains(&part) {
@@ -295,9 +295,9 @@ pub struct Lapses {
     /// Lapse: the participant first does what is within reach for another order.
     pub takes_along: bool,
     /// Random number from 0 to 1 that decides between equally good choices.
-    pub whim: f64,
+    pub(crate) whim: f64,
     /// The button of the press that just had no effect, if the participant tries that press again.
-    pub insists_on: Option<ButtonId>,
+    pub(crate) insists_on: Option<ButtonId>,
 }
 
 impl Lapses {

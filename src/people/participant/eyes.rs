@@ -9,7 +9,7 @@ use super::population::ParticipantTraits;
 use super::{chance, normal};
 
 /// Gaze samples per second, as a Pupil Core eye tracker delivers them.
-pub const RATE_HZ: u64 = 120;
+pub(crate) const RATE_HZ: u64 = 120;
 /// Time from the start of a fixation until its location has been read, in seconds: about half of a usual fixation.
 const READING_S: f64 = 0.14;
 /// Shortest duration of a fixation, in seconds.
@@ -128,19 +128,19 @@ impl Eyes {
     }
 
     /// Restarts the time needed for reading, because the content at the fixated location has just changed.
-    pub fn look_again(&mut self, now: SessionTime) {
+    pub(crate) fn look_again(&mut self, now: SessionTime) {
         let read = now + SessionTime::from_secs_f64(READING_S);
         self.reads = Some(read);
         self.ends = self.ends.max(read);
     }
 
     /// Keeps the present fixation until `until`; the participant reads nothing more during the fixation.
-    pub fn rest_until(&mut self, until: SessionTime) {
+    pub(crate) fn rest_until(&mut self, until: SessionTime) {
         self.reads = None;
         self.ends = self.ends.max(until);
     }
 
-    pub fn has_landed(&self, now: SessionTime) -> bool {
+    pub(crate) fn has_landed(&self, now: SessionTime) -> bool {
         now >= self.lands && !self.is_closed(now)
     }
 

@@ -29,7 +29,7 @@ pub struct OrderGoal {
     /// The location of the finished stack; `None` if the dish is not finished.
     pub finished: Option<LocationId>,
     /// Whether the stack on the board is the beginning of the ordered dish.
-    pub has_base: bool,
+    pub(crate) has_base: bool,
     pub needs: Vec<MissingPart>,
 }
 
@@ -52,12 +52,12 @@ pub struct GoalContext<'a> {
     /// Whether the participant takes items without checking whether they can be used next.
     pub skips_check: bool,
     /// Whether the participant waits for what the robot holds in its hand.
-    pub waits_for_robot: bool,
+    pub(crate) waits_for_robot: bool,
 }
 
 impl Goals {
     /// The goals in a state; the order `first` claims available contents before the other orders.
-    pub fn in_state(prospect: &GoalContext, state: State, first: LocationId) -> Goals {
+    pub(crate) fn in_state(prospect: &GoalContext, state: State, first: LocationId) -> Goals {
         let mut wanted: Vec<(LocationId, DishId)> = prospect.kitchen.wanted(state).collect();
         wanted.sort_by_key(|&(order, _)| order != first);
         let mut goals = Goals { orders: Vec::with_capacity(wanted.len()), claimed: 0 };
@@ -227,7 +227,7 @@ impl TaskKnowledge {
     }
 
     /// Whether items are stacked, processed or served at a place, so that the place is more than a parking place.
-    pub fn is_station(&self, place: LocationId) -> bool {
+    pub(crate) fn is_station(&self, place: LocationId) -> bool {
         self.is_station[place.index()]
     }
 
@@ -237,7 +237,7 @@ impl TaskKnowledge {
     }
 
     /// The number of processing steps from `content` to `part`; `None` if the content cannot become that part.
-    pub fn steps_to(&self, content: ContentId, part: ContentId) -> Option<u8> {
+    pub(crate) fn steps_to(&self, content: ContentId, part: ContentId) -> Option<u8> {
         let mut item = part;
         for steps in 0..MOST_STEPS {
             if item == content {
@@ -250,7 +250,7 @@ impl TaskKnowledge {
 
     /// The next processing step of `content` on the way to `part`; `None` if the content is that part already, or can
     /// never become it.
-    pub fn next_making(&self, content: ContentId, part: ContentId) -> Option<ItemPreparation> {
+    pub(crate) fn next_making(&self, content: ContentId, part: ContentId) -> Option<ItemPreparation> {
         let mut item = part;
         for _ in 0..MOST_STEPS {
             let making = self.making(item)?;

@@ -133,7 +133,7 @@ impl SimulatedParticipant {
         if idle_s < self.person.patience_s {
             return None;
         }
-        let mut stale: Vec<LocationId> = (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).collect();
+        let mut stale: Vec<LocationId> = kitchen.location_ids().collect();
         stale.sort_by_key(|location| self.attention.read_at[location.index()]);
         for &location in stale.iter().take(3) {
             self.attention.later(location);

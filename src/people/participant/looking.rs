@@ -205,7 +205,7 @@ impl SimulatedParticipant {
     fn is_about(&self, content: ContentId) -> bool {
         let kitchen = &self.kitchen;
         let World { state, .. } = self.beliefs.point(kitchen);
-        let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let places = kitchen.location_ids();
         let places = places.filter(|&place| kitchen.location(place).kind != LocationKind::Order);
         let lying: Vec<ContentId> =
             places.flat_map(|place| kitchen.content(state.content(place)).items.clone()).collect();

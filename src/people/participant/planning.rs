@@ -15,7 +15,7 @@ use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
 pub struct ProposedPress {
     pub button: ButtonId,
     /// Whether the press is a detour, which only makes room, at the cost of another press later.
-    pub is_detour: bool,
+    pub(crate) is_detour: bool,
 }
 
 impl ProposedPress {
@@ -197,7 +197,7 @@ impl<'a> BackwardChaining<'a> {
     /// Puts the held content down where it is least in the way; if no place is free, it is thrown away.
     fn park(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
-        let places = (0..self.prospect.kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let places = self.prospect.kitchen.location_ids();
         let free = places.filter(|&place| knowledge.at(place).is_some() && self.is_free(place, self.held));
         // Board and plate are the last choice for parking, since every dish needs them.
         let kitchen = self.prospect.kitchen;

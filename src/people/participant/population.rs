@@ -244,7 +244,7 @@ pub struct ParticipantTraits {
     pub learned: f64,
     pub half_forgotten: f64,
     pub half_life_s: f64,
-    pub loses_thread_per_s: f64,
+    pub(crate) loses_thread_per_s: f64,
     pub takes_hints: f64,
     pub patience_s: f64,
     pub commitment_s: f64,

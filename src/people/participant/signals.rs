@@ -159,7 +159,7 @@ pub(super) struct SignalSense {
     /// Proposed presses that the participant intends to make next.
     pub follows: VecDeque<ButtonId>,
     /// Session time until which the participant is reading a signal.
-    pub busy_until: SessionTime,
+    pub(crate) busy_until: SessionTime,
     /// How useful the signals so far have been to the participant, from 0 to 1.
     pub worth: f64,
 }

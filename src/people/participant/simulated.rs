@@ -162,7 +162,7 @@ const MOST_GLANCES: usize = 6;
 #[derive(Clone, Debug, Default)]
 pub struct LookQueue {
     pub glances: VecDeque<LocationId>,
-    pub looking_at: Option<LocationId>,
+    pub(crate) looking_at: Option<LocationId>,
     /// Session time of the participant's last reading of each location.
     pub read_at: Vec<SessionTime>,
 }

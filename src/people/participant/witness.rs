@@ -29,7 +29,7 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
 }
 
 /// Records the belief about every aspect at a freeze probe, which leads to no press.
-pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
+pub(crate) fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
     let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);

@@ -87,9 +87,3 @@ impl Default for WizardSpec {
         }
     }
 }
-
-impl WizardSpec {
-    pub fn is_default(&self) -> bool {
-        *self == WizardSpec::default()
-    }
-}

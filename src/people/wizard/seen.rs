@@ -87,7 +87,7 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]
 }
 
 /// Whether a press seems useful to a person with this one false belief but does not reduce the true cost to go.
-pub fn misleads(
+pub(crate) fn misleads(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
     seen: &ParticipantSeenKitchen,
@@ -96,7 +96,7 @@ pub fn misleads(
 ) -> bool {
     let (state, recalled) = believed(kitchen, thought, truth, seen.state);
     let recipes = kitchen.true_recipes();
-    let mut presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+    let mut presses = kitchen.button_ids(Agent::Human);
     presses
         .any(|button| helps(kitchen, cost, state, &recalled, button) && !helps(kitchen, cost, truth, &recipes, button))
 }

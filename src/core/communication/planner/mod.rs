@@ -22,7 +22,7 @@ use super::settings::AssistantSpec;
 use super::signal::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, WeightedWorlds};
+use crate::kitchen::{Agent, AspectId, Kitchen, WeightedWorlds};
 use crate::mind::choice::HumanChoice;
 use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::{ChoiceModel, rounded};
@@ -67,7 +67,7 @@ struct Candidate {
 impl Planner {
     /// A planner for this human model. `seed` and the number of presses so far seed the planner's random stream.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
-        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let buttons = kitchen.button_ids(Agent::Human);
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
         let watched = |button| kitchen.watched(button).into_iter().map(AspectId::of_location).collect();
         Planner {

@@ -1,9 +1,11 @@
+//! Contents and their words, processing steps, dishes and the variants of their recipes, from the recipe file.
+
 use std::collections::BTreeMap;
 
 use toml::Spanned;
 
 use super::places::stored;
-use super::{KitchenFileKind, Result, look, wrong, wrong_file};
+use super::{KitchenFileKind, Result, in_recipes, look, wrong_file};
 use crate::kitchen::files::{
     DeviationCombinationRule, DeviationSpec, DishSpec, LayoutSpec, ProcessingStepSpec, RecipesSpec,
 };
@@ -38,11 +40,11 @@ impl IngredientItems {
                 let name = format!("{}{suffix}", ingredient.name.get_ref());
                 if items.names.contains(&name) {
                     let found = format!("the item \"{name}\" a second time");
-                    return Err(wrong(KitchenFileKind::Recipes, ingredient.name.span(), found, "each item once"));
+                    return Err(in_recipes(ingredient.name.span(), found, "each item once"));
                 }
                 if items.names.len() == MAX_CONTENTS - 1 {
                     let found = format!("\"{name}\" as item number {MAX_CONTENTS}");
-                    return Err(wrong(KitchenFileKind::Recipes, ingredient.name.span(), found, TOO_MANY));
+                    return Err(in_recipes(ingredient.name.span(), found, TOO_MANY));
                 }
                 items.names.push(name);
                 items.ingredient.push(index);
@@ -55,8 +57,7 @@ impl IngredientItems {
     pub(super) fn find(&self, name: &Spanned<String>) -> Result<ContentId> {
         match self.names.iter().position(|item| item == name.get_ref()) {
             Some(index) => Ok(ContentId(index as u8 + 1)),
-            None => Err(wrong(
-                KitchenFileKind::Recipes,
+            None => Err(in_recipes(
                 name.span(),
                 format!("\"{}\"", name.get_ref()),
                 format!("one of the items {}", self.names.join(", ")),
@@ -98,7 +99,7 @@ fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result
     if !looks.is_empty() && looks.len() != states {
         let found = format!("{} looks of \"{}\"", looks.len(), ingredient.name.get_ref());
         let remedy = format!("one for each of its states: {states}");
-        return Err(wrong(KitchenFileKind::Recipes, looks[0].span(), found, remedy));
+        return Err(in_recipes(looks[0].span(), found, remedy));
     }
     looks.get(items.state[item]).map(|text| look(KitchenFileKind::Recipes, text)).transpose()
 }
@@ -111,12 +112,12 @@ fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<Content
         for (item, name) in items.find_all(&slot.items)?.into_iter().zip(&slot.items) {
             if of_slots.contains(&item) {
                 let found = format!("\"{}\" in a second slot, or twice in one", name.get_ref());
-                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, "each item in at most one [[slot]]"));
+                return Err(in_recipes(name.span(), found, "each item in at most one [[slot]]"));
             }
             of_slots.push(item);
             stacks.extend(below.iter().map(|stack| [stack.as_slice(), &[item]].concat()));
             if stacks.len() > 2 * MAX_CONTENTS {
-                return Err(wrong(KitchenFileKind::Recipes, slot.name.span(), "too many different stacks", TOO_MANY));
+                return Err(in_recipes(slot.name.span(), "too many different stacks", TOO_MANY));
             }
         }
     }
@@ -173,7 +174,7 @@ fn look_alikes(
             let other = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
             let Some(other) = other else {
                 let found = format!("looks_like \"{}\"", name.get_ref());
-                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, "the name of another ingredient"));
+                return Err(in_recipes(name.span(), found, "the name of another ingredient"));
             };
             let twin =
                 (0..items.names.len()).find(|&twin| items.ingredient[twin] == other && items.state[twin] == state);
@@ -205,18 +206,13 @@ pub(super) fn content_words(spec: &RecipesSpec, items: &IngredientItems) -> Resu
             if !dish && !ingredient && !items.names.contains(name) {
                 let found = format!("words for \"{name}\" in the table [words.{language}]");
                 let remedy = format!("a dish, an ingredient, or one of the items {}", items.names.join(", "));
-                return Err(wrong(KitchenFileKind::Recipes, wording.span(), found, remedy));
+                return Err(in_recipes(wording.span(), found, remedy));
             }
             let text = wording.get_ref();
             let is_wording = (1..=MAX_WORDING).contains(&text.chars().count()) && text.trim() == text;
             if !is_wording || text.chars().any(char::is_control) || text.contains(" + ") {
                 let remedy = format!("1 to {MAX_WORDING} characters in one line, such as \"cooked rice\"");
-                return Err(wrong(
-                    KitchenFileKind::Recipes,
-                    wording.span(),
-                    format!("{text:?} as words for \"{name}\""),
-                    remedy,
-                ));
+                return Err(in_recipes(wording.span(), format!("{text:?} as words for \"{name}\""), remedy));
             }
             words.insert(name.clone(), text.clone());
         }
@@ -247,7 +243,7 @@ fn check_distinct(
         let entries = &spec.words[language];
         let span = [name.as_str(), other].iter().find_map(|name| entries.get(*name)).map_or(0..0, |word| word.span());
         let found = format!("\"{wording}\" as words for both \"{other}\" and \"{name}\"");
-        return Err(wrong(KitchenFileKind::Recipes, span, found, "words of its own for each item and each dish"));
+        return Err(in_recipes(span, found, "words of its own for each item and each dish"));
     }
     Ok(())
 }
@@ -272,12 +268,7 @@ pub(super) fn processes(
                 Some(index) => Some(LocationId(index as u8)),
                 None => {
                     let found = format!("at = \"{name}\"");
-                    return Err(wrong(
-                        KitchenFileKind::Recipes,
-                        process.at.span(),
-                        found,
-                        "\"hand\" or a [[place]] of the layout",
-                    ));
+                    return Err(in_recipes(process.at.span(), found, "\"hand\" or a [[place]] of the layout"));
                 }
             },
         };
@@ -301,7 +292,7 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Co
             slots.iter().map(|slot| slot.iter().copied().find(|item| parts.contains(item))).collect();
         let Some(by_slot) = by_slot.filter(|by_slot| by_slot.len() == parts.len()) else {
             let found = format!("\"{}\" of {} items", dish.name.get_ref(), parts.len());
-            return Err(wrong(KitchenFileKind::Recipes, dish.items.span(), found, "one item of each [[slot]]"));
+            return Err(in_recipes(dish.items.span(), found, "one item of each [[slot]]"));
         };
         let deviation = spec.deviation.iter().find_map(|deviation| match items.find_all(&deviation.dishes_with) {
             Ok(with) => with.iter().any(|item| parts.contains(item)).then_some(Ok(deviation)),
@@ -319,7 +310,7 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Co
         let variants: Vec<ContentId> = sets.into_iter().filter_map(find).collect();
         if dishes.iter().any(|other| other.name == *dish.name.get_ref() || other.variants[0] == variants[0]) {
             let found = format!("the dish \"{}\" a second time", dish.name.get_ref());
-            return Err(wrong(KitchenFileKind::Recipes, dish.name.span(), found, "each name and each recipe once"));
+            return Err(in_recipes(dish.name.span(), found, "each name and each recipe once"));
         }
         let look = dish.look.as_ref().map(|text| look(KitchenFileKind::Recipes, text)).transpose()?;
         dishes.push(Dish { name: dish.name.get_ref().clone(), variants, look });
@@ -338,7 +329,7 @@ fn variants(
     for vary in &deviation.slots {
         let Some(slot) = spec.slot.iter().position(|slot| slot.name.get_ref() == vary.slot.get_ref()) else {
             let found = format!("slot = \"{}\"", vary.slot.get_ref());
-            return Err(wrong(KitchenFileKind::Recipes, vary.slot.span(), found, "the name of a [[slot]]"));
+            return Err(in_recipes(vary.slot.span(), found, "the name of a [[slot]]"));
         };
         let starts = match deviation.combine {
             DeviationCombinationRule::OneAtATime => vec![truth.to_vec()],
@@ -351,7 +342,7 @@ fn variants(
                     let found = format!("\"{}\" in the slot \"{}\"", name.get_ref(), vary.slot.get_ref());
                     let of_slot: Vec<&str> = stackable.iter().map(|item| item.get_ref().as_str()).collect();
                     let remedy = format!("an item of that [[slot]]: {}", of_slot.join(", "));
-                    return Err(wrong(KitchenFileKind::Recipes, name.span(), found, remedy));
+                    return Err(in_recipes(name.span(), found, remedy));
                 }
                 let mut set = start.clone();
                 set[slot] = item;
@@ -384,7 +375,7 @@ pub(super) fn check_obtainable(
             if !obtainable.contains(&items.find(name)?) {
                 let found = format!("\"{}\", which nobody can get", name.get_ref());
                 let remedy = "a [[storage]] of the layout that gives it, or steps of a [[process]] that lead to it";
-                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, remedy));
+                return Err(in_recipes(name.span(), found, remedy));
             }
         }
     }

@@ -135,7 +135,7 @@ fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {
     if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
         return Ok(());
     }
-    Err(wrong(KitchenFileKind::Layout, value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
+    Err(in_layout(value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
 }
 
 fn tables(
@@ -199,7 +199,7 @@ fn accept(
             (other, None) => {
                 let found = format!("accepts \"{other}\"");
                 let remedy = "\"anything\", \"ingredients\", \"dishes\" or a [[group]] of the recipe file";
-                return Err(wrong(KitchenFileKind::Layout, name.span(), found, remedy));
+                return Err(in_layout(name.span(), found, remedy));
             }
         };
     }
@@ -272,14 +272,14 @@ pub struct KitchenFileError {
 
 pub(super) type Result<T> = std::result::Result<T, KitchenFileError>;
 
-/// An error at a position in a layout or recipe file.
-pub(super) fn wrong(
-    file: KitchenFileKind,
-    span: Range<usize>,
-    found: impl Into<String>,
-    remedy: impl Into<String>,
-) -> KitchenFileError {
-    KitchenFileError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
+/// An error at a position in the layout file.
+pub(super) fn in_layout(span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> KitchenFileError {
+    KitchenFileError { span: Some(span), ..wrong_file(KitchenFileKind::Layout, found, remedy) }
+}
+
+/// An error at a position in the recipe file.
+pub(super) fn in_recipes(span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> KitchenFileError {
+    KitchenFileError { span: Some(span), ..wrong_file(KitchenFileKind::Recipes, found, remedy) }
 }
 
 /// An error that concerns a layout or recipe file as a whole.
@@ -293,6 +293,8 @@ pub(super) fn wrong_file(
 
 /// Reads the appearance of an item, a dish or a place: a shape and its colours.
 pub(super) fn look(file: KitchenFileKind, text: &Spanned<String>) -> Result<Appearance> {
-    Appearance::read(text.get_ref())
-        .map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
+    Appearance::read(text.get_ref()).map_err(|remedy| KitchenFileError {
+        span: Some(text.span()),
+        ..wrong_file(file, format!("look = \"{}\"", text.get_ref()), remedy)
+    })
 }

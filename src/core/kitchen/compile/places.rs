@@ -1,7 +1,9 @@
+//! Locations, storages and buttons from the layout file, which an eye tracker can tell apart on the display.
+
 use toml::Spanned;
 
 use super::contents::IngredientItems;
-use super::{KitchenFileKind, Result, look, wrong, wrong_file};
+use super::{KitchenFileKind, Result, in_layout, look, wrong_file};
 use crate::kitchen::files::{ButtonSpec, LayoutSpec, PlaceSpec, RecipesSpec, StorageSpec, is_same_key};
 use crate::kitchen::parts::{
     Agent, Button, ButtonAction, ContentId, DisplayArea, IngredientStorage, Location, LocationId, LocationKind,
@@ -33,7 +35,7 @@ pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     for (name, location) in orders.chain(hands).chain(places) {
         if locations.iter().any(|other| other.name == location.name) {
             let found = format!("the location \"{}\" a second time", location.name);
-            return Err(wrong(KitchenFileKind::Layout, name.span(), found, "each name once"));
+            return Err(in_layout(name.span(), found, "each name once"));
         }
         locations.push(location);
     }
@@ -73,7 +75,7 @@ pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([Loc
             (Some((index, _)), None) => Ok(LocationId((first_place + index) as u8)),
             (Some(_), Some((_, second))) => {
                 let found = format!("a second place with {which} = true, \"{}\"", second.name.get_ref());
-                Err(wrong(KitchenFileKind::Layout, second.name.span(), found, "one such place"))
+                Err(in_layout(second.name.span(), found, "one such place"))
             }
             (None, _) => {
                 let found = format!("no place with {which} = true");
@@ -95,19 +97,14 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
         let inside = area.x >= 0.0 && area.y >= 0.0 && area.x + area.w <= 1.0 && area.y + area.h <= 1.0;
         if !(inside && area.w > 0.0 && area.h > 0.0) {
             let found = format!("\"{}\" reaches beyond the display", location.name);
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                spans[index].clone(),
-                found,
-                "x, y, w and h as fractions within 0 to 1",
-            ));
+            return Err(in_layout(spans[index].clone(), found, "x, y, w and h as fractions within 0 to 1"));
         }
         for other in &locations[..index] {
             let gap = area.gap_m(other.display, display_m);
             if gap < MIN_GAP_M - 1e-9 {
                 let found = format!("\"{}\" only {gap:.3} m from \"{}\"", location.name, other.name);
                 let remedy = format!("at least {MIN_GAP_M} m between locations, so that gaze can tell them apart");
-                return Err(wrong(KitchenFileKind::Layout, spans[index].clone(), found, remedy));
+                return Err(in_layout(spans[index].clone(), found, remedy));
             }
         }
     }
@@ -122,12 +119,7 @@ pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
         if key.get_ref().is_whitespace() || twin.is_some() {
             let whose = twin.map_or(String::new(), |(other, _)| format!(", which \"{other}\" has already"));
             let found = format!("signal = \"{}\" for \"{name}\"{whose}", key.get_ref());
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                key.span(),
-                found,
-                "a key of its own that is not the space bar",
-            ));
+            return Err(in_layout(key.span(), found, "a key of its own that is not the space bar"));
         }
         seen.push((name, *key.get_ref()));
     }
@@ -143,12 +135,7 @@ pub(super) fn storages(
         let DisplayArea { x, y, w, h } = *storage.display.get_ref();
         if ![x, y, w, h].iter().all(|fraction| fraction.is_finite()) {
             let found = format!("a storage of \"{}\" at no place", storage.ingredient.get_ref());
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                storage.display.span(),
-                found,
-                "x, y, w and h as fractions within 0 to 1",
-            ));
+            return Err(in_layout(storage.display.span(), found, "x, y, w and h as fractions within 0 to 1"));
         }
         Ok(IngredientStorage {
             agent: storage.agent,
@@ -167,7 +154,7 @@ pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &Ingredi
     item.map(|item| ContentId(item as u8 + 1)).ok_or_else(|| {
         let names: Vec<&str> = spec.ingredient.iter().map(|ingredient| ingredient.name.get_ref().as_str()).collect();
         let found = format!("ingredient = \"{}\"", name.get_ref());
-        wrong(KitchenFileKind::Layout, name.span(), found, format!("one of {}", names.join(", ")))
+        in_layout(name.span(), found, format!("one of {}", names.join(", ")))
     })
 }
 
@@ -226,7 +213,7 @@ pub(super) fn buttons(
     for process in &layout.process {
         if !processes.iter().any(|known| known.name == *process.name.get_ref()) {
             let found = format!("a button for the process \"{}\"", process.name.get_ref());
-            return Err(wrong(KitchenFileKind::Layout, process.name.span(), found, "a [[process]] of the recipe file"));
+            return Err(in_layout(process.name.span(), found, "a [[process]] of the recipe file"));
         }
     }
     Ok(buttons)
@@ -235,32 +222,17 @@ pub(super) fn buttons(
 fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, others: &[Button]) -> Result<Button> {
     if others.iter().any(|other| other.name == name) {
         let found = format!("a second button \"{name}\" of the {}", agent.name());
-        return Err(wrong(
-            KitchenFileKind::Layout,
-            spec.at_m.span(),
-            found,
-            "a name of its own for each button of an agent",
-        ));
+        return Err(in_layout(spec.at_m.span(), found, "a name of its own for each button of an agent"));
     }
     let at_m = *spec.at_m.get_ref();
     if !at_m.iter().all(|metres| metres.is_finite()) {
-        return Err(wrong(
-            KitchenFileKind::Layout,
-            spec.at_m.span(),
-            "a button at no place",
-            "at_m = [x, y] in metres",
-        ));
+        return Err(in_layout(spec.at_m.span(), "a button at no place", "at_m = [x, y] in metres"));
     }
     let key = match (agent, &spec.key) {
         (Agent::Robot, _) => None,
         (Agent::Human, None) => {
             let found = format!("no key for the human's button \"{name}\"");
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                spec.at_m.span(),
-                found,
-                "button = { at_m = [x, y], key = \"k\" }",
-            ));
+            return Err(in_layout(spec.at_m.span(), found, "button = { at_m = [x, y], key = \"k\" }"));
         }
         (Agent::Human, Some(key)) => {
             let has_it = |other: &&Button| other.key.is_some_and(|other| is_same_key(other, *key.get_ref()));
@@ -268,12 +240,7 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
             if key.get_ref().is_whitespace() || twin.is_some() {
                 let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
                 let found = format!("the key \"{}\" for \"{name}\"{whose}", key.get_ref());
-                return Err(wrong(
-                    KitchenFileKind::Layout,
-                    key.span(),
-                    found,
-                    "a key of its own that is not the space bar",
-                ));
+                return Err(in_layout(key.span(), found, "a key of its own that is not the space bar"));
             }
             Some(*key.get_ref())
         }
@@ -289,12 +256,7 @@ fn area(spec: &ButtonSpec) -> Result<Option<String>> {
     let is_name = (1..=MAX_AREA).contains(&name.chars().count()) && name.trim() == name;
     if !is_name || name.chars().any(char::is_control) {
         let found = format!("area = {name:?}");
-        return Err(wrong(
-            KitchenFileKind::Layout,
-            area.span(),
-            found,
-            "a name of 1 to 40 characters, such as \"storage\"",
-        ));
+        return Err(in_layout(area.span(), found, "a name of 1 to 40 characters, such as \"storage\""));
     }
     Ok(Some(name.clone()))
 }
@@ -307,7 +269,7 @@ fn gamepad(agent: Agent, name: &str, spec: &ButtonSpec, others: &[Button]) -> Re
         let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
         let found = format!("gamepad = {} for \"{name}\"{whose}", number.get_ref());
         let remedy = "the number of a gamepad button, 0 to 63, each once";
-        return Err(wrong(KitchenFileKind::Layout, number.span(), found, remedy));
+        return Err(in_layout(number.span(), found, remedy));
     }
     Ok(Some(*number.get_ref()))
 }

@@ -8,7 +8,7 @@
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
-use crate::base::rng::{Stream, mix};
+use crate::base::rng::{Stream, mix, shuffle};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, World};
 use crate::mind::dirichlet::Dirichlet;
@@ -121,9 +121,7 @@ impl PolyaUrn {
             }
             *first = from[at].0;
         }
-        for last in (1..out.len()).rev() {
-            out.swap(last, random.random_range(0..=last));
-        }
+        shuffle(out, random);
     }
 
     /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; then the content of

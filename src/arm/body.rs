@@ -41,12 +41,10 @@ pub struct SimulatedArm {
     told: Told,
     /// The state of the kitchen in which the present press was last found useful.
     found_useful: Option<State>,
-    /// Whether the arm's stick touches the button.
     on_button: bool,
 }
 
 impl SimulatedArm {
-    /// A robot arm at rest, beside a human's hand with this behaviour.
     pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SimulatedArm {
         let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
         let arm = ArmController::new(kitchen);
@@ -122,7 +120,6 @@ impl SimulatedArm {
         self.arm.set_out(button).err().map(|why| (button, why.into()))
     }
 
-    /// Runs the controller cycle that ends now, and returns the result of the cycle with the events to record.
     pub fn cycle(&mut self, now: SessionTime) -> ArmCycleReport {
         self.at = now;
         if self.idle && self.arm.is_out() {

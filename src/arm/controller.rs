@@ -2,7 +2,7 @@
 //! cycles per second.
 //!
 //! The arm moves along its planned path to a button as fast as speed and separation monitoring allows
-//! (`super::separation`). Slowing down stretches the time along the path, so that the arm stays on the path that was
+//! (below). Slowing down stretches the time along the path, so that the arm stays on the path that was
 //! checked for collisions. The controller reports the result of each press.
 
 use std::collections::VecDeque;
@@ -69,7 +69,6 @@ pub struct ArmController {
     since_s: f64,
     /// Present share of the planned speed with which the arm moves.
     rate: f64,
-    /// The last commanded joint angles of the arm.
     here: JointAngles,
     goal: Option<ButtonId>,
     may_press: bool,
@@ -378,7 +377,6 @@ impl ArmController {
         None
     }
 
-    /// The joint whose tracking error has been too large for too many cycles; `None` if there is no such joint.
     fn deviating_joint(&mut self) -> Option<usize> {
         let (angles, _) = self.world.joints();
         let off = |joint: &usize| (angles[*joint] - self.here[*joint]).abs();

@@ -81,7 +81,6 @@ pub(crate) fn turned_towards(joints: &JointAngles, other: &JointAngles) -> Joint
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 
-/// An angle from its cosine; none if the value cannot be a cosine.
 fn angle_of_cosine(cosine: f64) -> Option<f64> {
     (cosine.abs() <= 1.0 + ROUNDING).then(|| cosine.clamp(-1.0, 1.0).acos())
 }

@@ -192,7 +192,6 @@ pub struct ArmLink {
     pub(crate) parent_from_joint: Isometry3<f64>,
     /// The joint between the link and the previous one; none if the link is fixed to the previous link.
     pub turns: Option<RevoluteJoint>,
-    /// Mass and inertia of the link; none if the link has no mass.
     pub weight: Option<LinkInertia>,
     pub solids: Vec<CollisionSolid>,
 }

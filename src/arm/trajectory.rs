@@ -90,7 +90,6 @@ impl TrajectoryLeg {
         (0..JOINTS).map(|joint| ((after[joint] - before[joint]) / (2.0 * step)).abs()).fold(0.0, f64::max)
     }
 
-    /// The pose of the arm at this share of the leg.
     fn pose(&self, share: f64) -> JointAngles {
         let t = 3.0 * share;
         // Lagrange's polynomials over the nodes 0, 1, 2, 3.

@@ -21,27 +21,23 @@ pub(crate) const SKIP_S: f64 = 5.0;
 #[derive(Clone, Copy, Debug)]
 struct OngoingPress {
     button: ButtonId,
-    /// The time at which the arm touches the button.
     until: SessionTime,
     /// Whether the wizard chose this press: the arm then makes the press even if it is not useful.
     driven: bool,
 }
 
 impl OngoingPress {
-    /// Whether the arm makes the press in this state.
     fn is_useful(self, kitchen: &Kitchen, cost: &mut CostToGo, state: State, is_passive: bool) -> bool {
         self.driven || policy::is_useful(kitchen, cost, state, is_passive, self.button)
     }
 }
 
-/// What the robot reported when it became idle, and the situation in which it decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Idleness {
     reason: IdleReason,
     /// The human's presses for one of which the robot waits, as a bit set of the human's buttons.
     waits_for: u64,
     state: State,
-    /// Whether the human was passive.
     is_passive: bool,
 }
 
@@ -92,12 +88,10 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// The same robot with a simulated arm, whose physics decide how long presses take.
     pub fn with_body(self, body: SimulatedArm) -> RobotTaskExecutor {
         RobotTaskExecutor { body: Some(Box::new(body)), ..self }
     }
 
-    /// The simulated arm with its controller, for experiments with the arm.
     #[cfg(feature = "physics")]
     pub fn arm(&mut self) -> Option<&mut ArmController> {
         self.body.as_mut().map(|body| &mut body.arm)
@@ -122,7 +116,6 @@ impl RobotTaskExecutor {
         again.into_iter().chain(moves).min()
     }
 
-    /// Whether the wizard holds the arm above the button of the present press.
     fn waits(&self) -> bool {
         self.held && self.busy.is_none_or(|ongoing| !ongoing.driven)
     }
@@ -239,13 +232,11 @@ impl RobotTaskExecutor {
         self.go_without(now, button, reason)
     }
 
-    /// Abandons a failed press, which the robot then does not choose again for a while.
     fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotEvent> {
         self.leave_out(now, button);
         self.give_up(reason)
     }
 
-    /// Stops the robot until the wizard releases it; the present press is abandoned.
     fn halt(&mut self, reason: AbortReason) -> Option<RobotEvent> {
         self.stopped = true;
         self.idle = None;
@@ -313,13 +304,11 @@ impl RobotTaskExecutor {
         self.give_up(AbortReason::Skipped)
     }
 
-    /// Lets the robot next press the button that the wizard chose; the present press is abandoned.
     pub fn drive(&mut self, button: ButtonId) -> Option<RobotEvent> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)
     }
 
-    /// Releases a stopped robot at the wizard's command.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.stopped = false;
         self.body.as_mut()?.resume(now)
@@ -333,7 +322,6 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// Starts the robot's work at the start of the trial.
     pub fn start(&mut self, now: SessionTime) {
         self.passive_from = now + self.initiative;
     }
@@ -347,7 +335,6 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// Ends the robot's work at the end of the trial: the arm rests.
     pub fn rest(&mut self) {
         self.busy = None;
         self.idle = None;
@@ -355,7 +342,6 @@ impl RobotTaskExecutor {
         self.skipped.clear();
     }
 
-    /// Shifts all pending times of the robot and its arm by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(ongoing) = &mut self.busy {
             ongoing.until = ongoing.until + by;
@@ -370,7 +356,6 @@ impl RobotTaskExecutor {
     }
 }
 
-/// Why the robot arm failed to press a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PressFailure {
     /// A hand was in the way for too long, so the arm abandoned the press of this button.

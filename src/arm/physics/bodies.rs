@@ -91,7 +91,6 @@ impl PhysicalButton {
 
 /// Collision groups of the button's cap: caps collide with the stick only.
 const CAP: InteractionGroups = InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
-/// Collision group of the robot's stick.
 pub(super) const STICK: InteractionGroups =
     InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);
 

@@ -41,7 +41,6 @@ impl ParticipantBeliefs {
         (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
     }
 
-    /// Probability of the most probable value of an aspect.
     pub fn certainty(&self, aspect: AspectId) -> f64 {
         self.distribution(aspect)[self.most_likely(aspect)]
     }
@@ -107,7 +106,6 @@ impl ParticipantBeliefs {
     }
 }
 
-/// The dish that an order wants, as the participant believes.
 pub(crate) fn wanted_dish(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, order: LocationId) -> Option<DishId> {
     let aspect = AspectId::of_location(order);
     match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {
@@ -143,7 +141,6 @@ const USUAL_MENU_DISHES: f64 = 6.0;
 /// Factor on the weight of versions of a recipe that agree with an observation.
 const FITTING_FACTOR: f64 = 4.0;
 
-/// Memory of one simulated participant for the recipes of all dishes.
 #[derive(Clone, Debug)]
 pub struct RecipeMemory {
     random: Stream,

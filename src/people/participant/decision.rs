@@ -34,7 +34,6 @@ pub struct ParticipantPlan {
     /// The order on which the participant works, and the session time until which the participant stays with this
     /// order.
     pub order: Option<(LocationId, SessionTime)>,
-    /// The stack that the participant served last.
     pub(crate) last_dish: Option<ContentId>,
     /// Lapses (omissions and habits) that hold for the decisions until the next press.
     pub lapses: Lapses,
@@ -72,7 +71,6 @@ pub struct DecisionContext<'a> {
     pub(crate) urgency: Impatience,
 }
 
-/// The result of a participant's decision: an order and the next presses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DecisionResult {
     pub order: Option<LocationId>,
@@ -80,7 +78,6 @@ pub struct DecisionResult {
     pub plan: VecDeque<ButtonId>,
 }
 
-/// A press with its consequences as the participant foresees them.
 struct Foreseen {
     path: VecDeque<ButtonId>,
     /// Number of detours (presses that undo something for the sake of another) among the foreseen presses.

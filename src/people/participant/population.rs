@@ -58,7 +58,7 @@ pub struct Population {
     pub novice_slowdown: f64,
     /// Number of presses after which half of a beginner's slowdown is gone.
     pub practice_presses: f64,
-    /// Probability of a slip that hits another button, rather one nearby and of like colour (see [`super::slips`]).
+    /// Probability of a slip that hits another button, rather one nearby and of like colour (see [`super::hand::slipped_button`]).
     pub slip: TraitSpread,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,

@@ -30,7 +30,6 @@ pub enum ParticipantAction {
     },
 }
 
-/// A simulated participant in one trial.
 #[derive(Clone, Debug)]
 pub struct SimulatedParticipant {
     pub(super) kitchen: Arc<Kitchen>,
@@ -57,14 +56,12 @@ pub struct SimulatedParticipant {
     pub(super) presses: u32,
     pub(super) looks_first: u32,
     pub(super) idle_since: Option<SessionTime>,
-    /// Time of the robot's last press.
     pub(super) robot_pressed_at: SessionTime,
     /// The button that the participant intended, if the last press was a slip that went unnoticed; else `None`.
     pub(super) meant: Option<ButtonId>,
     pub(super) signals: SignalSense,
     /// What the participant believed when the participant no longer knew how to go on; `None` if the participant knows.
     pub(super) stuck_in: Option<World>,
-    /// Seed of the random numbers with which the participant answers probes.
     pub(super) answer_seed: u64,
     /// Served orders, each with the session time at which the participant expects the order to disappear.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,

@@ -158,7 +158,6 @@ const ANSWER_JITTER: f64 = 0.35;
 const SURE_FROM: [f64; 2] = [2.0 / 3.0, 0.9];
 
 impl SimulatedParticipant {
-    /// Record of the participant's present beliefs, from which the answers to a probe follow.
     pub fn believes(&self, state: State) -> RecordedBelief {
         witness::without_press(&self.kitchen, &self.beliefs, state)
     }

@@ -46,7 +46,6 @@ impl ParticipantSeenKitchen {
     }
 }
 
-/// A press of the participant, with the true state and the last seen state at that time.
 #[derive(Clone, Copy, Debug)]
 pub struct ObservedPress {
     pub truth: State,
@@ -101,7 +100,6 @@ pub(crate) fn misleads(
         .any(|button| helps(kitchen, cost, state, &recalled, button) && !helps(kitchen, cost, truth, &recipes, button))
 }
 
-/// State and recipes that a person with this one false belief believes in.
 fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen: State) -> (State, Recipes) {
     let (mut state, mut recipes) = (truth, kitchen.true_recipes());
     match thought {
@@ -112,7 +110,6 @@ fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen
     (state, recipes)
 }
 
-/// Whether a human press reduces the cost to go, given the kitchen's `state` and `recipes`.
 fn helps(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes, button: ButtonId) -> bool {
     let next = kitchen.press(state, recipes, Agent::Human, button);
     next.is_some_and(|next| cost.all_orders(next, recipes) < cost.all_orders(state, recipes))

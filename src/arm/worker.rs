@@ -55,7 +55,6 @@ pub struct RobotTaskExecutor {
     driven: Option<ButtonId>,
     /// Presses that were skipped or failed, each with the time until which the robot does not choose the press.
     skipped: Vec<(ButtonId, SessionTime)>,
-    /// What the robot last reported about being idle.
     idle: Option<Idleness>,
     /// Time without a press of the human after which the human counts as passive.
     initiative: SessionTime,

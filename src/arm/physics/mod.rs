@@ -418,7 +418,6 @@ impl PhysicsWorld {
 const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
 
 impl PhysicsWorld {
-    /// Assembles the robot arm at these joint angles.
     pub(super) fn build(&mut self, joints: &JointAngles) {
         let mut carried_from = Isometry3::identity();
         for link in self.arm.links.clone() {
@@ -462,7 +461,6 @@ impl PhysicsWorld {
         multibody.update_rigid_bodies(&mut self.bodies, true);
     }
 
-    /// Adds the collision shape of the stick, with which the arm presses buttons.
     fn add_stick(&mut self, parent: RigidBodyHandle, link: &ArmLink, parent_from_link: &Isometry3<f64>) {
         for solid in &link.solids {
             let LinkShape::Cylinder { radius_m, length_m } = solid.shape else { continue };
@@ -476,7 +474,6 @@ impl PhysicsWorld {
     }
 }
 
-/// Converts a pose to single precision.
 fn pose(isometry: &Isometry3<f64>) -> Pose {
     let turn = isometry.rotation.coords;
     let rotation = Rotation::from_xyzw(turn.x as f32, turn.y as f32, turn.z as f32, turn.w as f32);

@@ -205,7 +205,6 @@ impl Kitchen {
 /// Transition tables over contents, computed once for each kitchen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransitionTables {
-    /// Number of contents in the kitchen, which is the width of the tables' rows.
     pub(super) width: usize,
     /// `accepts[location * width + content]`: whether the location, when empty, accepts the content.
     pub(super) accepts: Vec<bool>,

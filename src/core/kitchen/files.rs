@@ -108,7 +108,6 @@ pub struct ButtonSpec {
 pub(crate) struct OrderSpec {
     pub(crate) name: Spanned<String>,
     pub(crate) display: Spanned<DisplayArea>,
-    /// The wizard's key for the signal that shows the recipe of this order.
     #[serde(default)]
     pub(crate) signal: Option<Spanned<char>>,
     pub(crate) serve: ButtonSpec,
@@ -151,7 +150,6 @@ pub(crate) struct PlaceSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ProcessButtonSpec {
-    /// The processing step, as the recipe file names it.
     pub(crate) name: Spanned<String>,
     pub(crate) button: ButtonSpec,
 }
@@ -231,7 +229,6 @@ pub struct RecipesSpec {
     #[serde(default)]
     pub(crate) group: Vec<GroupSpec>,
     pub(crate) dish: Vec<DishSpec>,
-    /// How people may misremember the recipes of dishes.
     #[serde(default)]
     pub(crate) deviation: Vec<DeviationSpec>,
     /// Words of screens for items, ingredients and dishes: by language, then by name.
@@ -242,16 +239,13 @@ pub struct RecipesSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct IngredientSpec {
-    /// The ingredient's name: "salmon".
     pub(crate) name: Spanned<String>,
     /// The states of the ingredient in order; a storage supplies the ingredient in the first state. Empty for an
     /// ingredient with a single state.
     #[serde(default)]
     pub(crate) states: Vec<Spanned<String>>,
-    /// Ingredients for which this ingredient can be mistaken at a glance.
     #[serde(default)]
     pub(crate) looks_like: Vec<Spanned<String>>,
-    /// Appearance of the ingredient on the display: a shape and colours for each state.
     #[serde(default)]
     pub(crate) look: Vec<Spanned<String>>,
 }
@@ -269,9 +263,7 @@ pub(crate) struct ProcessingStepSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ItemConversionSpec {
-    /// The item before the conversion, as "ingredient state".
     pub(crate) from: Spanned<String>,
-    /// The item after the conversion, as "ingredient state".
     pub(crate) to: Spanned<String>,
 }
 
@@ -311,7 +303,6 @@ pub(crate) struct DishSpec {
 pub(crate) struct DeviationSpec {
     /// The deviation applies to dishes with at least one of these items.
     pub(crate) dishes_with: Vec<Spanned<String>>,
-    /// How deviations in several slots may be combined.
     pub(crate) combine: DeviationCombinationRule,
     pub(crate) slots: Vec<DeviationSlotSpec>,
 }
@@ -321,7 +312,6 @@ pub(crate) struct DeviationSpec {
 #[serde(deny_unknown_fields)]
 pub(crate) struct DeviationSlotSpec {
     pub(crate) slot: Spanned<String>,
-    /// The items that may be remembered in this slot.
     pub(crate) items: Vec<Spanned<String>>,
 }
 

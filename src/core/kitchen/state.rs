@@ -6,7 +6,6 @@ use super::parts::{Agent, AspectId, ButtonId, ContentId, DishId, LocationId};
 
 /// Largest number of locations in a kitchen.
 pub const MAX_LOCATIONS: usize = 16;
-/// Largest number of dishes on a menu.
 pub(crate) const MAX_DISHES: usize = 16;
 
 /// Content of every location, one byte each: a [`ContentId`], or an [`OrderContent`] at an order location.

@@ -164,7 +164,6 @@ impl ErrorAttributor {
 }
 
 impl Inquiry<'_> {
-    /// The log probability of the press under a belief, which the weighted worlds represent.
     fn log_p(&self, cost: &mut CostToGo, worlds: &WeightedWorlds) -> f64 {
         self.model.probabilities(cost, worlds).press[self.button.index()].ln()
     }

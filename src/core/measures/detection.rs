@@ -304,7 +304,6 @@ pub struct ResampledDetection {
     pub ece: Option<f64>,
 }
 
-/// Equal scores or predictions of one trial.
 #[derive(Clone, Copy, Debug)]
 struct EqualScores {
     score: f64,

@@ -25,7 +25,6 @@ pub(crate) const PER_PRESSES: f64 = 20.0;
 const ERRORS: u32 = 2;
 /// A false belief episode must be flagged before the error with this number to count as detected.
 const BEFORE_ERROR: u32 = 3;
-/// Number of candidate thresholds for each group of aspects.
 const CANDIDATES: usize = 200;
 
 /// Predicted probability of a false belief from which on an aspect is flagged, for locations and for recipes.
@@ -97,7 +96,6 @@ struct Outcome {
     right: usize,
 }
 
-/// Numbers of detections and false flags over trials.
 #[derive(Clone, Copy, Debug, Default)]
 struct FlagCounts {
     presses: usize,

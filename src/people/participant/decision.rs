@@ -233,7 +233,6 @@ impl DecisionContext<'_> {
     }
 }
 
-/// The human's presses that change the state of a world, each with the state after the press.
 pub(crate) fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);

@@ -225,7 +225,6 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The dish, among these, of whose recipe the participant is least certain.
     pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
         let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))

@@ -224,7 +224,6 @@ impl<'a> BackwardChaining<'a> {
         self.prospect.skips_check || self.takes(station, item, goal)
     }
 
-    /// Whether a station accepts a part for this order now.
     fn takes(&self, station: LocationId, item: ContentId, goal: &OrderGoal) -> bool {
         let there = self.state.content(station);
         match there.is_empty() {

@@ -51,7 +51,6 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether the participant is reading a signal, and therefore sees nothing else.
     pub(super) fn is_reading_signal(&self, now: SessionTime) -> bool {
         now < self.signals.busy_until
     }
@@ -151,14 +150,12 @@ fn roomiest(kitchen: &Kitchen) -> [f64; 2] {
     points.max_by(|a, b| room_m(a).total_cmp(&room_m(b))).unwrap_or([0.5, 0.5])
 }
 
-/// A simulated participant's state regarding signals from wizard or assistant.
 #[derive(Clone, Debug)]
 pub(super) struct SignalSense {
     /// A noticed signal: the time at which the participant will read the signal, the signal's location, and the signal.
     pub pending: Option<(SessionTime, Option<LocationId>, Signal)>,
     /// Proposed presses that the participant intends to make next.
     pub follows: VecDeque<ButtonId>,
-    /// Session time until which the participant is reading a signal.
     pub(crate) busy_until: SessionTime,
     /// How useful the signals so far have been to the participant, from 0 to 1.
     pub worth: f64,

@@ -32,7 +32,6 @@ pub struct ScriptedWizard {
     highlights: HighlightSet,
     random: Stream,
     seen: ParticipantSeenKitchen,
-    /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
     /// The planned signal: the time to send it, and the suspected false belief that the signal is about.
     about_to: Option<(SessionTime, SuspectedFalseBelief)>,

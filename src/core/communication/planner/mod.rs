@@ -56,7 +56,6 @@ pub struct Planner {
 struct Candidate {
     signal: Signal,
     aspects: Vec<AspectId>,
-    /// Probability that the signal is read and understood.
     probability: f64,
     /// A benefit below this, in presses, is as good as none, so it need not be known more accurately.
     matters_above: f64,

@@ -260,7 +260,6 @@ impl Rollout<'_> {
         state.now_s = until_s;
     }
 
-    /// The possible choices of the robot's task policy in the true state.
     fn choices(&mut self, state: State) -> RobotChoices {
         self.policy.choices(self.context.kitchen, self.cost, Fidelity::Searched, state, &self.context.recipes)
     }

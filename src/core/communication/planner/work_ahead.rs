@@ -63,7 +63,6 @@ impl Planner {
         }
     }
 
-    /// The human's likeliest next presses, the likeliest first.
     fn likely_presses(
         &mut self,
         cost: &mut CostToGo,
@@ -117,7 +116,6 @@ impl Planner {
         })
     }
 
-    /// The situation after a press of the human, who knows what the press changed.
     fn after_the_human(&self, moment: &DecisionPoint, button: ButtonId) -> Option<NextSituation> {
         let before = moment.situation.state;
         let state = self.kitchen.press(before, &self.kitchen.true_recipes(), Agent::Human, button)?;
@@ -138,7 +136,6 @@ impl Planner {
     }
 }
 
-/// The situation of a decision point, but in another state of the kitchen.
 fn unchanged(state: State, moment: &DecisionPoint) -> NextSituation {
     let Situation { belief, robot, .. } = moment.situation;
     NextSituation { state, belief: belief.clone(), changed: Vec::new(), robot, presses: moment.presses }

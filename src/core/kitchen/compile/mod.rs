@@ -272,17 +272,14 @@ pub struct KitchenFileError {
 
 pub(super) type Result<T> = std::result::Result<T, KitchenFileError>;
 
-/// An error at a position in the layout file.
 pub(super) fn in_layout(span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> KitchenFileError {
     KitchenFileError { span: Some(span), ..wrong_file(KitchenFileKind::Layout, found, remedy) }
 }
 
-/// An error at a position in the recipe file.
 pub(super) fn in_recipes(span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> KitchenFileError {
     KitchenFileError { span: Some(span), ..wrong_file(KitchenFileKind::Recipes, found, remedy) }
 }
 
-/// An error that concerns a layout or recipe file as a whole.
 pub(super) fn wrong_file(
     file: KitchenFileKind,
     found: impl Into<String>,

@@ -147,7 +147,6 @@ pub(super) fn storages(
     layout.storage.iter().map(one).collect()
 }
 
-/// The item that a storage of this ingredient supplies.
 pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &IngredientItems) -> Result<ContentId> {
     let ingredient = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
     let item = ingredient.and_then(|ingredient| items.ingredient.iter().position(|&of| of == ingredient));

@@ -120,7 +120,6 @@ impl PressPlan<'_> {
         RequiredFreePlaces { target, assembling, needs, later, hands_full }
     }
 
-    /// Whether the content of a location blocks the parts of the target dish.
     pub(super) fn blocks(&self, wants: &RequiredFreePlaces, location: usize) -> bool {
         let ground = self.ground;
         match location {

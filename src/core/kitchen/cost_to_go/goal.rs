@@ -65,7 +65,6 @@ pub struct ServingGoal {
     pub becomes: Vec<Vec<u8>>,
     /// `[below * classes + above]`: the class of the stack if it is a useful class, else 0.
     pub stacks: Vec<u8>,
-    /// Index of the first physical location, and of one past the last.
     first: usize,
     last: usize,
     /// `[(location - first) * contents + content]`: the content's class times the location's stride; the sum over all

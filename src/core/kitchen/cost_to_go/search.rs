@@ -48,7 +48,6 @@ struct Open {
     gap: Reverse<u32>,
     /// Number of the state in the search's order of discovery.
     met: usize,
-    /// Number of presses from the search's start state to this state.
     presses: u32,
     state: CompactState,
 }

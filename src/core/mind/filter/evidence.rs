@@ -66,7 +66,6 @@ pub struct BeliefSampler {
     pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
-    /// The groups of equal draws in the present belief sample.
     alike: DistinctDraws,
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
@@ -81,7 +80,6 @@ pub struct BeliefSampler {
 pub(super) struct Sample {
     /// Bit set of the aspects of which the belief sample has several values (mixed aspects).
     mixed: u32,
-    /// Start of the mixed aspects' rows in [`BeliefSampler::rows`].
     rows: usize,
     /// Range of the sample's distinct worlds in [`BeliefSampler::runs`].
     pub(super) runs: [usize; 2],
@@ -171,7 +169,6 @@ impl BeliefSampler {
         self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks.is_some())));
     }
 
-    /// Draws belief samples until there are `wanted` of them.
     pub(super) fn draw(&mut self, model: &EvidenceModel, cost: &mut CostToGo, wanted: usize, random: &mut Stream) {
         let (kitchen, states) = (model.kitchen, model.inference.states);
         let (aspects, old) = (self.urns.len(), self.samples.len());

@@ -71,7 +71,6 @@ pub struct BeliefFilter {
     frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
-    /// Signals of the trial, as far as they take time to be read.
     signals: SignalReadingHistory,
     evidence: Option<PressEvidence>,
 }
@@ -246,7 +245,6 @@ impl BeliefFilter {
         }
     }
 
-    /// Updates the estimate with a gaze sample, and with the time of unknown gaze before it.
     fn take_sample(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo) {
         let known = self.model.perception.known_share(sample.confidence);
         let time = self.presence.sample(sample, known, taken);

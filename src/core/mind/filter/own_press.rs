@@ -405,14 +405,12 @@ pub struct ServingUpdate {
 /// The values of the order's and of the plate's aspect that belong to one dish.
 #[derive(Clone, Debug)]
 struct Served {
-    /// Value of the order's aspect when the order wants this dish.
     ordered: usize,
     recipe: AspectId,
     /// Value of the plate's aspect for each variant of this dish's recipe; `None` if the plate cannot hold the variant.
     on_plate: Vec<Option<usize>>,
 }
 
-/// Sum of the squares of a distribution's probabilities.
 fn square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }

@@ -46,7 +46,6 @@ impl Look {
 /// The update of the estimate by gaze samples, with looks and the display's history.
 #[derive(Clone, Debug)]
 pub struct GazeBeliefUpdate {
-    /// The update by single samples, where these are observations.
     samples: Option<Arc<SampleObservations>>,
     /// Confusion matrix of each location: for each true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
@@ -199,7 +198,6 @@ const LEAST_WEIGHT: f64 = 1e-9;
 #[derive(Clone, Debug)]
 struct WeightAtPoints(Vec<[f64; 2]>);
 
-/// The observations that a gaze sample can give of one location.
 #[derive(Clone, Debug)]
 struct LocationObservations {
     /// `[s][o]`: probability c(o | s) of observing value o where value s is displayed.

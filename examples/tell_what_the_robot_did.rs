@@ -5,9 +5,11 @@ use std::fs::read_to_string;
 use std::sync::Arc;
 
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::Situation;
 use tomcom_core::communication::concept::{Concept, DecisionPoint};
+use tomcom_core::communication::planner::Planner;
 use tomcom_core::communication::settings::AssistantSpec;
-use tomcom_core::communication::{HighlightSet, available, planner::Planner, situation::Situation};
+use tomcom_core::communication::{HighlightSet, available};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};

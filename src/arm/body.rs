@@ -1,16 +1,15 @@
 //! The simulated robot arm and the human's hand beside the arm, stepped in session time, and the events that they
 //! report.
 
-use super::controller::{ArmController, ControlCycleResult};
-use super::physics::CYCLE_S;
-use super::reaching::{ReachingBehaviour, ReachingHand};
-use super::report::{ArmCycleReport, PressFailure};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{ButtonId, Kitchen, State};
-use tomcom_core::robot::moment::{ArmPhase, ArmSample};
-use tomcom_core::robot::safety::SafetyMode;
-use tomcom_core::robot::{AbortReason, RobotEvent};
+use tomcom_core::robot::{AbortReason, ArmPhase, ArmSample, RobotEvent, SafetyMode};
+
+use crate::controller::{ArmController, ControlCycleResult};
+use crate::physics::CYCLE_S;
+use crate::reaching::{ReachingBehaviour, ReachingHand};
+use crate::worker::{ArmCycleReport, PressFailure};
 
 /// Interval between recorded samples of a moving robot arm: about twelve per second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
@@ -20,7 +19,6 @@ fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts + 0.0
 }
 
-/// The last arm sample that the simulated arm reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
     at: SessionTime,
@@ -34,24 +32,19 @@ struct Told {
 /// The simulated arm with the human's hand and the session time that the simulation has reached.
 #[derive(Clone, Debug)]
 pub struct SimulatedArm {
-    /// The robot arm with its controller in the physics simulation.
     pub arm: ArmController,
     hand: ReachingHand,
-    /// Session time of the last cycle of the arm's controller.
     at: SessionTime,
     /// The button to which the arm moves as soon as it stands still.
     next: Option<ButtonId>,
-    /// Whether the robot has no press to make.
     idle: bool,
     told: Told,
     /// The state of the kitchen in which the present press was last found useful.
     found_useful: Option<State>,
-    /// Whether the arm's stick touches the button.
     on_button: bool,
 }
 
 impl SimulatedArm {
-    /// A robot arm at rest, beside a human's hand with this behaviour.
     pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SimulatedArm {
         let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
         let arm = ArmController::new(kitchen);
@@ -94,7 +87,6 @@ impl SimulatedArm {
         Ok(self.arm.set_out(button)?)
     }
 
-    /// Abandons the arm's present press and the pending press.
     pub fn give_up(&mut self) {
         self.next = None;
         self.arm.give_up();
@@ -113,7 +105,7 @@ impl SimulatedArm {
     }
 
     /// Confirms that the press is useful in this state of the kitchen: an arm above the button presses the button.
-    pub fn go_for_it(&mut self, may_press: bool, state: State) {
+    pub(crate) fn go_for_it(&mut self, may_press: bool, state: State) {
         self.found_useful = Some(state);
         if self.arm.phase() == ArmPhase::Hovers && may_press {
             self.arm.press();
@@ -128,7 +120,6 @@ impl SimulatedArm {
         self.arm.set_out(button).err().map(|why| (button, why.into()))
     }
 
-    /// Runs the controller cycle that ends now, and returns the result of the cycle with the events to record.
     pub fn cycle(&mut self, now: SessionTime) -> ArmCycleReport {
         self.at = now;
         if self.idle && self.arm.is_out() {
@@ -171,11 +162,10 @@ impl SimulatedArm {
     }
 
     /// Tells the arm that the robot has no press to make: the arm stays idle until the next press.
-    pub fn has_nothing_to_do(&mut self) {
+    pub(crate) fn has_nothing_to_do(&mut self) {
         self.idle = true;
     }
 
-    /// Stops the arm at the wizard's command.
     pub fn stop(&mut self) -> Option<RobotEvent> {
         self.arm.stop(SafetyMode::EmergencyStop);
         self.safety(None, None)
@@ -192,21 +182,18 @@ impl SimulatedArm {
         self.hand.pressed(now, button_m);
     }
 
-    /// The change of the arm's safety mode since the last report, if there is one.
     fn safety(&mut self, force_n: Option<f64>, joint: Option<u8>) -> Option<RobotEvent> {
         let mode = self.arm.mode;
         let changed = std::mem::replace(&mut self.told.mode, mode) != mode;
         changed.then_some(RobotEvent::Safety { mode, force_n, joint })
     }
 
-    /// Releases the arm at the wizard's command after a stop.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.at = self.at.max(now);
         self.arm.resume();
         self.safety(None, None)
     }
 
-    /// Shifts all pending times of arm and hand by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.at = self.at + by;
         self.told.at = self.told.at + by;

@@ -2,23 +2,20 @@
 //! cycles per second.
 //!
 //! The arm moves along its planned path to a button as fast as speed and separation monitoring allows
-//! (`super::separation`). Slowing down stretches the time along the path, so that the arm stays on the path that was
+//! (below). Slowing down stretches the time along the path, so that the arm stays on the path that was
 //! checked for collisions. The controller reports the result of each press.
 
 use std::collections::VecDeque;
 
-use super::clearance::ArmSurroundings;
-use super::kinematics::SerialArm;
-use super::physics::hand_body::HandPose;
-use super::physics::{CYCLE_S, ContactForces, PhysicsWorld};
-use super::reach::{BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
-use super::report::PressFailure;
-use super::separation::{MARGIN_M, mode_near, speed_limit};
-use super::touch::ContactTracker;
-use super::trajectory::{LegKind, TrajectoryLeg, way_over, way_to, way_up};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom_core::robot::moment::{ArmPhase, JOINTS, JointAngles};
-use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
+use tomcom_core::robot::{ArmPhase, JOINTS, JointAngles, SLOWS_M, SafetyMode};
+
+use crate::kinematics::SerialArm;
+use crate::physics::bodies::HandPose;
+use crate::physics::{CYCLE_S, ContactForces, PhysicsWorld};
+use crate::reach::{ArmSurroundings, BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
+use crate::trajectory::{LegKind, TrajectoryLeg, way_over, way_to, way_up};
+use crate::worker::PressFailure;
 
 /// Changes of the arm's share of its planned speed along the path, per second: while the arm slows down, stops, and
 /// speeds up.
@@ -41,19 +38,17 @@ const MAY_TOUCH_M: f64 = 0.01;
 /// Longest time to wait for the click of a button that the arm pushes down, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
 /// The arm counts as standing still if all joints are slower than this, in radians per second.
-pub const STILL_RAD_S: f64 = 0.02;
+pub(crate) const STILL_RAD_S: f64 = 0.02;
 
 /// Hands further away from the arm than this, in metres, do not influence the arm.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
-/// The result of one cycle of the robot arm's controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlCycleResult {
     /// The button that clicked in this cycle. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
     /// Why the arm abandoned the press; `None` if the arm did not abandon a press in this cycle.
     pub report: Option<PressFailure>,
-    /// The contact forces that were measured in this cycle.
     pub felt: ContactForces,
     /// Peak force in newtons of a contact with the human, reported shortly after the contact began. Each contact is
     /// reported once; by then, a contact above [`SafetyMode::threshold_n`] has stopped the arm
@@ -61,7 +56,6 @@ pub struct ControlCycleResult {
     pub touched_n: Option<f64>,
 }
 
-/// The simulated robot arm with its controller.
 #[derive(Clone, Debug)]
 pub struct ArmController {
     arm: SerialArm,
@@ -75,13 +69,11 @@ pub struct ArmController {
     since_s: f64,
     /// Present share of the planned speed with which the arm moves.
     rate: f64,
-    /// The last commanded joint angles of the arm.
     here: JointAngles,
     goal: Option<ButtonId>,
     may_press: bool,
     /// Whether the arm has abandoned its press and slows down before it goes up.
     halts: bool,
-    /// The safety mode of the arm.
     pub mode: SafetyMode,
     /// Whether speed and separation monitoring is on; without it the arm only reacts to forces.
     pub watches_hands: bool,
@@ -148,7 +140,7 @@ impl ArmController {
     ///
     /// # Errors
     /// The reason why the arm cannot reach the button.
-    pub fn takes_s(&self, button: ButtonId) -> Result<f64, UnreachableReason> {
+    pub(crate) fn takes_s(&self, button: ButtonId) -> Result<f64, UnreachableReason> {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }
 
@@ -157,12 +149,10 @@ impl ArmController {
         way_to(&self.arm, &self.here, &at, &self.around)
     }
 
-    /// The obstacles around which the controller plans the arm's paths.
     pub fn around(&mut self) -> &mut ArmSurroundings {
         &mut self.around
     }
 
-    /// The simulated bodies in the physics: arm, buttons and hand.
     pub fn world(&mut self) -> &mut PhysicsWorld {
         &mut self.world
     }
@@ -183,13 +173,13 @@ impl ArmController {
     }
 
     /// Whether the arm is away from its waiting pose without a press to make.
-    pub fn is_out(&self) -> bool {
+    pub(crate) fn is_out(&self) -> bool {
         let is_away = (0..JOINTS).any(|joint| (self.here[joint] - self.home[joint]).abs() > 1e-3);
         self.way.is_empty() && !self.mode.is_stopped() && is_away
     }
 
     /// Moves the arm back to its waiting pose; the arm stays in place if there is no collision-free path.
-    pub fn go_home(&mut self) {
+    pub(crate) fn go_home(&mut self) {
         match way_over(&self.arm, &self.here, &self.home, &self.around) {
             Ok(way) => (self.way, self.since_s, self.rate) = (way.into(), 0.0, 0.0),
             Err(_) => self.home = self.here,
@@ -197,7 +187,7 @@ impl ArmController {
     }
 
     /// Whether the arm moves without a button that it is to press.
-    pub fn withdraws(&self) -> bool {
+    pub(crate) fn withdraws(&self) -> bool {
         self.goal.is_none() && self.rate > 0.0
     }
 
@@ -227,7 +217,6 @@ impl ArmController {
         }
     }
 
-    /// The phase of the arm's present motion.
     pub fn phase(&self) -> ArmPhase {
         match (self.way.front(), self.goal) {
             (None, _) => ArmPhase::Rests,
@@ -246,17 +235,14 @@ impl ArmController {
         goes_on || self.rate > 0.0 || self.moves() || self.touch.is_to_be_told()
     }
 
-    /// Whether any joint of the arm moves.
     pub fn moves(&self) -> bool {
         self.world.joints().1.iter().any(|speed| speed.abs() > STILL_RAD_S)
     }
 
-    /// The joint angles of the arm, in radians.
     pub fn joints(&self) -> JointAngles {
         self.world.joints().0
     }
 
-    /// The distance between a hand and the arm, in metres.
     pub fn distance(&self, hand: &HandPose) -> f64 {
         self.world.distance(hand)
     }
@@ -325,7 +311,6 @@ impl ArmController {
         if limit_m_s == 0.0 { 0.0 } else { share }
     }
 
-    /// Moves the arm along its path for one cycle.
     fn go_on(&mut self) {
         if self.halts && self.rate == 0.0 && !self.mode.is_stopped() {
             self.go_up();
@@ -392,12 +377,91 @@ impl ArmController {
         None
     }
 
-    /// The joint whose tracking error has been too large for too many cycles; `None` if there is no such joint.
     fn deviating_joint(&mut self) -> Option<usize> {
         let (angles, _) = self.world.joints();
         let off = |joint: &usize| (angles[*joint] - self.here[*joint]).abs();
         let worst = (0..JOINTS).max_by(|one, two| off(one).total_cmp(&off(two)))?;
         self.deviating_cycles = if off(&worst) > DEVIATION_RAD { self.deviating_cycles + 1 } else { 0 };
         (self.deviating_cycles >= DEVIATION_CYCLES).then_some(worst)
+    }
+}
+
+// Speed and separation monitoring (ISO/TS 15066, 5.5.4): the robot arm slows down near a hand and waits for a hand in
+// its way.
+
+/// Protective separation distance in metres: the arm does not approach a hand that is nearer than this.
+const WAITS_M: f64 = 0.03;
+/// Highest speed of the arm's tip in m/s at the distance at which the arm begins to slow down; nearer to the hand, the
+/// limit falls in proportion to the distance.
+const SLOWED_M_S: f64 = 0.8;
+/// Speeds of the arm's tip below this limit, in m/s, count as waiting.
+const CREEPS_M_S: f64 = 0.02;
+/// Speed limit of the arm's tip for motion away from a hand, in m/s.
+const LEAVES_M_S: f64 = 0.1;
+/// Hysteresis of the distances between hand and arm in metres, so that the safety mode does not flicker.
+pub(crate) const MARGIN_M: f64 = 0.03;
+
+/// The speed limit of the arm's tip in m/s for a hand at this distance, depending on whether the arm approaches the
+/// hand.
+pub(crate) fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
+    let by_distance = match distance_m {
+        far if far >= SLOWS_M => f64::INFINITY,
+        near => SLOWED_M_S * (near - WAITS_M).max(0.0) / (SLOWS_M - WAITS_M),
+    };
+    match comes_nearer {
+        true if by_distance < CREEPS_M_S => 0.0,
+        true => by_distance,
+        false => by_distance.max(LEAVES_M_S),
+    }
+}
+
+/// The safety mode for a hand at this distance while the arm is not stopped. `waits` says whether the arm must not move
+/// at all.
+pub(crate) fn mode_near(before: SafetyMode, distance_m: f64, waits: bool) -> SafetyMode {
+    let is_out = distance_m >= SLOWS_M + if before == SafetyMode::Normal { 0.0 } else { MARGIN_M };
+    match (waits, is_out) {
+        (true, _) => SafetyMode::Safeguard,
+        (false, true) => SafetyMode::Normal,
+        (false, false) => SafetyMode::Reduced,
+    }
+}
+
+/// Number of controller cycles after which a contact is reported, and number of cycles without force after which the
+/// contact has ended.
+const CYCLES: u32 = 12;
+
+/// The present contact between robot arm and human; `None` without a contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ContactTracker(Option<Contact>);
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Contact {
+    most_n: f64,
+    cycles: u32,
+    /// Number of controller cycles without force since the contact was last felt.
+    quiet: u32,
+}
+
+impl ContactTracker {
+    /// Adds the contact force of a controller cycle, in newtons. Returns the peak force of a contact that has to be
+    /// reported now.
+    pub fn feel(&mut self, force_n: f64) -> Option<f64> {
+        if force_n > 0.0 {
+            self.0.get_or_insert_default();
+        }
+        let contact = self.0.as_mut()?;
+        contact.most_n = contact.most_n.max(force_n);
+        contact.cycles += 1;
+        contact.quiet = if force_n > 0.0 { 0 } else { contact.quiet + 1 };
+        let told = (contact.cycles == CYCLES).then_some(contact.most_n);
+        if contact.cycles > CYCLES && contact.quiet >= CYCLES {
+            self.0 = None;
+        }
+        told
+    }
+
+    /// Whether there is a contact that has not been reported yet.
+    pub(crate) fn is_to_be_told(&self) -> bool {
+        self.0.is_some_and(|contact| contact.cycles < CYCLES)
     }
 }

@@ -5,9 +5,9 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
+use tomcom_core::robot::{JOINTS, JointAngles};
 
-use super::kinematics::SerialArm;
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use crate::kinematics::SerialArm;
 
 /// The manufacturer's Denavit-Hartenberg parameters of the UR5, in metres.
 const D1: f64 = 0.089159;
@@ -77,11 +77,10 @@ pub fn wrapped(angle: f64) -> f64 {
 
 /// The same pose of the arm, with every joint turned by whole turns so that the joint is nearest to the same joint in
 /// the other pose.
-pub fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
+pub(crate) fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 
-/// An angle from its cosine; none if the value cannot be a cosine.
 fn angle_of_cosine(cosine: f64) -> Option<f64> {
     (cosine.abs() <= 1.0 + ROUNDING).then(|| cosine.clamp(-1.0, 1.0).acos())
 }

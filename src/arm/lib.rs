@@ -11,11 +11,12 @@
 //!
 //! Control cycles are internal events of the session and happen only while the arm moves, is about to move, or the hand
 //! moves. Above the button, the program decides again whether the press is still useful. A press is a click of the
-//! button. The hand follows the presses and never changes them. The stop thresholds are in `tomcom_core::robot::safety`; a
+//! button. The hand follows the presses and never changes them. The stop thresholds are in `tomcom_core::robot`; a
 //! contact is recorded once, a tenth of a second after the contact began.
 
-#![warn(missing_docs)]
 #![deny(unsafe_code)]
+
+pub mod worker;
 
 #[cfg(feature = "physics")]
 pub mod body;
@@ -23,30 +24,16 @@ pub mod body;
 #[path = "without_physics.rs"]
 pub mod body;
 #[cfg(feature = "physics")]
-pub mod clearance;
-#[cfg(feature = "physics")]
 pub mod controller;
 #[cfg(feature = "physics")]
 pub mod inverse;
 #[cfg(feature = "physics")]
 pub mod kinematics;
 #[cfg(feature = "physics")]
-pub mod link;
-#[cfg(feature = "physics")]
-pub mod motion;
-#[cfg(feature = "physics")]
 pub mod physics;
 #[cfg(feature = "physics")]
 pub mod reach;
 #[cfg(feature = "physics")]
 pub mod reaching;
-pub mod report;
-#[cfg(feature = "physics")]
-pub mod separation;
-#[cfg(feature = "physics")]
-mod touch;
 #[cfg(feature = "physics")]
 pub mod trajectory;
-#[cfg(feature = "physics")]
-pub mod urdf;
-pub mod worker;

@@ -1,24 +1,24 @@
-//! Poses of the robot arm above a button and touching it, with the stick down and with clearance from the table and the
-//! arm's own links.
+//! Poses of the robot arm above a button and touching it, with the stick down and with clearance from the table, from the
+//! arm's own links and from obstacles.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-
-use super::clearance::{ArmSurroundings, Obstruction};
-use super::inverse::turned_towards;
-use super::kinematics::SerialArm;
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use rapier3d::math::Vector;
+use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
-use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::{AbortReason, JOINTS, JointAngles};
+
+use crate::inverse::turned_towards;
+use crate::kinematics::{CollisionSolid, LinkShape, SerialArm};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
 /// Height of the arm's tip above the buttons while the arm moves across, in metres.
-pub const ABOVE_M: f64 = 0.08;
+pub(crate) const ABOVE_M: f64 = 0.08;
 /// Preferred posture of the arm: elbow up, stick down. Of all solutions of the inverse kinematics, the one nearest to
 /// this posture is chosen.
-pub const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+pub(crate) const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
 /// Index of the elbow joint, and limit of the elbow's angle in radians.
 const ELBOW: usize = 2;
 const ELBOW_RAD: f64 = PI;
@@ -28,13 +28,10 @@ const SINGULAR: f64 = 0.03;
 /// Why the robot arm cannot press a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnreachableReason {
-    /// No joint angles bring the arm's tip to the button.
     TooFar,
-    /// A joint limit of the arm is exceeded at the button.
     JointLimit,
     /// The pose at the button is singular: the arm could not move in every direction.
     Singular,
-    /// This obstruction blocks every pose of the arm at the button.
     Blocked(Obstruction),
 }
 
@@ -72,7 +69,7 @@ pub struct ButtonPoses {
 }
 
 /// The pose of the arm's tip at this position in the frame of the base (metres), with the stick down.
-pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
+pub(crate) fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at_m), UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI))
 }
 
@@ -89,7 +86,7 @@ impl SerialArm {
     ///
     /// # Errors
     /// The reason why the arm cannot reach the position in the solution nearest to `like`.
-    pub fn standing_at(
+    pub(crate) fn standing_at(
         &self,
         at_m: [f64; 3],
         like: &JointAngles,
@@ -143,4 +140,155 @@ pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, UnreachableReason)> 
     let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
     let mut buttons = kitchen.buttons[Agent::Robot.index()].iter().enumerate();
     buttons.find_map(|(index, button)| Some((ButtonId(index as u8), arm.at_button(button.at_m, &around).err()?)))
+}
+
+// Distance of the robot arm from the table, from its own links and from obstacles. Solids are approximated by capsules.
+
+/// Least clearance between the arm's links, and between links and table, in metres.
+pub(crate) const KEPT_M: f64 = 0.02;
+
+/// A capsule: all points within a radius of a line segment. Links, hands and obstacles are approximated by capsules.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    pub ends_m: [Point3<f64>; 2],
+    pub radius_m: f64,
+}
+
+/// The distance between two capsules, and their nearest points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CapsuleDistance {
+    /// Distance between the surfaces of two capsules in metres; negative if they overlap.
+    pub distance_m: f64,
+    /// The nearest point on the axis of each capsule, in metres.
+    pub at_m: [Point3<f64>; 2],
+}
+
+impl Capsule {
+    /// The capsule that approximates a solid; for a box, the capsule lies along its longest side.
+    fn from_solid(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
+        let (half_m, radius_m, axis) = match solid.shape {
+            LinkShape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
+            LinkShape::Sphere { radius_m } => (0.0, radius_m, 2),
+            LinkShape::Box { half_m } => {
+                let axis = (0..3).fold(0, |best, axis| if half_m[axis] > half_m[best] { axis } else { best });
+                let radius_m = half_m[(axis + 1) % 3].max(half_m[(axis + 2) % 3]);
+                ((half_m[axis] - radius_m).max(0.0), radius_m, axis)
+            }
+        };
+        let place = base_from_link * solid.link_from_solid;
+        let end = |side: f64| {
+            let mut end = Point3::origin();
+            end[axis] = side * half_m;
+            place * end
+        };
+        Capsule { ends_m: [end(-1.0), end(1.0)], radius_m }
+    }
+
+    pub fn nearest(&self, other: &Capsule) -> CapsuleDistance {
+        let single = |point: Point3<f64>| Vector::new(point.x as f32, point.y as f32, point.z as f32);
+        let [a, b] = self.ends_m.map(single);
+        let [c, d] = other.ends_m.map(single);
+        let (one, two) = closest_points_segment_segment_with_locations_nD((&a, &b), (&c, &d));
+        let along = |of: &Capsule, share: f32| of.ends_m[0] + (of.ends_m[1] - of.ends_m[0]) * f64::from(share);
+        let at_m = [along(self, one.barycentric_coordinates()[1]), along(other, two.barycentric_coordinates()[1])];
+        CapsuleDistance { distance_m: (at_m[0] - at_m[1]).norm() - self.radius_m - other.radius_m, at_m }
+    }
+
+    fn lowest_m(&self) -> f64 {
+        self.ends_m[0].z.min(self.ends_m[1].z) - self.radius_m
+    }
+}
+
+/// What blocks a pose or a path of the robot arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Obstruction {
+    Table,
+    ItsOwnLinks,
+    Obstacle,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ArmSurroundings {
+    /// Height of the table in the frame of the arm's base, in metres.
+    pub table_m: f64,
+    /// Other obstacles around the arm, in the frame of its base.
+    pub obstacles: Vec<Capsule>,
+}
+
+impl SerialArm {
+    /// The capsules of all links at these joint angles, each with its link number, in the base frame.
+    pub fn capsules(&self, joints: &JointAngles) -> Vec<(usize, Capsule)> {
+        let places = self.forward(joints);
+        let links = self.links.iter().zip(&places).enumerate();
+        links
+            .flat_map(|(at, (link, place))| {
+                link.solids.iter().map(move |solid| (at, Capsule::from_solid(solid, place)))
+            })
+            .collect()
+    }
+
+    /// The first obstruction that is nearer to the arm than [`KEPT_M`]. Only the stick may touch the table.
+    pub fn in_the_way(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Obstruction> {
+        let capsules = self.capsules(joints);
+        let stick = self.links.len() - 1;
+        let is_low = |(link, capsule): &(usize, Capsule)| {
+            // The base stands on the table, and the shoulder on the base.
+            let kept_m = if *link == stick { 0.0 } else { KEPT_M };
+            *link > 1 && capsule.lowest_m() < around.table_m + kept_m
+        };
+        if capsules.iter().any(is_low) {
+            return Some(Obstruction::Table);
+        }
+        let is_near = |one: &Capsule, two: &Capsule| one.nearest(two).distance_m < KEPT_M;
+        let meets_itself = |(link, one): &(usize, Capsule)| {
+            capsules.iter().any(|(other, two)| can_meet(*link, *other) && is_near(one, two))
+        };
+        if capsules.iter().any(meets_itself) {
+            return Some(Obstruction::ItsOwnLinks);
+        }
+        let meets = |(_, one): &(usize, Capsule)| around.obstacles.iter().any(|two| is_near(one, two));
+        capsules.iter().any(meets).then_some(Obstruction::Obstacle)
+    }
+}
+
+/// Whether two links of the arm can collide. Neighbouring links of the chain cannot; nor can base and upper arm, or two
+/// of wrist and stick, since their joints keep them apart.
+fn can_meet(link: usize, other: usize) -> bool {
+    other > link + 1 && other > 2 && link < JOINTS - 2
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
+
+    fn check(joints: JointAngles, expected: Option<Obstruction>) {
+        assert_eq!(SerialArm::ur5().in_the_way(&joints, &ArmSurroundings::default()), expected, "{joints:?}");
+    }
+
+    #[test]
+    fn an_arm_is_told_what_it_is_too_near_to() {
+        check(BENT, None);
+        check([0.0, 0.3, 0.0, 0.0, 0.0, 0.0], Some(Obstruction::Table));
+        // A pose with the forearm folded back onto the upper arm.
+        check([0.0, -FRAC_PI_2, 3.1, 0.0, 0.0, 0.0], Some(Obstruction::ItsOwnLinks));
+        let at = SerialArm::ur5().tip(&BENT).translation.vector;
+        let obstacles = vec![Capsule { ends_m: [Point3::from(at); 2], radius_m: 0.03 }];
+        let around = ArmSurroundings { table_m: 0.0, obstacles };
+        assert_eq!(SerialArm::ur5().in_the_way(&BENT, &around), Some(Obstruction::Obstacle));
+    }
+
+    #[test]
+    fn the_distance_of_capsules_is_that_of_their_surfaces() {
+        let capsule = |from: [f64; 3], to: [f64; 3]| Capsule { ends_m: [from.into(), to.into()], radius_m: 0.1 };
+        let lying = capsule([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        let above = capsule([0.5, -1.0, 0.5], [0.5, 1.0, 0.5]);
+        let nearest = lying.nearest(&above);
+        assert!((nearest.distance_m - 0.3).abs() < 1e-6);
+        assert!((nearest.at_m[0] - Point3::new(0.5, 0.0, 0.0)).norm() < 1e-6);
+        assert!(lying.nearest(&capsule([0.2, 0.0, 0.05], [0.2, 0.0, 3.0])).distance_m < 0.0);
+    }
 }

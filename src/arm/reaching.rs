@@ -4,12 +4,12 @@
 
 use nalgebra::Point3;
 use rand::RngExt;
-
-use super::physics::CYCLE_S;
-use super::physics::hand_body::HandPose;
 use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Kitchen};
+
+use crate::physics::CYCLE_S;
+use crate::physics::bodies::HandPose;
 
 /// Duration of a reach of the hand in seconds: a constant part, and a part per metre of the reach.
 const REACH_S: f64 = 0.3;
@@ -28,7 +28,6 @@ const RESTS_M: f64 = 0.08;
 const KEEPS_OFF_M: f64 = 0.06;
 const GIVES_UP_S: f64 = 1.5;
 
-/// Parameters of a person's hand motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachingBehaviour {
     /// Time for which the hand stays at a button after a press, in seconds.
@@ -45,7 +44,6 @@ impl ReachingBehaviour {
     pub const UNSEEN: ReachingBehaviour = ReachingBehaviour { lingers_s: 1.5, heedless: 0.0 };
 }
 
-/// The current movement of the hand.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     from_m: Point3<f64>,
@@ -57,7 +55,6 @@ struct Way {
     presses: bool,
 }
 
-/// A planned reach of the hand to a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Planned {
     to_m: Point3<f64>,
@@ -141,7 +138,7 @@ impl ReachingHand {
     }
 
     /// Reacts to a contact: the person withdraws the hand, and watches the robot arm from now on.
-    pub fn feels_the_arm(&mut self) {
+    pub(crate) fn feels_the_arm(&mut self) {
         self.heedless = false;
         if self.way.is_none_or(|way| way.presses) {
             (self.planned, self.leaves) = (None, None);
@@ -163,7 +160,6 @@ impl ReachingHand {
         self.way = Some(Way { from_m: self.at_m, to_m, done_s: 0.0, takes_s, held_up_s: 0.0, presses });
     }
 
-    /// The present pose of the hand.
     pub fn place(&self) -> HandPose {
         self.at(self.at_m)
     }
@@ -211,7 +207,6 @@ impl ReachingHand {
         }
     }
 
-    /// Shifts all pending times by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(planned) = &mut self.planned {
             planned.begins = planned.begins + by;

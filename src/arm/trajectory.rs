@@ -1,34 +1,35 @@
-//! The robot arm's trajectory to a button: up, across, and down on the button; on each leg the arm is slow at both
+//! The robot arm's trajectories. To a button: up, across, and down on the button; on each leg the arm is slow at both
 //! ends.
 //!
 //! A leg is a cubic through four poses; the time law along the leg is a quintic (Craig, Introduction to Robotics), so
 //! that speed and acceleration begin and end at 0 and never jump. The duration of a leg follows from the speed and
 //! acceleration limits of the leg's kind, which are the defaults of the manufacturer's commands `movej` and `movel`.
 
-use super::clearance::ArmSurroundings;
-use super::kinematics::SerialArm;
-use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, UnreachableReason};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen};
+use tomcom_core::robot::{JOINTS, JointAngles};
+
+use crate::kinematics::SerialArm;
+use crate::reach::{ABOVE_M, ArmSurroundings, BUTTON_M, ButtonPoses, UnreachableReason, resting_pose};
 
 /// Greatest speed of a joint on a leg in joint space, in radians per second.
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;
 /// Greatest acceleration of a joint on a leg in joint space, in radians per second squared.
-pub const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
+pub(crate) const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
 /// Greatest speed of the arm's tip on a straight leg, in metres per second.
-pub const TIP_SPEED_M_S: f64 = 0.25;
+pub(crate) const TIP_SPEED_M_S: f64 = 0.25;
 /// Greatest acceleration of the arm's tip on a straight leg, in metres per second squared.
-pub const TIP_ACCELERATION_M_S2: f64 = 1.2;
+pub(crate) const TIP_ACCELERATION_M_S2: f64 = 1.2;
 /// The greatest speed and acceleration of the quintic time law from 0 to 1 within a time of 1.
 const QUINTIC_SPEED: f64 = 1.875;
 const QUINTIC_ACCELERATION: f64 = 5.7735;
 /// Depth below a button's top at which the arm's tip aims, in metres; this is more than the click needs.
-pub const BELOW_M: f64 = 0.006;
+pub(crate) const BELOW_M: f64 = 0.006;
 /// Number of points of a leg that are checked for joint limits and clearance.
 const LOOKS: usize = 24;
 /// Additional heights that are tried if the arm's path is blocked, in metres.
 const HIGHER_M: [f64; 3] = [0.08, 0.16, 0.24];
 
-/// The purpose of a leg of the robot arm's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LegKind {
     /// Moves the arm's tip straight up.
@@ -39,15 +40,13 @@ pub enum LegKind {
     Down,
 }
 
-/// One leg of the robot arm's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryLeg {
-    /// The purpose of the leg of the trajectory.
     pub kind: LegKind,
     /// Four poses of the arm at equal distances along the leg.
     poses: [JointAngles; 4],
     /// Duration of the leg at full speed, in seconds.
-    pub takes_s: f64,
+    pub(crate) takes_s: f64,
 }
 
 impl TrajectoryLeg {
@@ -91,7 +90,6 @@ impl TrajectoryLeg {
         (0..JOINTS).map(|joint| ((after[joint] - before[joint]) / (2.0 * step)).abs()).fold(0.0, f64::max)
     }
 
-    /// The pose of the arm at this share of the leg.
     fn pose(&self, share: f64) -> JointAngles {
         let t = 3.0 * share;
         // Lagrange's polynomials over the nodes 0, 1, 2, 3.
@@ -104,13 +102,11 @@ impl TrajectoryLeg {
         std::array::from_fn(|joint| (0..4).map(|part| weights[part] * self.poses[part][joint]).sum())
     }
 
-    /// The pose of the arm this many seconds after the start of the leg.
     pub fn at(&self, since_s: f64) -> JointAngles {
         let t = if self.takes_s > 0.0 { (since_s / self.takes_s).clamp(0.0, 1.0) } else { 1.0 };
         self.pose(t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t))
     }
 
-    /// The pose of the arm at the end of the leg.
     pub fn end(&self) -> &JointAngles {
         &self.poses[3]
     }
@@ -125,7 +121,7 @@ impl TrajectoryLeg {
 ///
 /// # Errors
 /// What blocks the arm's path, after higher paths were tried.
-pub fn way_to(
+pub(crate) fn way_to(
     arm: &SerialArm,
     from: &JointAngles,
     to: &ButtonPoses,
@@ -146,7 +142,7 @@ pub fn way_to(
 ///
 /// # Errors
 /// What blocks the arm's path.
-pub fn way_up(
+pub(crate) fn way_up(
     arm: &SerialArm,
     from: &JointAngles,
     around: &ArmSurroundings,
@@ -162,7 +158,7 @@ pub fn way_up(
 ///
 /// # Errors
 /// What blocks every path that was tried.
-pub fn way_over(
+pub(crate) fn way_over(
     arm: &SerialArm,
     from: &JointAngles,
     to: &JointAngles,
@@ -186,4 +182,89 @@ pub fn way_over(
         }
     }
     Err(fault)
+}
+
+// Joint angles of the timed robot arm between presses. The time at which the arm touches a button is drawn at random;
+// this module interpolates the joint angles with a quintic (Craig, Introduction to Robotics), so that the arm moves
+// slowly at both ends of each leg: up from the last button, across, and down on the next button.
+
+/// Share of the motion's duration in which the arm goes up (first), and share in which the arm goes down (last).
+const UP: f64 = 0.15;
+const DOWN: f64 = 0.2;
+/// Duration of the arm's motion upwards if there is no next button, in seconds.
+const UP_S: f64 = 0.4;
+#[derive(Clone, Debug)]
+pub struct JointMotion {
+    /// Poses of the arm at each of the robot's buttons; none if the button is out of reach, in which case the arm stays
+    /// where it is.
+    buttons: Vec<Option<ButtonPoses>>,
+    /// Waypoints of the arm's motion with their times; never empty.
+    way: Vec<(SessionTime, JointAngles)>,
+    /// The button on which the arm's tip is down, so that the arm has to go up first.
+    down_on: Option<ButtonId>,
+}
+
+impl JointMotion {
+    /// A timed robot arm at rest above the middle of its buttons.
+    pub fn new(kitchen: &Kitchen, arm: &SerialArm) -> JointMotion {
+        let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
+        let at_button = |button: &Button| arm.at_button(button.at_m, &around).ok();
+        let buttons: Vec<Option<ButtonPoses>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();
+        let rest = resting_pose(&buttons.iter().flatten().collect::<Vec<_>>());
+        JointMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
+    }
+
+    pub fn at(&self, now: SessionTime) -> JointAngles {
+        let next = self.way.partition_point(|(time, _)| *time <= now);
+        let ((since, from), Some((until, to))) = (self.way[next.saturating_sub(1)], self.way.get(next)) else {
+            return self.way[next - 1].1;
+        };
+        let length_s = until.secs_since(since);
+        let share = if length_s > 0.0 { (now.secs_since(since) / length_s).clamp(0.0, 1.0) } else { 1.0 };
+        let eased = share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share);
+        std::array::from_fn::<f64, JOINTS, _>(|joint| from[joint] + (to[joint] - from[joint]) * eased)
+    }
+
+    /// The time at which the arm comes to rest if nothing interrupts its motion.
+    pub fn rests_at(&self) -> SessionTime {
+        self.way.last().map_or(SessionTime::ZERO, |(time, _)| *time)
+    }
+
+    /// Starts a motion of the arm that touches the button at the time `until`.
+    pub fn set_out(&mut self, now: SessionTime, button: ButtonId, until: SessionTime) {
+        let Some(Some(goal)) = self.buttons.get(button.index()).copied() else { return };
+        let takes_s = until.secs_since(now).max(0.0);
+        let after = |share: f64| now + SessionTime::from_secs_f64(takes_s * share);
+        let here = self.at(now);
+        let mut way = vec![(now, here)];
+        if let Some(ButtonPoses { above, .. }) = self.poses_below().filter(|poses| poses.above != here) {
+            way.push((after(UP), above));
+        }
+        way.extend([(after(1.0 - DOWN), goal.above), (until.max(now), goal.touching)]);
+        self.way = way;
+        self.down_on = Some(button);
+    }
+
+    /// Moves the arm up after a press was made or abandoned; an arm that is still on its way to a button just stops.
+    pub fn go_up(&mut self, now: SessionTime) {
+        let here = self.at(now);
+        let goes_down = self.way.iter().rev().nth(1).is_none_or(|(since, _)| *since <= now);
+        match self.poses_below().filter(|_| goes_down) {
+            Some(ButtonPoses { above, .. }) => {
+                self.way = vec![(now, here), (now + SessionTime::from_secs_f64(UP_S), above)];
+            }
+            None => {
+                self.way = vec![(now, here)];
+                self.down_on = None;
+            }
+        }
+    }
+
+    pub fn stand(&mut self, now: SessionTime) {
+        self.way = vec![(now, self.at(now))];
+    }
+
+    fn poses_below(&self) -> Option<ButtonPoses> {
+        self.down_on.and_then(|button| self.buttons[button.index()])
+    }
 }

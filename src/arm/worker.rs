@@ -3,46 +3,41 @@
 //! state.
 
 use rand_distr::{Distribution, LogNormal};
-
-use super::body::SimulatedArm;
-#[cfg(feature = "physics")]
-use super::controller::ArmController;
-use super::report::PressFailure;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, State};
-use tomcom_core::robot::policy::{self, PolicyDecision};
-use tomcom_core::robot::{AbortReason, IdleReason, RobotEvent};
+use tomcom_core::robot::policy::PolicyDecision;
+use tomcom_core::robot::{AbortReason, IdleReason, RobotEvent, policy};
+
+use crate::body::SimulatedArm;
+
+#[cfg(feature = "physics")]
+use super::controller::ArmController;
 
 /// Time for which a skipped press of the robot is not chosen again, in seconds.
-pub const SKIP_S: f64 = 5.0;
+pub(crate) const SKIP_S: f64 = 5.0;
 
-/// A press to which the robot's arm is moving.
 #[derive(Clone, Copy, Debug)]
 struct OngoingPress {
     button: ButtonId,
-    /// The time at which the arm touches the button.
     until: SessionTime,
     /// Whether the wizard chose this press: the arm then makes the press even if it is not useful.
     driven: bool,
 }
 
 impl OngoingPress {
-    /// Whether the arm makes the press in this state.
     fn is_useful(self, kitchen: &Kitchen, cost: &mut CostToGo, state: State, is_passive: bool) -> bool {
         self.driven || policy::is_useful(kitchen, cost, state, is_passive, self.button)
     }
 }
 
-/// What the robot reported when it became idle, and the situation in which it decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Idleness {
     reason: IdleReason,
     /// The human's presses for one of which the robot waits, as a bit set of the human's buttons.
     waits_for: u64,
     state: State,
-    /// Whether the human was passive.
     is_passive: bool,
 }
 
@@ -60,7 +55,6 @@ pub struct RobotTaskExecutor {
     driven: Option<ButtonId>,
     /// Presses that were skipped or failed, each with the time until which the robot does not choose the press.
     skipped: Vec<(ButtonId, SessionTime)>,
-    /// What the robot last reported about being idle.
     idle: Option<Idleness>,
     /// Time without a press of the human after which the human counts as passive.
     initiative: SessionTime,
@@ -93,12 +87,10 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// The same robot with a simulated arm, whose physics decide how long presses take.
     pub fn with_body(self, body: SimulatedArm) -> RobotTaskExecutor {
         RobotTaskExecutor { body: Some(Box::new(body)), ..self }
     }
 
-    /// The simulated arm with its controller, for experiments with the arm.
     #[cfg(feature = "physics")]
     pub fn arm(&mut self) -> Option<&mut ArmController> {
         self.body.as_mut().map(|body| &mut body.arm)
@@ -123,7 +115,6 @@ impl RobotTaskExecutor {
         again.into_iter().chain(moves).min()
     }
 
-    /// Whether the wizard holds the arm above the button of the present press.
     fn waits(&self) -> bool {
         self.held && self.busy.is_none_or(|ongoing| !ongoing.driven)
     }
@@ -240,13 +231,11 @@ impl RobotTaskExecutor {
         self.go_without(now, button, reason)
     }
 
-    /// Abandons a failed press, which the robot then does not choose again for a while.
     fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotEvent> {
         self.leave_out(now, button);
         self.give_up(reason)
     }
 
-    /// Stops the robot until the wizard releases it; the present press is abandoned.
     fn halt(&mut self, reason: AbortReason) -> Option<RobotEvent> {
         self.stopped = true;
         self.idle = None;
@@ -254,7 +243,6 @@ impl RobotTaskExecutor {
         self.give_up(reason)
     }
 
-    /// Excludes this press from the robot's choices for a while.
     fn leave_out(&mut self, now: SessionTime, button: ButtonId) {
         self.skipped.push((button, now + SessionTime::from_secs_f64(SKIP_S)));
         self.idle = None;
@@ -315,13 +303,11 @@ impl RobotTaskExecutor {
         self.give_up(AbortReason::Skipped)
     }
 
-    /// Lets the robot next press the button that the wizard chose; the present press is abandoned.
     pub fn drive(&mut self, button: ButtonId) -> Option<RobotEvent> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)
     }
 
-    /// Releases a stopped robot at the wizard's command.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.stopped = false;
         self.body.as_mut()?.resume(now)
@@ -335,7 +321,6 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// Starts the robot's work at the start of the trial.
     pub fn start(&mut self, now: SessionTime) {
         self.passive_from = now + self.initiative;
     }
@@ -349,7 +334,6 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// Ends the robot's work at the end of the trial: the arm rests.
     pub fn rest(&mut self) {
         self.busy = None;
         self.idle = None;
@@ -357,7 +341,6 @@ impl RobotTaskExecutor {
         self.skipped.clear();
     }
 
-    /// Shifts all pending times of the robot and its arm by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(ongoing) = &mut self.busy {
             ongoing.until = ongoing.until + by;
@@ -370,4 +353,26 @@ impl RobotTaskExecutor {
             body.postpone(by);
         }
     }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PressFailure {
+    /// A hand was in the way for too long, so the arm abandoned the press of this button.
+    Blocked(ButtonId),
+    NoClick(ButtonId),
+    /// The arm measured a contact force (newtons) above the threshold; it stops and abandons the press.
+    Contact(f64),
+    /// This joint (number 0 is the first) did not follow its command; the brakes hold the arm, and the press is
+    /// abandoned.
+    Fault(usize),
+}
+
+/// The result of a controller cycle for the arm's press, and the events of the cycle to record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmCycleReport {
+    /// The button that clicked. A click counts as a press even if the arm was about to abandon the press.
+    pub clicked: Option<ButtonId>,
+    pub report: Option<PressFailure>,
+    /// The robot activities to record, in the order of their times.
+    pub news: Vec<RobotEvent>,
 }

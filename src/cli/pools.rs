@@ -9,7 +9,7 @@ use super::failure::{Failure, wrong_argument};
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::edge::files::read_session;
 use crate::edge::picture_file::{check_picture, write_picture};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::headless::SimulationShard;

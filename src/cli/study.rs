@@ -8,7 +8,7 @@ use super::data::two_raters;
 use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::headless::SimulationShard;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::pass::reading::AnalysisScope;

@@ -27,9 +27,9 @@
 //! ```
 //! use std::sync::Arc;
 //! use tomcom_core::base::time::SessionTime;
-//! use tomcom_core::communication::concept::{Concept, DecisionPoint};
+//! use tomcom_core::communication::concept::{Concept, DecisionPoint, Situation};
 //! use tomcom_core::communication::settings::AssistantSpec;
-//! use tomcom_core::communication::{HighlightSet, available, planner::Planner, situation::Situation};
+//! use tomcom_core::communication::{HighlightSet, available, planner::Planner};
 //! use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
 //! use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 //! use tomcom_core::mind::{filter::BeliefFilter, model::HumanModel};

@@ -4,7 +4,6 @@
 //! Participants decide by a plan of their own. They use neither the assistant's human model nor the cost to go: the cost
 //! to go defines their errors and drives the assistant.
 
-#![warn(missing_docs)]
 #![deny(unsafe_code)]
 
 pub mod participant;

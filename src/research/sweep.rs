@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use tomcom_core::base::path_text::PathText;
-use tomcom_core::base::words::decimal;
+use tomcom_core::base::text::PathText;
+use tomcom_core::base::text::decimal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::leaving::ways_to_look;
 use super::options;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::files::file_error::FileError;

@@ -15,8 +15,8 @@ use crate::console::playback::{Playback, SPEEDS};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
+use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::wizard_performance::{

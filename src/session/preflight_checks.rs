@@ -7,10 +7,10 @@ use crate::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use crate::settings::{Condition, GazeSource, ParticipantKind};
 use crate::stream_settings::LslGazeSpec;
 use crate::tracker::TrackerConnection;
+use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
-use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
+use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_core::mind::model::HumanModel;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

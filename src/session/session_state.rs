@@ -15,13 +15,13 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferHistory;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{HighlightSet, Sender, Signal};
-use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, State};
-use tomcom_core::robot::moment::ArmSample;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::ArmSample;
+use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{AbortReason, IdleReason};
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 
 /// Time without a sample after which gaze counts as missing.
 const SILENT_S: f64 = 1.0;

@@ -16,7 +16,7 @@ use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
 use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
 use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
-use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
+use tomcom_people::wizard::{WizardKind, WizardSpec};
 
 pub use crate::probes::ProbeSpec;
 pub use crate::stream_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};

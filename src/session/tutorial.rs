@@ -8,7 +8,7 @@ use crate::admit::unless;
 use crate::plan::PhaseSpec;
 use crate::settings::{SettingError, is_code};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
 /// For recipe cards, in seconds.

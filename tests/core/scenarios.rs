@@ -8,14 +8,14 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::DevConcept;
+use tomcom_core::communication::concept::TomConcept;
 use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
-use tomcom_core::communication::concepts::{SilentConcept, concept};
-use tomcom_core::communication::dev::DevConcept;
+use tomcom_core::communication::concept::{RobotIntent, Situation};
+use tomcom_core::communication::concept::{SilentConcept, concept};
 use tomcom_core::communication::planner::Planner;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::communication::settings::AssistantSpec;
-use tomcom_core::communication::situation::{RobotIntent, Situation};
-use tomcom_core::communication::tom::TomConcept;
 use tomcom_core::communication::{HighlightSet, Signal, signals};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};

@@ -339,7 +339,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
 #[test]
 fn every_shape_is_drawn() {
     let art = include_str!("../../src/devices/display/page/art.js");
-    for shape in tomcom_core::kitchen::look::SHAPES {
+    for shape in tomcom_core::kitchen::parts::SHAPES {
         assert!(art.contains(&format!("    {shape}(")) || art.contains(&format!("    {shape}: (")), "{shape}");
     }
 }

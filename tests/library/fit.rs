@@ -7,7 +7,7 @@ use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::named_models::{PAPER_2021, PLAIN};
+use tomcom_core::mind::model::{PAPER_2021, PLAIN};
 use tomcom_session::headless::SimulationShard;
 use tomcom_study::analysis::fitting::{FitSettings, choose, describe};
 use tomcom_study::fit::{FitTrials, fit};

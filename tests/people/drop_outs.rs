@@ -2,7 +2,7 @@
 
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
-use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::eyes::GazeDropoutSchedule;
 
 #[test]
 fn drop_outs_follow_their_seed() {

@@ -10,22 +10,20 @@
 //! spring, which stands for the person's arm. The contact between hand and robot arm is a spring, too, as stiff as a
 //! hand (ISO/TS 15066), because the peak force of a rigid contact would depend on the step of the physics.
 
-mod build;
-mod button;
-pub mod hand_body;
+pub mod bodies;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use rapier3d::prelude::{
-    BroadPhaseBvh, CCDSolver, ColliderHandle, ColliderSet, ImpulseJointSet, IntegrationParameters, IslandManager,
-    JointAxis, MultibodyJointHandle, MultibodyJointSet, NarrowPhase, PhysicsPipeline, RigidBodyHandle, RigidBodySet,
+    BroadPhaseBvh, CCDSolver, ColliderBuilder, ColliderHandle, ColliderSet, GenericJointBuilder, ImpulseJointSet,
+    IntegrationParameters, IslandManager, JointAxesMask, JointAxis, MassProperties, MotorModel, MultibodyJointHandle,
+    MultibodyJointSet, NarrowPhase, PhysicsPipeline, Pose, RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Rotation,
     SoftBodySet, Vector,
 };
+use tomcom_core::robot::{JOINTS, JointAngles};
 
-use super::clearance::Capsule;
-use super::kinematics::SerialArm;
-use button::PhysicalButton;
-use hand_body::{HandPose, PhysicalHand, double, single};
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use self::bodies::{FLESH_NS_M, HandPose, PhysicalButton, PhysicalHand, STICK, STIFFNESS_N_M, double, single};
+use crate::kinematics::{ArmLink, LinkShape, SerialArm};
+use crate::reach::Capsule;
 
 /// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
 pub const CYCLE_S: f64 = 0.008;
@@ -58,7 +56,7 @@ pub struct ContactForces {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
     /// The greatest force of the stick on the button, in newtons.
-    pub button_n: f64,
+    pub(crate) button_n: f64,
     /// Whether the button under the stick closed its contact.
     pub clicked: bool,
 }
@@ -210,7 +208,7 @@ impl PhysicsWorld {
     }
 
     /// Selects the button that the stick can touch; `None` while the stick is above all buttons.
-    pub fn aim_at(&mut self, button: Option<usize>) {
+    pub(crate) fn aim_at(&mut self, button: Option<usize>) {
         if let Some(before) = self.active.filter(|_| self.active != button) {
             self.buttons[before].set_active(&mut self.bodies, false);
         }
@@ -220,8 +218,7 @@ impl PhysicsWorld {
         self.active = button;
     }
 
-    /// The button that the stick can touch at present.
-    pub fn aimed_at(&self) -> Option<usize> {
+    pub(crate) fn aimed_at(&self) -> Option<usize> {
         self.active
     }
 
@@ -338,7 +335,6 @@ impl PhysicsWorld {
         }
     }
 
-    /// The distance between a hand and the arm, in metres.
     pub fn distance(&self, hand: &HandPose) -> f64 {
         hand.distance_m(&self.capsules)
     }
@@ -349,7 +345,7 @@ impl PhysicsWorld {
     }
 
     /// Applies the brakes: every joint stays where it is, whatever its motor does.
-    pub fn brake(&mut self) {
+    pub(crate) fn brake(&mut self) {
         self.fail(None);
         self.commanded = self.joints().0;
     }
@@ -394,7 +390,7 @@ impl PhysicsWorld {
         let at = on_human - away * (depth_m / 2.0);
         let of_link = self.bodies.get(*self.links.get(link)?)?.velocity_at_point(single(at.coords));
         let closing_m_s = (double(of_link) - hand.velocity_m_s(&self.bodies)).dot(&away);
-        let force_n = depth_m * hand_body::STIFFNESS_N_M + closing_m_s * hand_body::FLESH_NS_M;
+        let force_n = depth_m * STIFFNESS_N_M + closing_m_s * FLESH_NS_M;
         (depth_m > 0.0 && force_n > 0.0).then(|| (link, away * force_n, at))
     }
 
@@ -415,4 +411,76 @@ impl PhysicsWorld {
             &(),
         );
     }
+}
+
+/// Reflected rotor inertia of the arm's large and small drives (rotor inertia times gear ratio squared), in kg m². The
+/// values are estimates: the manufacturer does not publish the inertia.
+const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
+
+impl PhysicsWorld {
+    pub(super) fn build(&mut self, joints: &JointAngles) {
+        let mut carried_from = Isometry3::identity();
+        for link in self.arm.links.clone() {
+            let Some(parent) = self.links.last().copied() else {
+                self.links.push(self.bodies.insert(RigidBodyBuilder::fixed()));
+                continue;
+            };
+            let parent_from_link = carried_from * link.parent_from_joint;
+            let Some(turn) = &link.turns else {
+                self.links.push(parent);
+                carried_from = parent_from_link;
+                self.add_stick(parent, &link, &carried_from);
+                continue;
+            };
+            let body = self
+                .bodies
+                .insert(RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(mass(&link)));
+            // A revolute joint of the physics engine turns about x.
+            let x_onto_axis = nalgebra::UnitQuaternion::rotation_between(&Vector3::x(), &turn.axis)
+                .unwrap_or_else(nalgebra::UnitQuaternion::identity);
+            let frame = Isometry3::from_parts(Default::default(), x_onto_axis);
+            let joint = GenericJointBuilder::new(JointAxesMask::LOCKED_REVOLUTE_AXES)
+                .local_frame1(pose(&(parent_from_link * frame)))
+                .local_frame2(pose(&frame))
+                .motor_model(JointAxis::AngX, MotorModel::AccelerationBased)
+                .motor_max_force(JointAxis::AngX, turn.torque_nm as f32)
+                .build();
+            self.joints.extend(self.multibodies.insert(parent, body, joint, true));
+            self.links.push(body);
+            carried_from = Isometry3::identity();
+        }
+        let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get_mut(*joint)) else {
+            return;
+        };
+        // Before this step the multibody does not have the information that its root is fixed.
+        multibody.forward_kinematics(&self.bodies, true);
+        multibody.damping_mut().fill(0.0);
+        multibody.armature_mut().copy_from_slice(&ARMATURE_KG_M2);
+        multibody.apply_displacements(&joints.map(|angle| angle as f32));
+        multibody.forward_kinematics(&self.bodies, false);
+        multibody.update_rigid_bodies(&mut self.bodies, true);
+    }
+
+    fn add_stick(&mut self, parent: RigidBodyHandle, link: &ArmLink, parent_from_link: &Isometry3<f64>) {
+        for solid in &link.solids {
+            let LinkShape::Cylinder { radius_m, length_m } = solid.shape else { continue };
+            let half_m = (length_m / 2.0 - radius_m) as f32;
+            let collider = ColliderBuilder::capsule_z(half_m, radius_m as f32)
+                .position(pose(&(parent_from_link * solid.link_from_solid)))
+                .density(0.0)
+                .collision_groups(STICK);
+            self.stick = Some(self.colliders.insert_with_parent(collider, parent, &mut self.bodies));
+        }
+    }
+}
+
+fn pose(isometry: &Isometry3<f64>) -> Pose {
+    let turn = isometry.rotation.coords;
+    let rotation = Rotation::from_xyzw(turn.x as f32, turn.y as f32, turn.z as f32, turn.w as f32);
+    Pose::from_parts(single(isometry.translation.vector), rotation.normalize())
+}
+
+fn mass(link: &ArmLink) -> MassProperties {
+    let Some(weight) = &link.weight else { return MassProperties::default() };
+    MassProperties::new(single(weight.centre_m.coords), weight.mass_kg as f32, single(weight.inertia_kg_m2))
 }

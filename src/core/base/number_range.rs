@@ -53,8 +53,7 @@ impl NumberRange {
         (self.least..=self.most).contains(&value)
     }
 
-    /// The error message for a value outside of the range.
-    pub fn violation(&self, path: &str, value: f64) -> OutOfRange {
+    pub(crate) fn violation(&self, path: &str, value: f64) -> OutOfRange {
         let key = path.rsplit('.').next().unwrap_or(path);
         OutOfRange {
             path: path.to_string(),

@@ -1,12 +1,12 @@
-//! Session time: nanoseconds since the session began. The clocks of eye trackers and the wall clock are kept apart from
-//! session time.
+//! Session time.
 
 use std::fmt;
 use std::ops::{Add, Sub};
 
 use serde::{Deserialize, Serialize};
 
-/// A time within a session, in nanoseconds since the session began.
+/// A time within a session, in nanoseconds since the session began. The wall clock and the clocks of eye trackers are
+/// kept apart from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct SessionTime(pub u64);

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concept_name::ConceptName;
+use super::concept::ConceptName;
 use super::recommendation::SignalReason;
 use super::signal::Signal;
 use crate::base::time::SessionTime;
@@ -105,20 +105,15 @@ impl Offer {
 }
 
 /// Why an offer to the wizard closed.
+#[allow(missing_docs, reason = "`words` says each")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferCloseReason {
-    /// The offer closed because the wizard took it.
     Taken,
-    /// The offer closed because the wizard sent the offered signal by the signal's own key.
     OwnKey,
-    /// The offer closed because the offered signal cannot be sent any more.
     Impossible,
-    /// The offer closed because the net benefit of its signal fell below the threshold, or its proposal is out of date.
     Fell,
-    /// The offer closed because another signal became better than the offered one.
     Replaced,
-    /// The offer closed because the trial ended.
     TrialEnded,
 }
 

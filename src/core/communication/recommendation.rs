@@ -6,7 +6,7 @@ use super::signal::Signal;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::recorded_estimate::rounded;
+use crate::mind::rounded;
 
 /// Recommendation of a communication concept after an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

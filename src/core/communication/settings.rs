@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concept_name::ConceptName;
+use super::concept::ConceptName;
 use crate::mind::model::LookingModel;
 
 /// Settings of the assistant, which recommends or sends signals.

@@ -13,7 +13,7 @@ pub const TARGET_S: f64 = 1.8;
 /// eyes are still moving to the target.
 pub const SETTLE_S: f64 = 0.7;
 /// A target with fewer gaze samples does not count: the participant did not look at it, or the tracker lost the eyes.
-pub const LEAST_SAMPLES: usize = 10;
+pub(crate) const LEAST_SAMPLES: usize = 10;
 /// An accuracy check with fewer valid targets gives no result.
 const LEAST_TARGETS: usize = 3;
 /// Largest mean angular error of good gaze, in degrees: locations are 0.15 m apart, which is 4.3 degrees seen from 2 m.

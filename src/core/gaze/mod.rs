@@ -8,10 +8,7 @@
 pub mod calibration;
 pub mod device_clock;
 pub mod quality;
-pub mod recorded_gaze;
-pub mod recorded_times;
-pub mod stamp_check;
-pub mod surface;
+pub mod recorded;
 pub mod tags;
 
 use serde::{Deserialize, Serialize};

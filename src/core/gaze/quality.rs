@@ -10,7 +10,7 @@ use crate::base::time::SessionTime;
 /// such samples were taken.
 pub const TOO_OLD_S: f64 = 0.5;
 /// Upper limit of an eye tracker's sampling rate, in Hz.
-pub const MAX_HZ: f64 = 2000.0;
+pub(crate) const MAX_HZ: f64 = 2000.0;
 /// Number of gaze samples that may arrive at once after a pause: those of 10 s at the highest rate, since samples wait
 /// while the program or the network stands still.
 const BURST: f64 = 10.0 * MAX_HZ;

@@ -1,15 +1,10 @@
 //! The compiled kitchen: its tables, and look-ups of its parts by name and id.
 
-use super::action::{Button, ButtonAction, ButtonId};
-use super::agent::Agent;
-use super::aspect::{AspectId, AspectKind, StateAspect};
-use super::content::{Content, ContentId};
-use super::content_wording::KitchenWords;
-use super::dish::{Dish, DishId};
-use super::location::{IngredientStorage, Location, LocationId, LocationKind};
-use super::process::ProcessingStep;
+use super::parts::{
+    Agent, AspectId, AspectKind, Button, ButtonAction, ButtonId, Content, ContentId, Dish, DishId, IngredientStorage,
+    KitchenWords, Location, LocationId, LocationKind, ProcessingStep, StateAspect,
+};
 use super::state::{OrderContent, Recipes, State};
-use super::transition_tables::TransitionTables;
 
 /// A compiled kitchen: tables over contents, locations, buttons and dishes, which never change after loading.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,8 +71,18 @@ impl Kitchen {
 
     /// The locations whose contents differ between two states.
     pub fn changed(&self, before: State, after: State) -> impl Iterator<Item = LocationId> + use<> {
-        let locations = (0..self.locations.len()).map(|index| LocationId(index as u8));
+        let locations = self.location_ids();
         locations.filter(move |&location| before.code(location) != after.code(location))
+    }
+
+    /// The locations of this kitchen.
+    pub fn location_ids(&self) -> impl Iterator<Item = LocationId> + Clone + use<> {
+        (0..self.locations.len()).map(|index| LocationId(index as u8))
+    }
+
+    /// The buttons of this agent.
+    pub fn button_ids(&self, agent: Agent) -> impl Iterator<Item = ButtonId> + Clone + use<> {
+        (0..self.buttons[agent.index()].len()).map(|index| ButtonId(index as u8))
     }
 
     /// The location of this kitchen with this id.
@@ -195,4 +200,17 @@ impl Kitchen {
     pub fn aspect_of_dish(&self, dish: DishId) -> AspectId {
         AspectId((self.locations.len() + dish.index()) as u8)
     }
+}
+
+/// Transition tables over contents, computed once for each kitchen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransitionTables {
+    pub(super) width: usize,
+    /// `accepts[location * width + content]`: whether the location, when empty, accepts the content.
+    pub(super) accepts: Vec<bool>,
+    /// `stacks[a * width + b]`: the stack of contents a and b; 0 if these contents cannot be stacked.
+    pub(super) stacks: Vec<ContentId>,
+    /// `becomes[process * width + content]`: the result of the processing step; 0 if the step does not apply to the
+    /// content.
+    pub(super) becomes: Vec<ContentId>,
 }

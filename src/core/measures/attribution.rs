@@ -14,11 +14,11 @@ use crate::kitchen::{
     AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State, WeightedWorlds, World,
 };
 use crate::mind::belief::Belief;
-use crate::mind::choice_parameters::ChoiceParameters;
+use crate::mind::choice::ChoiceParameters;
 use crate::mind::{ChoiceModel, PressOrigin, RecordedBelief};
 
 /// Least likelihood ratio of belief to truth for a belief related error.
-pub const LIKELIER: f64 = 3.0;
+pub(crate) const LIKELIER: f64 = 3.0;
 /// Least probability of a false belief about a target that can be part of a pair of causes.
 const DOUBTFUL: f64 = 0.1;
 
@@ -55,17 +55,21 @@ pub enum ErrorCause {
 }
 
 impl FalseBeliefTarget {
-    /// All targets that a false belief of the human can be about in a state of the kitchen.
-    pub fn all(kitchen: &Kitchen, state: State) -> Vec<FalseBeliefTarget> {
-        let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
-        let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
+    /// The target of a false belief about what this location shows in a state of the kitchen.
+    pub(crate) fn of_location(kitchen: &Kitchen, state: State, location: LocationId) -> FalseBeliefTarget {
+        match (kitchen.location(location).kind, state.order(location)) {
             (LocationKind::Order, OrderContent::Dish(dish)) => FalseBeliefTarget::Order(location, Some(dish)),
             (LocationKind::Order, _) => FalseBeliefTarget::Order(location, None),
             _ => FalseBeliefTarget::Place(location),
-        };
+        }
+    }
+
+    /// All targets that a false belief of the human can be about in a state of the kitchen.
+    pub fn all(kitchen: &Kitchen, state: State) -> Vec<FalseBeliefTarget> {
+        let locations = kitchen.location_ids().map(|location| FalseBeliefTarget::of_location(kitchen, state, location));
         let dishes = (0..kitchen.dishes.len()).map(|index| DishId(index as u8));
         let unwanted = dishes.filter(|dish| kitchen.wanted(state).all(|(_, wanted)| wanted != *dish));
-        locations.map(of_location).chain(unwanted.map(FalseBeliefTarget::Recipe)).collect()
+        locations.chain(unwanted.map(FalseBeliefTarget::Recipe)).collect()
     }
 
     /// The state aspects that this target of a false belief covers.
@@ -114,11 +118,9 @@ impl ErrorCause {
 #[derive(Clone, Debug)]
 pub struct ErrorAttributor {
     model: ChoiceParameters,
-    /// Seed of the random streams from which worlds are drawn.
     seed: u64,
 }
 
-/// Data of the error whose cause is being determined.
 struct Inquiry<'a> {
     kitchen: &'a Kitchen,
     model: ChoiceModel,
@@ -162,7 +164,6 @@ impl ErrorAttributor {
 }
 
 impl Inquiry<'_> {
-    /// The log probability of the press under a belief, which the weighted worlds represent.
     fn log_p(&self, cost: &mut CostToGo, worlds: &WeightedWorlds) -> f64 {
         self.model.probabilities(cost, worlds).press[self.button.index()].ln()
     }

@@ -11,6 +11,7 @@
 
 use std::sync::Arc;
 
+use super::attribution::ErrorCause;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::{CostToGo, ProofBudget, ProvenCost};
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -18,9 +19,9 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, KitchenChange, Pres
 
 /// Time in seconds after a change by somebody else within which a press at the same place is a race: the press comes
 /// too early to be a reaction to the change.
-pub const RACE_S: f64 = 0.3;
+pub(crate) const RACE_S: f64 = 0.3;
 /// Largest excess regret of a press that counts as preparation of the other order.
-pub const PREPARATION_EXCESS: i32 = 2;
+pub(crate) const PREPARATION_EXCESS: i32 = 2;
 
 /// Judgement of a press of the human: its regret, and whether it is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +92,7 @@ impl PressJudge {
             false => 1 + presses(cost.proven_all_orders(state, &recipes, &mut budget)) - here,
         };
         let regret = regret_to(after);
-        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let buttons = kitchen.button_ids(Agent::Human);
         let least = buttons
             .filter_map(|button| kitchen.press(before, &recipes, Agent::Human, button))
             .map(&mut regret_to)
@@ -122,4 +123,22 @@ impl PressJudge {
         let recent = |time: SessionTime| now.secs_since(time) <= RACE_S;
         places.iter().any(|place| self.others_changed_at[place.index()].is_some_and(recent))
     }
+}
+
+/// A press of the human with the judgement whether it was an error. The nth judged press is the nth press of the human
+/// on the session's timeline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JudgedPress {
+    /// Sequence number of the press event in the log.
+    pub seq: u64,
+    /// Session time of the press.
+    pub time: SessionTime,
+    /// State of the kitchen before the press.
+    pub before: State,
+    /// The regret of the press, and whether it was an error.
+    pub verdict: PressVerdict,
+    /// Whether the human's belief before the press is known.
+    pub belief_known: bool,
+    /// Cause of an error; `None` if the press was no error or the human's belief is not known.
+    pub cause: Option<ErrorCause>,
 }

@@ -13,19 +13,18 @@
 
 use serde::Serialize;
 
-use super::press_view::{BeliefsBeforePress, TrialBeliefs};
+use super::detection::{BeliefsBeforePress, TrialBeliefs};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
-pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;
+pub(crate) const MOST_WRONGLY_FLAGGED: f64 = 0.05;
 /// Largest number of false flags (on aspects that are believed right) per [`PER_PRESSES`] presses of the human.
 pub const MOST_FALSE_FLAGS: f64 = 0.7;
 /// The unit of the rate of false flags, in presses of the human.
-pub const PER_PRESSES: f64 = 20.0;
+pub(crate) const PER_PRESSES: f64 = 20.0;
 /// Least number of errors of a false belief episode that counts for detection.
 const ERRORS: u32 = 2;
 /// A false belief episode must be flagged before the error with this number to count as detected.
 const BEFORE_ERROR: u32 = 3;
-/// Number of candidate thresholds for each group of aspects.
 const CANDIDATES: usize = 200;
 
 /// Predicted probability of a false belief from which on an aspect is flagged, for locations and for recipes.
@@ -97,7 +96,6 @@ struct Outcome {
     right: usize,
 }
 
-/// Numbers of detections and false flags over trials.
 #[derive(Clone, Copy, Debug, Default)]
 struct FlagCounts {
     presses: usize,

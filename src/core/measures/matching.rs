@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::median::median;
+use super::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 
@@ -69,7 +69,6 @@ impl MatchCriterion {
     /// All match criteria, the strictest first.
     pub const ALL: [MatchCriterion; 3] = [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any];
 
-    /// Equivalence class of a communication's content under this match criterion.
     fn class(self, content: ComparedContent) -> Option<ComparedContent> {
         match self {
             MatchCriterion::Signal => Some(content),

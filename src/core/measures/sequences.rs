@@ -10,14 +10,16 @@
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
+
 use super::attribution::{ErrorCause, FalseBeliefTarget};
-use super::judged_press::JudgedPress;
+use super::errors::JudgedPress;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, State};
 use crate::mind::belief::Belief;
 
 /// Largest number of correct presses between two errors of a sequence.
-pub const MAX_APART: u32 = 3;
+pub(crate) const MAX_APART: u32 = 3;
 /// A belief is false if its P(truth) is below this value.
 pub const FALSE_BELOW: f64 = 0.5;
 
@@ -192,5 +194,64 @@ impl FalseBeliefTracker {
     /// The false belief episodes so far that caused at least one error, in order of their corrections, open ones last.
     pub fn harmful(&self) -> impl Iterator<Item = &FalseBeliefEpisode> {
         self.all().filter(|episode| episode.errors > 0)
+    }
+}
+
+/// Numbers of belief related errors by kind of aspect that the false belief is about, as in the paper.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BeliefErrorCounts {
+    /// Number of errors from a false belief about an order.
+    pub orders: u64,
+    /// Number of errors from a false belief about a recipe.
+    pub recipes: u64,
+    /// Number of errors about an ordered dish where order and recipe were both believed wrong, or where it is unknown
+    /// which of the two was.
+    pub order_or_recipe: u64,
+    /// Number of errors from a false belief about the content of any other location.
+    pub places: u64,
+}
+
+impl BeliefErrorCounts {
+    /// Counts the belief related errors among these presses. `episodes` tells whether the belief about an order or
+    /// about its recipe was false at the time of an error.
+    pub fn from_presses(
+        kitchen: &Kitchen,
+        presses: &[JudgedPress],
+        episodes: &[FalseBeliefEpisode],
+    ) -> BeliefErrorCounts {
+        let mut counts = BeliefErrorCounts::default();
+        for press in presses {
+            let Some(ErrorCause::Belief { target, .. }) = press.cause else { continue };
+            let is_false = |aspect: AspectId| {
+                let is_open = |end| press.time <= end;
+                episodes.iter().any(|episode| {
+                    episode.aspect == aspect && episode.began <= press.time && episode.corrected.is_none_or(is_open)
+                })
+            };
+            let count = match target {
+                FalseBeliefTarget::Place(_) => &mut counts.places,
+                FalseBeliefTarget::Recipe(_) => &mut counts.recipes,
+                FalseBeliefTarget::Order(_, None) => &mut counts.orders,
+                FalseBeliefTarget::Order(location, Some(dish)) => {
+                    match (is_false(AspectId::of_location(location)), is_false(kitchen.aspect_of_dish(dish))) {
+                        (true, false) => &mut counts.orders,
+                        (false, true) => &mut counts.recipes,
+                        _ => &mut counts.order_or_recipe,
+                    }
+                }
+            };
+            *count += 1;
+        }
+        counts
+    }
+
+    /// Adds two counts of belief related errors.
+    pub fn plus(self, other: BeliefErrorCounts) -> BeliefErrorCounts {
+        BeliefErrorCounts {
+            orders: self.orders + other.orders,
+            recipes: self.recipes + other.recipes,
+            order_or_recipe: self.order_or_recipe + other.order_or_recipe,
+            places: self.places + other.places,
+        }
     }
 }

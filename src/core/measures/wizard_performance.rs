@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::median::median;
+use super::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 

@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::RecordedBelief;
-use crate::base::rng::Stream;
+use crate::base::rng::{Stream, shuffle};
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
 /// Probability below which exact sums over a belief leave a value out.
@@ -98,9 +98,7 @@ impl Belief {
         let mut worlds = vec![WeightedWorld { world: World::empty(kitchen), weight }; count];
         let mut strata: Vec<usize> = (0..count).collect();
         for (index, values) in self.of.iter().enumerate() {
-            for last in (1..count).rev() {
-                strata.swap(last, random.random_range(0..=last));
-            }
+            shuffle(&mut strata, random);
             for (one, &stratum) in worlds.iter_mut().zip(&strata) {
                 let mut left = (stratum as f64 + random.random::<f64>()) * weight;
                 let reached = values.iter().position(|p| {

@@ -6,7 +6,9 @@
 //! draws choices, and the attribution of errors uses all probabilities. The reference implementations of filter and
 //! planner implement the same choice model a second time, so that tests can compare the two.
 
-use super::choice_parameters::ChoiceParameters;
+use super::belief::Belief;
+use super::model::model_table;
+use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 
@@ -38,7 +40,6 @@ pub struct ChoiceProbabilities {
 #[derive(Clone, Copy, Debug)]
 pub struct ChoiceWeights {
     wait: f64,
-    /// Softmax weight of each button, by [`ButtonId`].
     press: [f64; MAX_BUTTONS],
     total: f64,
 }
@@ -65,7 +66,7 @@ pub struct ChoiceModel {
 impl ChoiceModel {
     /// The choice model for beliefs that are represented by weighted worlds.
     pub fn new(kitchen: &Kitchen, parameters: &ChoiceParameters) -> ChoiceModel {
-        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let buttons = kitchen.button_ids(Agent::Human);
         let slips = |button| {
             let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
             [next, kitchen.look_alike_button(Agent::Human, button).unwrap_or(next)]
@@ -82,7 +83,7 @@ impl ChoiceModel {
     }
 
     /// The choice model for beliefs represented by exactly `draws` drawn worlds. Softmax weights are not truncated.
-    pub fn for_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
+    pub(crate) fn for_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
         let row = (0..=draws * MOST_PRESSES).map(|more| parameters.weight(more, draws));
         model.weights.resize(draws, Vec::new());
@@ -161,7 +162,7 @@ impl ChoiceModel {
     /// Likelihood p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses,
     /// summed over the drawn worlds that represent the belief b. Needs a model from [`ChoiceModel::for_draws`].
     #[inline]
-    pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
+    pub(crate) fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
         let weight = relative_weights(self.draws_row(), sums, fewest(sums));
         let total: f64 = (0..sums.len()).map(&weight).sum();
         let intended = (1.0 - self.parameters.lapse) * weight(button.index());
@@ -172,7 +173,7 @@ impl ChoiceModel {
 
     /// p(a | b) of every button, given that a button is pressed, from the same sums as
     /// [`ChoiceModel::press_likelihood`].
-    pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
+    pub(crate) fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
         let (intended, total) = all_weights(self.draws_row(), sums, fewest(sums));
         let weight = |button: usize| intended[button];
         let mut pressed = [0.0; MAX_BUTTONS];
@@ -215,7 +216,7 @@ impl ChoiceModel {
     }
 
     /// The choice that the human executes, slips included; the random number `draw` is uniform in [0, 1).
-    pub fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
+    pub(crate) fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
         let HumanChoice::Press(button) = intended else { return intended };
         let ChoiceParameters { lapse, lapse_anywhere: anywhere, .. } = self.parameters;
         if draw >= lapse {
@@ -254,4 +255,40 @@ fn all_weights(row: &[f64], sums: &[u32], least: u32) -> ([f64; MAX_BUTTONS], f6
         total += *own;
     }
     (weights, total)
+}
+
+model_table! {
+    /// Parameters of the choice model (paper, section "Human model").
+    ChoiceParameters, GivenChoice {
+        /// Softmax rationality tau, per press: how strongly a lower expected cost to go is preferred.
+        tau: f64,
+        /// The lapse rate: share of presses that are slips.
+        lapse: f64,
+        /// Share of the slips that hit any button at random. The other slips hit the neighbouring button and the
+        /// look-alike button with equal probability.
+        lapse_anywhere: f64,
+        /// Cost of waiting instead of pressing, in presses, in the choice model.
+        wait_cost: f64,
+        /// Number of drawn worlds that represent a belief.
+        cases: usize,
+    }
+}
+
+impl ChoiceParameters {
+    /// The worlds that represent the human's belief in this choice model.
+    pub fn worlds(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> WeightedWorlds {
+        belief.worlds(kitchen, self.cases.max(1), random)
+    }
+
+    /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, whichever is
+    /// intended, and the probability that it slips to the neighbour or, respectively, to the look-alike.
+    pub(crate) fn slip_probabilities(&self, buttons: usize) -> [f64; 2] {
+        [self.lapse * self.lapse_anywhere / buttons as f64, self.lapse * (1.0 - self.lapse_anywhere) / 2.0]
+    }
+
+    /// exp(tau Q) relative to the best button, for a button whose cost to go, summed over `draws` draws, is higher by
+    /// `more` presses.
+    pub fn weight(&self, more: usize, draws: usize) -> f64 {
+        (-self.tau * more as f64 / draws as f64).exp()
+    }
 }

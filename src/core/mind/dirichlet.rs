@@ -61,7 +61,6 @@ impl Dirichlet {
         (1..self.mean.len()).fold(0, |best, value| if self.mean[value] > self.mean[best] { value } else { best })
     }
 
-    /// Sum of the squared expected probabilities of all values.
     fn square(&self) -> f64 {
         sum_of(&self.mean, |m| m * m)
     }

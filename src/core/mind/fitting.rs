@@ -1,15 +1,16 @@
 //! Fitting the human model: the parameters that can be fitted, the scale on which each parameter is fitted, and the
 //! likelihood of a trial's presses and answers to freeze probes.
 
+use std::sync::Arc;
+
 use super::dirichlet::Dirichlet;
 use super::filter::BeliefFilter;
 use super::model::{HumanModel, PerceptionUnit};
 use super::observation::{Observation, ObservedEvidence};
-use crate::base::incomplete_beta::regularized_incomplete_beta;
-use crate::base::words::short;
+use crate::base::maths::regularized_incomplete_beta;
+use crate::base::text::short;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, Press};
-use std::sync::Arc;
 
 /// Offset that is added to 1 / tau, in presses, at which the fit's scale of tau saturates.
 const STRICT: f64 = 0.1;
@@ -198,7 +199,7 @@ impl HumanModelParameter {
 /// "I don't know".
 const ANSWERED_FROM: f64 = 0.5;
 /// Share of answers to freeze probes that are given at random, by mistake.
-pub const ANSWERS_AT_RANDOM: f64 = 0.02;
+pub(crate) const ANSWERS_AT_RANDOM: f64 = 0.02;
 
 /// A participant's answer to a question of a freeze probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

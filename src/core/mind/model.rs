@@ -1,16 +1,49 @@
 //! The human model (paper, section "Human model"): the parameters of prior, perception, transition, decision and
-//! signals.
+//! signals; and the models that the program has by name.
 //!
-//! The program has two models by name ([`super::named_models`]). A session names one of them, and may set single
-//! parameters on top of it, or name a file with such parameters (`human_model = "…"`); the values in use are recorded
-//! in the header of every recording.
+//! A session names a model, and may set single parameters on top of it, or name a file with such parameters
+//! (`human_model = "…"`); the values in use are recorded in the header of every recording.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use super::choice_parameters::{ChoiceParameters, GivenChoice};
-use super::model_table::model_table;
-use super::signal_model::{GivenSignal, SignalModel};
-use crate::kitchen::{Kitchen, LocationId};
+use super::choice::{ChoiceParameters, GivenChoice};
+use crate::kitchen::{Kitchen, LocationId, LocationKind};
+
+// A file names a model and may give single parameters on top of it. So every table of parameters has a twin in which each
+// parameter may be missing; what is missing is taken from the named model.
+
+/// Declares a table of parameters, and its twin of which a file gives some.
+macro_rules! model_table {
+    (
+        $(#[$about:meta])*
+        $table:ident, $given:ident {
+            $($(#[$meaning:meta])* $parameter:ident: $kind:ty,)*
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+        pub struct $table {
+            $($(#[$meaning])* pub $parameter: $kind,)*
+        }
+
+        #[doc = concat!("The parameters that a file gives of [`", stringify!($table), "`].")]
+        #[derive(Clone, Debug, Default, serde::Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $given {
+            $($parameter: Option<$kind>,)*
+        }
+
+        impl $given {
+            /// The table of a model with the given parameters in their places.
+            pub fn on(self, model: $table) -> $table {
+                $table { $($parameter: self.$parameter.unwrap_or(model.$parameter),)* }
+            }
+        }
+    };
+}
+
+pub(crate) use model_table;
 
 /// A human model that the program has by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,7 +158,7 @@ model_table! {
 }
 
 /// Range of confidence over which the time of a gaze sample turns from unknown to known.
-pub const CONFIDENCE_RAMP: f64 = 0.4;
+pub(crate) const CONFIDENCE_RAMP: f64 = 0.4;
 
 model_table! {
     /// Perception: how gaze near a location becomes an observation of the location's content.
@@ -194,7 +227,7 @@ impl PerceptionModel {
     }
 
     /// The rate of reading something that is read `full_hz` times a second at distance 0.
-    pub fn rate_of(&self, full_hz: f64) -> LocationReadingRate {
+    pub(crate) fn rate_of(&self, full_hz: f64) -> LocationReadingRate {
         LocationReadingRate { full_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
@@ -276,5 +309,229 @@ impl HumanModel {
         let found = || format!("anything = {anything}, look_alike = {look_alike}");
         (look_alike + anything >= 1.0)
             .then(|| ("human.perception.anything", found(), "two numbers that are together below 1"))
+    }
+}
+
+/// Upper bound of probabilities that a signal is noticed where signals take time: a signal certain to be noticed could
+/// not be missed.
+const MOST_NOTICED: f64 = 0.999;
+
+model_table! {
+    /// The effect of a signal on the human.
+    ///
+    /// With `delay_s` = 0 a signal is believed at once with the probability `noticed`. Otherwise a signal is read while
+    /// it stands on the display, and may be missed.
+    SignalModel, GivenSignal {
+        /// Probability that a signal is noticed. Where signals take time: that a signal which stands for long is
+        /// noticed under unknown gaze.
+        noticed: f64,
+        /// Probability that a highlight is noticed, if it differs from that of a shown recipe.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        highlight_noticed: Option<f64>,
+        /// Mean time until somebody who notices a signal reads it, in seconds after its beginning; 0: signals are
+        /// believed at once.
+        delay_s: f64,
+        /// Readings per second of a signal while the gaze is known to be at its place, at distance 0 and with full
+        /// confidence.
+        reading_rate_hz: f64,
+        /// Probability that somebody who reads a signal takes it for any of the other values.
+        misread: f64,
+        /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured
+        /// this probability; 0.7 stands for a person who notices most proposals and makes most of them.
+        follows: f64,
+    }
+}
+
+impl SignalModel {
+    /// Whether signals take time to be read, and can be missed; otherwise signals are believed at once.
+    pub fn takes_time(&self) -> bool {
+        self.delay_s > 0.0
+    }
+
+    pub(crate) fn noticed_at(&self, kind: LocationKind) -> f64 {
+        match kind {
+            LocationKind::Order => self.noticed,
+            _ => self.highlight_noticed.unwrap_or(self.noticed),
+        }
+    }
+
+    /// Hazard that a signal is read under unknown gaze between two times since its beginning, in seconds, by somebody
+    /// who notices it with the probability `noticed`: over all time, 1 - exp(-hazard) = `noticed`. Hazards of parts add
+    /// up.
+    pub(crate) fn reading_hazard(&self, noticed: f64, from_s: f64, until_s: f64) -> f64 {
+        let waits = |time_s: f64| (-time_s.max(0.0) / self.delay_s).exp();
+        -(-noticed.min(MOST_NOTICED)).ln_1p() * (waits(from_s) - waits(until_s)).max(0.0)
+    }
+
+    /// Distribution over the `values` values of an aspect that a reader takes a signal about it for; `truth` is the
+    /// true value.
+    pub fn understood(&self, truth: usize, values: usize) -> impl Iterator<Item = f64> + use<> {
+        let misread = if values > 1 { self.misread } else { 0.0 };
+        let each_other = misread / values.saturating_sub(1).max(1) as f64;
+        (0..values).map(move |value| if value == truth { 1.0 - misread } else { each_other })
+    }
+}
+
+/// Forecast of how a signal that is shown now will be read, which the planner assumes in its rollouts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SignalReadingForecast {
+    /// Probability that a recipe shown now is read and understood.
+    pub recipe: f64,
+    /// Probability that a highlight shown now is read and understood.
+    pub highlight: f64,
+    /// Time from the beginning of the signal until the participant reads it, in seconds.
+    pub delay_s: f64,
+}
+
+impl Default for SignalReadingForecast {
+    /// By default everybody believes a signal at once.
+    fn default() -> Self {
+        SignalReadingForecast { recipe: 1.0, highlight: 1.0, delay_s: 0.0 }
+    }
+}
+
+impl SignalReadingForecast {
+    /// Probability that a signal about a location of this kind is read and understood.
+    pub fn probability(&self, kind: LocationKind) -> f64 {
+        match kind {
+            LocationKind::Order => self.recipe,
+            _ => self.highlight,
+        }
+    }
+}
+
+// The models by name. `plain` is the default. It is not fitted to anybody; a laboratory fits it to people of its own
+// (`tomcom fit`). `paper-2021` has the equations of Buehler, Adamy and Weisswange (2021); values that the paper does not
+// give are those of `plain`. `docs/paper.md` lists what differs.
+
+/// The half-life of beliefs about recipes with which nothing is forgotten, in seconds.
+pub(crate) const NEVER_FORGOTTEN_S: f64 = 1e18;
+
+/// The model `plain`.
+pub const PLAIN: HumanModel = HumanModel {
+    model: HumanModelName::Plain,
+    prior: PriorModel {
+        location_truth: 0.9,
+        location_precision: 10.0,
+        recipe_truth: 0.8,
+        recipe_look_alike: 0.6,
+        recipe_precision: 0.6,
+    },
+    perception: PerceptionModel {
+        observation: PerceptionUnit::Look,
+        reading_rate_hz: 5.0,
+        radius_deg: 2.0,
+        viewing_distance_m: 2.0,
+        look_alike: 0.04,
+        anything: 0.01,
+        min_confidence: 0.6,
+        history_s: 0.5,
+        max_sample_s: 1.0 / 15.0,
+        look_ends_s: 0.1,
+    },
+    looking: LookingModel {
+        marginalised: true,
+        looks_hz: 1.0,
+        other_looks_hz: 0.25,
+        capture: 0.35,
+        display_lost_looks_hz: 0.05,
+        blink_s: 0.3,
+    },
+    transition: TransitionModel { recipe_half_life_s: 200.0, foresight: 0.2 },
+    decision: ChoiceParameters { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, cases: 32 },
+    signal: SignalModel {
+        noticed: 0.85,
+        highlight_noticed: None,
+        delay_s: 1.0,
+        reading_rate_hz: 3.0,
+        misread: 0.0,
+        follows: 0.7,
+    },
+    inference: InferenceSettings { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 512, predictions: 64 },
+};
+
+/// The model `paper-2021`.
+pub const PAPER_2021: HumanModel = HumanModel {
+    model: HumanModelName::Paper2021,
+    perception: PerceptionModel { observation: PerceptionUnit::Sample, ..PLAIN.perception },
+    looking: LookingModel { marginalised: false, ..PLAIN.looking },
+    transition: TransitionModel { recipe_half_life_s: NEVER_FORGOTTEN_S, foresight: 1.0 },
+    decision: ChoiceParameters { lapse: 1e-6, ..PLAIN.decision },
+    signal: SignalModel { noticed: 1.0, delay_s: 0.0, ..PLAIN.signal },
+    ..PLAIN
+};
+
+impl HumanModelName {
+    /// The model with this name.
+    pub fn model(self) -> HumanModel {
+        match self {
+            HumanModelName::Plain => PLAIN,
+            HumanModelName::Paper2021 => PAPER_2021,
+        }
+    }
+}
+
+impl From<GivenHumanModel> for HumanModel {
+    fn from(given: GivenHumanModel) -> HumanModel {
+        let model = given.model.model();
+        given.on(model)
+    }
+}
+
+impl HumanModel {
+    /// The model's name, with what differs from the named model: `paper-2021; decision.tau = 3.0, not 4.0`.
+    pub fn named(&self) -> String {
+        [vec![self.model.name().to_string()], self.differences()].concat().join("; ")
+    }
+
+    /// What differs from the named model: for each such parameter a text like `decision.tau = 8.0, not 4.0`.
+    pub fn differences(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let [own, named] = [self, &self.model.model()].map(|model| serde_json::to_value(model).unwrap_or_default());
+        differ(&own, &named, "", &mut found);
+        found
+    }
+}
+
+fn differ(own: &Value, named: &Value, path: &str, found: &mut Vec<String>) {
+    let (Value::Object(own), Value::Object(named)) = (own, named) else {
+        if own != named {
+            let told = |value: &Value| if value.is_null() { "nothing".to_string() } else { value.to_string() };
+            found.push(format!("{path} = {}, not {}", told(own), told(named)));
+        }
+        return;
+    };
+    let only_named = named.keys().filter(|key| !own.contains_key(*key));
+    for key in own.keys().chain(only_named) {
+        let inner = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        let of = |table: &serde_json::Map<String, Value>| table.get(key).cloned().unwrap_or_default();
+        differ(&of(own), &of(named), &inner, found);
+    }
+}
+
+/// The default of each table is that of the default model.
+macro_rules! defaults {
+    ($($table:ident: $field:ident,)*) => {
+        $(impl Default for $table {
+            fn default() -> $table {
+                PLAIN.$field
+            }
+        })*
+    };
+}
+
+defaults! {
+    PriorModel: prior,
+    PerceptionModel: perception,
+    LookingModel: looking,
+    TransitionModel: transition,
+    ChoiceParameters: decision,
+    SignalModel: signal,
+    InferenceSettings: inference,
+}
+
+impl Default for HumanModel {
+    fn default() -> HumanModel {
+        PLAIN
     }
 }

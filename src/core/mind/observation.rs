@@ -5,7 +5,7 @@ use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, LocationId, Press, State};
 
 /// Largest number of presses that the display proposes at a time.
-pub const MOST_PROPOSED: usize = 5;
+pub(crate) const MOST_PROPOSED: usize = 5;
 
 /// Presses of the human that the display proposes, the next one first; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

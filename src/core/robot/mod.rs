@@ -1,42 +1,28 @@
-//! The robot: its task policy, and its recorded activity. The robot arms that carry the policy out are in `tomcom_arm`.
+//! The robot: its task policy, its recorded activity, its safety modes. The robot arms that carry the policy out are in
+//! `tomcom_arm`.
 
-pub mod initiative;
-pub mod moment;
 pub mod policy;
-pub mod safety;
 
 use serde::{Deserialize, Serialize};
 
-use self::moment::ArmSample;
-use self::safety::SafetyMode;
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
 
 /// Why the robot abandoned a press that it had begun or planned.
+#[allow(missing_docs, reason = "`words` says each")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AbortReason {
-    /// When the arm was about to touch the button, a press of the button was no longer useful.
     NoLongerUseful,
-    /// The wizard stopped the robot.
     Stopped,
-    /// The wizard skipped this press of the robot.
     Skipped,
-    /// The wizard chose another press for the robot.
     Driven,
-    /// The button is outside of the arm's workspace.
     OutOfReach,
-    /// The arm's pose at the button is singular.
     Singular,
-    /// Every path of the arm to the button is blocked by an obstacle or by the arm itself.
     Obstructed,
-    /// A hand was in the arm's way for too long.
     HandInTheWay,
-    /// The arm pushed the button down, but the button did not click.
     NoClick,
-    /// The arm measured a contact force above the threshold and stopped.
     Contact,
-    /// A joint did not follow its command, and the arm stopped.
     Fault,
 }
 
@@ -134,4 +120,107 @@ pub enum RobotEvent {
         /// The force of the contact in newtons.
         force_n: f64,
     },
+}
+
+/// The number of joints of the robot arm.
+pub const JOINTS: usize = 6;
+/// Names of the joints in the arm's URDF, from the base on.
+pub const JOINT_NAMES: [&str; JOINTS] = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
+/// Joint angles of the robot arm, from the base on, in radians.
+pub type JointAngles = [f64; JOINTS];
+
+/// Phase of the arm's motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArmPhase {
+    /// The arm rests above the buttons.
+    #[default]
+    Rests,
+    /// The arm comes up from a button.
+    Retracts,
+    /// The arm moves above the buttons to its target.
+    Travels,
+    /// The arm stands above its button, ready to press.
+    Hovers,
+    /// The arm pushes its button down.
+    Presses,
+}
+
+/// A sample of the robot arm's motion, as it is recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ArmSample {
+    /// The phase of the arm's motion.
+    pub phase: ArmPhase,
+    /// Joint angles in radians, from the base on, rounded to a ten thousandth.
+    pub joints: JointAngles,
+    /// The greatest contact force since the previous sample, on a button or a person, in newtons.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub force_n: f64,
+    /// The centre of the human's hand, in the frame of the robot arm's base, in metres.
+    pub hand_m: [f64; 3],
+    /// The distance between the human's hand and the arm, in metres.
+    pub hand_away_m: f64,
+}
+
+fn is_nothing(force_n: &f64) -> bool {
+    *force_n == 0.0
+}
+
+/// Contact force above which the arm stops at normal speed, in newtons (power and force limiting, ISO/TS 15066, 5.5.5).
+pub(crate) const STOP_N: f64 = 60.0;
+/// Contact force above which the arm stops while it moves slowly near a hand, in newtons: the contacts of a slow arm
+/// are weaker.
+pub(crate) const STOP_REDUCED_N: f64 = 20.0;
+/// Distance between the human's hand and the arm below which the arm moves slowly, in metres.
+pub const SLOWS_M: f64 = 0.25;
+/// Safety modes of the robot arm's controller, with the names of the manufacturer (Universal Robots); only the modes
+/// that the program uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SafetyMode {
+    /// Nobody is near the arm: the arm moves at full speed.
+    #[default]
+    Normal,
+    /// A hand is near the arm: the arm moves slowly.
+    Reduced,
+    /// The arm stopped after a contact, and stays where it is until the wizard releases it.
+    ProtectiveStop,
+    /// A hand is in the way of the arm: the arm stands until the hand is gone (speed and separation monitoring).
+    Safeguard,
+    /// The wizard stopped the arm.
+    EmergencyStop,
+    /// A joint of the arm does not follow its command.
+    Fault,
+}
+
+impl SafetyMode {
+    /// The safety mode in words, as the manufacturer writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            SafetyMode::Normal => "NORMAL",
+            SafetyMode::Reduced => "REDUCED",
+            SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
+            SafetyMode::Safeguard => "SAFEGUARD STOP",
+            SafetyMode::EmergencyStop => "EMERGENCY STOP",
+            SafetyMode::Fault => "FAULT",
+        }
+    }
+
+    /// Whether the arm stays stopped until the wizard releases it.
+    pub fn is_stopped(self) -> bool {
+        self.has_stopped_itself() || self == SafetyMode::EmergencyStop
+    }
+
+    /// Whether the arm stopped by itself, without the wizard.
+    pub fn has_stopped_itself(self) -> bool {
+        matches!(self, SafetyMode::ProtectiveStop | SafetyMode::Fault)
+    }
+
+    /// Contact force above which the arm stops in this safety mode, in newtons.
+    pub fn threshold_n(self) -> f64 {
+        match self {
+            SafetyMode::Normal => STOP_N,
+            _ => STOP_REDUCED_N,
+        }
+    }
 }

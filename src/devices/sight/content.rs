@@ -8,7 +8,7 @@ use super::probe_page::{DisplayedProbe, probe};
 use super::shown_clock::TrialClockState;
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use tomcom_core::communication::Signal;
-use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use tomcom_core::robot::IdleReason;
 use tomcom_session::gaze_check::RunningGazeCheck;

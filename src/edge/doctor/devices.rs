@@ -4,7 +4,7 @@
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 use tomcom_core::gaze::tags::TagError;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::lsl::{self, DiscoveredLslStream};

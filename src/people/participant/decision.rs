@@ -6,12 +6,15 @@
 
 use std::collections::VecDeque;
 
-use super::goals::{GoalContext, Goals};
-use super::habits::{Habits, Lapses};
-use super::knowledge::TaskKnowledge;
-use super::planning::{BackwardChaining, ProposedPress};
+use rand::RngExt;
+use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, State, World};
+
+use super::chance;
+use super::goals::{GoalContext, Goals, TaskKnowledge};
+use super::planning::{BackwardChaining, ProposedPress};
+use super::population::ParticipantTraits;
 
 /// Number of presses after which the participant makes a new plan even if all goes well; the participant looks at the
 /// places of planned presses.
@@ -25,16 +28,13 @@ const PART_WORTH: usize = 2;
 /// Share of the decisions without any useful press (desperate ones) in which the participant still waits for the robot.
 const HOPES: f64 = 0.5;
 
-/// Current plan of the simulated participant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticipantPlan {
-    /// Planned next presses of the participant.
     pub plan: VecDeque<ButtonId>,
     /// The order on which the participant works, and the session time until which the participant stays with this
     /// order.
     pub order: Option<(LocationId, SessionTime)>,
-    /// The stack that the participant served last.
-    pub last_dish: Option<ContentId>,
+    pub(crate) last_dish: Option<ContentId>,
     /// Lapses (omissions and habits) that hold for the decisions until the next press.
     pub lapses: Lapses,
 }
@@ -50,7 +50,6 @@ impl ParticipantPlan {
 /// How long the simulated participant has found no useful press, and what the participant therefore does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Impatience {
-    /// The participant waits for the robot, for the time being.
     Calm,
     /// The participant also considers detours (presses that undo something for another press).
     Impatient,
@@ -61,40 +60,28 @@ pub enum Impatience {
 /// The data for a decision on the participant's next presses, except for the world in which the decision is made.
 #[derive(Clone, Debug)]
 pub struct DecisionContext<'a> {
-    /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
-    /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,
-    /// The participant's habits, such as the order of fetching parts.
-    pub habits: &'a Habits,
+    pub(crate) habits: &'a Habits,
     /// Number of own presses ahead that the participant thinks through.
     pub depth: usize,
-    /// The order on which the participant works.
-    pub in_progress: Option<LocationId>,
-    /// The stack that the participant served last.
-    pub last_dish: Option<ContentId>,
-    /// Lapses (omissions and habits) of the participant in this decision.
+    pub(crate) in_progress: Option<LocationId>,
+    pub(crate) last_dish: Option<ContentId>,
     pub lapses: Lapses,
-    /// How long the participant has found no useful press.
-    pub urgency: Impatience,
+    pub(crate) urgency: Impatience,
 }
 
-/// The result of a participant's decision: an order and the next presses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DecisionResult {
-    /// The order on which the participant works.
     pub order: Option<LocationId>,
     /// The participant's next presses; empty if the participant waits.
     pub plan: VecDeque<ButtonId>,
 }
 
-/// A press with its consequences as the participant foresees them.
 struct Foreseen {
-    /// The presses from this press on, in order.
     path: VecDeque<ButtonId>,
     /// Number of detours (presses that undo something for the sake of another) among the foreseen presses.
     detours: u32,
-    /// Whether the press fills the empty hand.
     fills_hand: bool,
     /// Whether the press itself is a detour, which only makes room.
     is_detour: bool,
@@ -246,11 +233,78 @@ impl DecisionContext<'_> {
     }
 }
 
-/// The human's presses that change the state of a world, each with the state after the press.
-pub fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
+pub(crate) fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);
         Some((button, kitchen.press(world.state, &world.recipes, Agent::Human, button)?))
     };
     (0..kitchen.buttons[Agent::Human.index()].len()).filter_map(step).collect()
+}
+
+/// Habits of one simulated participant, including the dish that the participant made last.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Habits {
+    /// Rank of each content as an ingredient: the participant fetches ingredients of lower rank first.
+    ranks: Vec<u8>,
+    /// The stack that the participant served last, if the participant confuses it with the present dish in this
+    /// decision.
+    last: Option<ContentId>,
+}
+
+impl Habits {
+    pub fn draw(kitchen: &Kitchen, random: &mut Stream) -> Habits {
+        Habits { ranks: kitchen.contents.iter().map(|_| random.random_range(0..=u8::MAX)).collect(), last: None }
+    }
+
+    /// The same habits for a decision in which the participant confuses the present dish with the last one; with
+    /// `None`, for a decision without such a confusion.
+    pub fn with_last(&self, last: Option<ContentId>) -> Habits {
+        Habits { last, ..self.clone() }
+    }
+
+    pub fn rank(&self, ingredient: ContentId) -> u8 {
+        self.ranks[ingredient.index()]
+    }
+
+    /// The part of the last dish that the participant takes by habit instead of a part of the present dish. Both parts
+    /// belong in the same slot of a dish, so that they do not stack.
+    pub(crate) fn part_instead(&self, kitchen: &Kitchen, stack: ContentId, part: ContentId) -> Option<ContentId> {
+        let last = &kitchen.content(self.last?).items;
+        let own = &kitchen.content(stack).items;
+        if last.contains(&part) {
+            return None;
+        }
+        last.iter().copied().find(|&other| !own.contains(&other) && kitchen.stacked(part, other).is_none())
+    }
+}
+
+/// Lapses of a simulated participant (omissions, habits and chance) in the decisions until the next press. A repeated
+/// decision has the same lapses.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lapses {
+    /// Lapse: the participant does not check the preconditions of presses after the next one.
+    pub skips_check: bool,
+    /// Lapse: the participant confuses the present dish with the last one.
+    pub follows_habit: bool,
+    /// Lapse: the participant forgets parts that lie at parking places.
+    pub forgets_parked: bool,
+    /// Lapse: the participant first does what is within reach for another order.
+    pub takes_along: bool,
+    /// Random number from 0 to 1 that decides between equally good choices.
+    pub(crate) whim: f64,
+    /// The button of the press that just had no effect, if the participant tries that press again.
+    pub(crate) insists_on: Option<ButtonId>,
+}
+
+impl Lapses {
+    pub fn draw(person: &ParticipantTraits, random: &mut Stream) -> Lapses {
+        Lapses {
+            skips_check: chance(random, person.skips_check),
+            follows_habit: chance(random, person.follows_habit),
+            forgets_parked: chance(random, person.forgets_parked),
+            takes_along: chance(random, person.takes_along),
+            whim: random.random::<f64>(),
+            insists_on: None,
+        }
+    }
 }

@@ -1,15 +1,15 @@
 //! Simulated eye tracking of a participant: fixations, saccades, blinks and noise, at 120 gaze samples per second.
 
 use rand::RngExt;
-
-use super::draws::{chance, normal};
-use super::population::ParticipantTraits;
 use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 
+use super::population::ParticipantTraits;
+use super::{chance, normal};
+
 /// Gaze samples per second, as a Pupil Core eye tracker delivers them.
-pub const RATE_HZ: u64 = 120;
+pub(crate) const RATE_HZ: u64 = 120;
 /// Time from the start of a fixation until its location has been read, in seconds: about half of a usual fixation.
 const READING_S: f64 = 0.14;
 /// Shortest duration of a fixation, in seconds.
@@ -31,7 +31,6 @@ pub enum FixationProgress {
     Nothing,
     /// The fixation has lasted long enough for its location to be read.
     Read,
-    /// The fixation of the eyes is over.
     Done,
 }
 
@@ -86,12 +85,10 @@ impl Eyes {
         self.look_at(now, self.goal);
     }
 
-    /// Time at which the next gaze sample is due.
     pub fn due(&self) -> SessionTime {
         self.started + SessionTime(self.samples * 1_000_000_000 / RATE_HZ)
     }
 
-    /// Postpones all planned eye movements and gaze samples by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         for time in [&mut self.started, &mut self.leaves, &mut self.lands, &mut self.ends] {
             *time = *time + by;
@@ -119,7 +116,6 @@ impl Eyes {
         self.ends = self.lands + SessionTime::from_secs_f64(fixation_s);
     }
 
-    /// Advances the present fixation to `now` and returns its progress.
     pub fn advance(&mut self, now: SessionTime) -> FixationProgress {
         if let Some(reads) = self.reads
             && now >= reads
@@ -132,20 +128,19 @@ impl Eyes {
     }
 
     /// Restarts the time needed for reading, because the content at the fixated location has just changed.
-    pub fn look_again(&mut self, now: SessionTime) {
+    pub(crate) fn look_again(&mut self, now: SessionTime) {
         let read = now + SessionTime::from_secs_f64(READING_S);
         self.reads = Some(read);
         self.ends = self.ends.max(read);
     }
 
     /// Keeps the present fixation until `until`; the participant reads nothing more during the fixation.
-    pub fn rest_until(&mut self, until: SessionTime) {
+    pub(crate) fn rest_until(&mut self, until: SessionTime) {
         self.reads = None;
         self.ends = self.ends.max(until);
     }
 
-    /// Whether the saccade has ended, so that a fixation has begun.
-    pub fn has_landed(&self, now: SessionTime) -> bool {
+    pub(crate) fn has_landed(&self, now: SessionTime) -> bool {
         now >= self.lands && !self.is_closed(now)
     }
 
@@ -196,4 +191,42 @@ impl Eyes {
         let shut = now + SessionTime::from_secs_f64(wait_s);
         (shut, shut + SessionTime::from_secs_f64(length_s))
     }
+}
+
+/// The schedule of the simulated eye tracker's drop-outs in one trial.
+#[derive(Clone, Debug)]
+pub struct GazeDropoutSchedule {
+    random: Stream,
+    every_s: f64,
+    /// Natural logarithms of the shortest and the longest duration of a drop-out in seconds.
+    lengths: [f64; 2],
+    /// Beginning and end of the present or next drop-out; `None` before the first gaze sample.
+    next: Option<[SessionTime; 2]>,
+}
+
+impl GazeDropoutSchedule {
+    /// A schedule of drop-outs from the mean time between drop-outs, and the shortest and longest drop-out, in seconds.
+    pub fn new(every_s: f64, [shortest_s, longest_s]: [f64; 2], random: Stream) -> GazeDropoutSchedule {
+        GazeDropoutSchedule { random, every_s, lengths: [shortest_s.ln(), longest_s.ln()], next: None }
+    }
+
+    /// Whether the gaze sample that is due `now` is lost in a drop-out. The function must be called in the order of the
+    /// samples' times.
+    pub fn swallows(&mut self, now: SessionTime) -> bool {
+        loop {
+            let [begin, end] =
+                *self.next.get_or_insert_with(|| after(now, self.every_s, self.lengths, &mut self.random));
+            if now < end {
+                return now >= begin;
+            }
+            self.next = Some(after(end, self.every_s, self.lengths, &mut self.random));
+        }
+    }
+}
+
+fn after(time: SessionTime, every_s: f64, [shortest, longest]: [f64; 2], random: &mut Stream) -> [SessionTime; 2] {
+    let wait_s = -every_s * (1.0 - random.random::<f64>()).ln();
+    let length_s = (shortest + (longest - shortest) * random.random::<f64>()).exp();
+    let begin = time + SessionTime::from_secs_f64(wait_s);
+    [begin, begin + SessionTime::from_secs_f64(length_s)]
 }

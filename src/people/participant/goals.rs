@@ -1,19 +1,17 @@
 //! Goals of a simulated participant in the state that the participant believes: for each order, the missing parts of
 //! the dish, and what is available for these parts.
 
-use super::knowledge::TaskKnowledge;
-use tomcom_core::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind, Recipes, State};
+use tomcom_core::kitchen::{
+    Agent, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind, Recipes, State,
+};
 
 /// A content in the kitchen that can be made into a part of a dish, or that is a finished dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartSource {
-    /// The location where the content is.
     pub at: LocationId,
-    /// The content in its present state, before further processing.
     pub content: ContentId,
 }
 
-/// A part that is still missing for a dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MissingPart {
     /// The part in the form in which it is put on the board: an item, or a stack of several items.
@@ -25,15 +23,13 @@ pub struct MissingPart {
 /// The simulated participant's goal for one order: the dish, and what is missing for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderGoal {
-    /// The location of the order.
     pub order: LocationId,
     /// The stack of items that the participant believes to be the ordered dish.
     pub stack: ContentId,
     /// The location of the finished stack; `None` if the dish is not finished.
     pub finished: Option<LocationId>,
     /// Whether the stack on the board is the beginning of the ordered dish.
-    pub has_base: bool,
-    /// The parts that are still missing for the ordered dish.
+    pub(crate) has_base: bool,
     pub needs: Vec<MissingPart>,
 }
 
@@ -41,7 +37,6 @@ pub struct OrderGoal {
 /// contents that these goals use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goals {
-    /// The participant's goal for each order that the participant believes to be shown.
     pub orders: Vec<OrderGoal>,
     claimed: u32,
 }
@@ -49,23 +44,20 @@ pub struct Goals {
 /// What a simulated participant takes into account to determine the goals.
 #[derive(Clone, Copy, Debug)]
 pub struct GoalContext<'a> {
-    /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
-    /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,
-    /// The recipes in which the participant believes.
     pub recipes: &'a Recipes,
     /// Whether the participant forgets parts that lie at parking places (places without processing).
     pub forgets_parked: bool,
     /// Whether the participant takes items without checking whether they can be used next.
     pub skips_check: bool,
     /// Whether the participant waits for what the robot holds in its hand.
-    pub waits_for_robot: bool,
+    pub(crate) waits_for_robot: bool,
 }
 
 impl Goals {
     /// The goals in a state; the order `first` claims available contents before the other orders.
-    pub fn in_state(prospect: &GoalContext, state: State, first: LocationId) -> Goals {
+    pub(crate) fn in_state(prospect: &GoalContext, state: State, first: LocationId) -> Goals {
         let mut wanted: Vec<(LocationId, DishId)> = prospect.kitchen.wanted(state).collect();
         wanted.sort_by_key(|&(order, _)| order != first);
         let mut goals = Goals { orders: Vec::with_capacity(wanted.len()), claimed: 0 };
@@ -154,4 +146,131 @@ impl Goals {
 
 fn is_within(items: &[ContentId], all: &[ContentId]) -> bool {
     items.iter().all(|item| all.contains(item))
+}
+
+/// Longest chain of processing steps from an ingredient to a part of a dish.
+const MOST_STEPS: usize = 8;
+
+/// How an item is made: the processing step, and the item to which the step is applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ItemPreparation {
+    /// The processing step, as an index into the kitchen's list [`Kitchen::processes`].
+    pub process: u8,
+    pub from: ContentId,
+    /// Place of the processing step; `None` if the step is done in the hand of the agent who presses.
+    pub place: Option<LocationId>,
+}
+
+/// The task as the participant knows it: the human's buttons by their actions, and the processing steps of every item.
+#[derive(Clone, Debug)]
+pub struct TaskKnowledge {
+    takes: Vec<Option<ButtonId>>,
+    uses: Vec<Option<ButtonId>>,
+    processes: Vec<Option<ButtonId>>,
+    serves: Vec<Option<ButtonId>>,
+    pub trash: Option<ButtonId>,
+    makings: Vec<Option<ItemPreparation>>,
+    is_station: Vec<bool>,
+}
+
+impl TaskKnowledge {
+    pub fn new(kitchen: &Kitchen) -> TaskKnowledge {
+        let mut knowledge = TaskKnowledge {
+            takes: vec![None; kitchen.contents.len()],
+            uses: vec![None; kitchen.locations.len()],
+            processes: vec![None; kitchen.processes.len()],
+            serves: vec![None; kitchen.locations.len()],
+            trash: None,
+            makings: vec![None; kitchen.contents.len()],
+            is_station: vec![false; kitchen.locations.len()],
+        };
+        for (index, button) in kitchen.buttons[Agent::Human.index()].iter().enumerate() {
+            let id = Some(ButtonId(index as u8));
+            match button.action {
+                ButtonAction::Take(item) => knowledge.takes[item.index()] = id,
+                ButtonAction::Use(location) => knowledge.uses[location.index()] = id,
+                ButtonAction::Process(process) => knowledge.processes[usize::from(process)] = id,
+                ButtonAction::Serve(order) => knowledge.serves[order.index()] = id,
+                ButtonAction::Trash => knowledge.trash = id,
+            }
+        }
+        for (index, process) in kitchen.processes.iter().enumerate() {
+            if let Some(place) = process.place {
+                knowledge.is_station[place.index()] = true;
+            }
+            for &(from, to) in &process.steps {
+                let making = ItemPreparation { process: index as u8, from, place: process.place };
+                knowledge.makings[to.index()].get_or_insert(making);
+            }
+        }
+        knowledge.is_station[kitchen.board.index()] = true;
+        knowledge.is_station[kitchen.plate.index()] = true;
+        knowledge
+    }
+
+    /// The human's button that takes this item from a storage.
+    pub fn take(&self, item: ContentId) -> Option<ButtonId> {
+        self.takes[item.index()]
+    }
+
+    /// The human's button of a place, which puts an item down there or picks one up.
+    pub fn at(&self, place: LocationId) -> Option<ButtonId> {
+        self.uses[place.index()]
+    }
+
+    pub fn process(&self, process: u8) -> Option<ButtonId> {
+        self.processes[usize::from(process)]
+    }
+
+    pub fn serve(&self, order: LocationId) -> Option<ButtonId> {
+        self.serves[order.index()]
+    }
+
+    /// Whether items are stacked, processed or served at a place, so that the place is more than a parking place.
+    pub(crate) fn is_station(&self, place: LocationId) -> bool {
+        self.is_station[place.index()]
+    }
+
+    /// How an item is made; `None` for an item that comes from a storage.
+    pub fn making(&self, item: ContentId) -> Option<ItemPreparation> {
+        self.makings[item.index()]
+    }
+
+    /// The number of processing steps from `content` to `part`; `None` if the content cannot become that part.
+    pub(crate) fn steps_to(&self, content: ContentId, part: ContentId) -> Option<u8> {
+        let mut item = part;
+        for steps in 0..MOST_STEPS {
+            if item == content {
+                return Some(steps as u8);
+            }
+            item = self.making(item)?.from;
+        }
+        None
+    }
+
+    /// The next processing step of `content` on the way to `part`; `None` if the content is that part already, or can
+    /// never become it.
+    pub(crate) fn next_making(&self, content: ContentId, part: ContentId) -> Option<ItemPreparation> {
+        let mut item = part;
+        for _ in 0..MOST_STEPS {
+            let making = self.making(item)?;
+            if making.from == content {
+                return Some(making);
+            }
+            item = making.from;
+        }
+        None
+    }
+
+    /// The ingredient, taken from a storage, from which a part is made.
+    pub fn ingredient(&self, part: ContentId) -> ContentId {
+        let mut item = part;
+        for _ in 0..MOST_STEPS {
+            match self.making(item) {
+                Some(making) => item = making.from,
+                None => break,
+            }
+        }
+        item
+    }
 }

@@ -1,16 +1,15 @@
 //! Gaze control of the simulated participant: fixation targets, reading of locations, attention capture by changes.
 
 use rand::RngExt;
-
-use super::draws::chance;
-use super::eyes::FixationProgress;
-use super::simulated::SimulatedParticipant;
-use super::true_beliefs::wanted_dish;
-use super::weighted_draw::drawn_by_weight;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{
     Agent, AspectId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State, World,
 };
+
+use super::beliefs::wanted_dish;
+use super::eyes::FixationProgress;
+use super::simulated::SimulatedParticipant;
+use super::{chance, drawn_by_weight};
 
 /// Probability that the participant gives to the content that was just read at a location.
 const READ_CERTAINTY: f64 = 0.97;
@@ -206,7 +205,7 @@ impl SimulatedParticipant {
     fn is_about(&self, content: ContentId) -> bool {
         let kitchen = &self.kitchen;
         let World { state, .. } = self.beliefs.point(kitchen);
-        let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let places = kitchen.location_ids();
         let places = places.filter(|&place| kitchen.location(place).kind != LocationKind::Order);
         let lying: Vec<ContentId> =
             places.flat_map(|place| kitchen.content(state.content(place)).items.clone()).collect();
@@ -226,7 +225,6 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The dish, among these, of whose recipe the participant is least certain.
     pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
         let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))

@@ -3,42 +3,45 @@
 //! A simulated participant differs from the assistant's human model: a participant acts on one most probable world,
 //! plans by backward chaining, sees only fixated locations, and forgets recipes in steps. A participant knows nothing
 //! of the cost to go that drives the assistant and defines errors.
-//!
-//! Modules from the ground up:
-//!
-//! - Components: `draws`, [`population`] (distribution of traits), [`true_beliefs`], `weighted_draw`, `memory` (of
-//!   recipes), `eyes`, `attention`, `signal_sense`.
-//! - Planning: `knowledge` (of buttons and processing steps), `goals` (missing parts), `habits` (and lapses),
-//!   `planning` (backward chaining), `decision` (next presses).
-//! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).
-//! - Errors of the hand: [`slips`] (which other button is hit).
-//! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`,
-//!   `acting`, `answering`.
 
-mod acting;
-mod answering;
-mod attention;
+pub mod beliefs;
 mod decision;
-mod draws;
-mod eyes;
-pub mod gaze_gaps;
+pub mod eyes;
 mod goals;
-mod habits;
-mod hand;
-mod knowledge;
-mod learning;
+pub mod hand;
 mod looking;
-mod memory;
 mod planning;
 pub mod population;
-mod signal_sense;
 mod signals;
 mod simulated;
-pub mod slips;
-mod targets;
 mod thinking;
-pub mod true_beliefs;
-mod weighted_draw;
 mod witness;
 
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+use tomcom_core::base::rng::Stream;
+
 pub use simulated::{ParticipantAction, SimulatedParticipant};
+
+fn normal(random: &mut Stream) -> f64 {
+    StandardNormal.sample(random)
+}
+
+fn chance(random: &mut Stream, p: f64) -> bool {
+    random.random::<f64>() < p
+}
+
+/// As [`chance`], but no random number is drawn if `p` is 0, so that a new trait does not change participants without it.
+fn rare_chance(random: &mut Stream, p: f64) -> bool {
+    p > 0.0 && chance(random, p)
+}
+
+/// Draws an index in proportion to these weights, with one random number. `None` if there are no weights, or if
+/// rounding leaves a remainder after the last weight.
+fn drawn_by_weight(random: &mut Stream, weights: &[f64]) -> Option<usize> {
+    let mut left = random.random::<f64>() * weights.iter().sum::<f64>();
+    weights.iter().position(|weight| {
+        left -= weight;
+        left < 0.0
+    })
+}

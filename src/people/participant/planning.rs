@@ -6,17 +6,16 @@
 //! down. The participant waits for what only the robot can do, and for what the robot holds. A press that undoes
 //! something for the sake of another is a detour.
 
-use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
-use super::habits::Habits;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State};
 
-/// A press that backward chaining proposes.
+use super::decision::Habits;
+use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProposedPress {
-    /// The proposed button of the human.
     pub button: ButtonId,
     /// Whether the press is a detour, which only makes room, at the cost of another press later.
-    pub is_detour: bool,
+    pub(crate) is_detour: bool,
 }
 
 impl ProposedPress {
@@ -39,7 +38,6 @@ pub struct BackwardChaining<'a> {
 }
 
 impl<'a> BackwardChaining<'a> {
-    /// Starts backward chaining from the goals in a state, those of the order in progress first.
     pub fn new(prospect: &'a GoalContext<'a>, state: State, in_progress: LocationId) -> BackwardChaining<'a> {
         let hand = prospect.kitchen.hands[Agent::Human.index()];
         let goals = Goals::in_state(prospect, state, in_progress);
@@ -199,7 +197,7 @@ impl<'a> BackwardChaining<'a> {
     /// Puts the held content down where it is least in the way; if no place is free, it is thrown away.
     fn park(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
-        let places = (0..self.prospect.kitchen.locations.len()).map(|index| LocationId(index as u8));
+        let places = self.prospect.kitchen.location_ids();
         let free = places.filter(|&place| knowledge.at(place).is_some() && self.is_free(place, self.held));
         // Board and plate are the last choice for parking, since every dish needs them.
         let kitchen = self.prospect.kitchen;
@@ -226,7 +224,6 @@ impl<'a> BackwardChaining<'a> {
         self.prospect.skips_check || self.takes(station, item, goal)
     }
 
-    /// Whether a station accepts a part for this order now.
     fn takes(&self, station: LocationId, item: ContentId, goal: &OrderGoal) -> bool {
         let there = self.state.content(station);
         match there.is_empty() {

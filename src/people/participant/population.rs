@@ -1,9 +1,9 @@
 //! Population of simulated participants: distributions of traits, and individual participants drawn from them.
 
 use serde::{Deserialize, Serialize};
-
-use super::draws::normal;
 use tomcom_core::base::rng::Stream;
+
+use super::normal;
 
 /// Distribution of one trait over the simulated population, given by median and relative spread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +58,7 @@ pub struct Population {
     pub novice_slowdown: f64,
     /// Number of presses after which half of a beginner's slowdown is gone.
     pub practice_presses: f64,
-    /// Probability of a slip that hits another button, rather one nearby and of like colour (see [`super::slips`]).
+    /// Probability of a slip that hits another button, rather one nearby and of like colour (see [`super::hand::slipped_button`]).
     pub slip: TraitSpread,
     /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
@@ -162,9 +162,7 @@ pub struct Population {
 /// A participant's experience (practice) from earlier trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
-    /// Number of the participant's earlier trials.
     pub trials: u32,
-    /// Number of the participant's own presses in the earlier trials.
     pub presses: f64,
 }
 
@@ -229,77 +227,41 @@ impl Default for Population {
 /// Traits of one simulated participant, drawn from the population, with meanings and units as in [`Population`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticipantTraits {
-    /// Median time from one press of the participant to the next, in seconds, after some practice.
     pub press_s: f64,
-    /// Probability of a slip that hits another button.
     pub slip: f64,
-    /// Probability of a slip that takes the look-alike ingredient from the storage.
     pub look_alike_slip: f64,
-    /// Probability that a press is thoughtless: any press that seems effective.
     pub thoughtless: f64,
-    /// Probability that the participant looks at a location right before using it.
     pub checks: f64,
-    /// Probability of another look before a press if the last look at the press's location is some time ago.
     pub makes_sure: f64,
-    /// Probability that a change anywhere on the display captures the participant's attention.
     pub capture: f64,
-    /// Probability that a new order captures the participant's attention.
     pub order_capture: f64,
-    /// Probability that a fixation of the eyes is outside of the task's locations.
     pub wanders: f64,
-    /// Weight of the robot's hand in the choice of fixation targets.
     pub watches_robot: f64,
-    /// Median duration of a fixation, in seconds.
     pub fixation_s: f64,
-    /// Probability of mistaking the content of a location for one that looks like it.
     pub misreads: f64,
-    /// Share of the belief in the unseen content of the robot's hand that is lost when the robot presses, 0 to 1.
     pub doubts_robot_hand: f64,
-    /// Share of the belief in the unseen content of a shared place that is lost when the robot presses, 0 to 1.
     pub doubts_places: f64,
-    /// Probability that the participant gives to the true recipe after the instruction.
     pub learned: f64,
-    /// Probability of the true recipe to which the participant's unused memory of a recipe fades.
     pub half_forgotten: f64,
-    /// Half-life of the fading of recipe memories, in seconds.
     pub half_life_s: f64,
-    /// Rate at which the participant forgets the recipe while working on an order, per second.
-    pub loses_thread_per_s: f64,
-    /// Probability of doubting the own version of a recipe when the robot's behaviour contradicts it.
+    pub(crate) loses_thread_per_s: f64,
     pub takes_hints: f64,
-    /// Time without a useful press after which the participant looks around and doubts recipes, in seconds.
     pub patience_s: f64,
-    /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: f64,
-    /// Probability that the participant notices a signal.
     pub notices_signal: f64,
-    /// Number of own presses ahead that the participant thinks through, 2 to 5.
     pub depth: usize,
-    /// Probability of not checking the preconditions of presses after the next one.
     pub skips_check: f64,
-    /// Probability of taking a part of the last dish instead of one of the present dish, by habit.
     pub follows_habit: f64,
-    /// Probability of forgetting parts that lie at parking places.
     pub forgets_parked: f64,
-    /// Probability of first doing what is within reach for another order.
     pub takes_along: f64,
-    /// Probability of forgetting the intended next press by reading a signal.
     pub loses_intention: f64,
-    /// Share by which the attention to signals moves towards the usefulness of each signal, 0 to 1.
     pub tires_of_signals: f64,
-    /// Probability of keeping the own version of a recipe when a signal shows another one.
     pub keeps_own_recipe: f64,
-    /// Probability of being sure of a wrong version of a recipe after the instruction.
     pub misremembers: f64,
-    /// Probability of guessing rightly what the robot did by a press that was not seen.
     pub guesses_robot: f64,
-    /// Probability of a wrong answer to a question of a freeze probe.
     pub answers_wrong: f64,
-    /// Median time to answer a question of a freeze probe, in seconds.
     pub answer_s: f64,
-    /// Probability of making proposed presses that the participant has read.
     pub follows_proposal: f64,
-    /// Probability of not knowing how to go on after an own press.
     pub gets_stuck: f64,
 }
 
@@ -320,7 +282,6 @@ impl Population {
         Some((path, format!("{name} = [{least}, {most}]"), "[least, most], in seconds"))
     }
 
-    /// Draws the traits of one individual from the population.
     pub fn draw(&self, random: &mut Stream) -> ParticipantTraits {
         ParticipantTraits {
             press_s: self.press_s.draw(random),

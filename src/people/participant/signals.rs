@@ -18,12 +18,12 @@
 use std::collections::VecDeque;
 
 use rand::RngExt;
-
-use super::draws::{chance, rare_chance};
-use super::simulated::SimulatedParticipant;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+
+use super::simulated::SimulatedParticipant;
+use super::{chance, rare_chance};
 
 /// Number of grid steps along each side of the display in the search for free room on it.
 const ROOM_STEPS: usize = 20;
@@ -51,7 +51,6 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether the participant is reading a signal, and therefore sees nothing else.
     pub(super) fn is_reading_signal(&self, now: SessionTime) -> bool {
         now < self.signals.busy_until
     }
@@ -149,4 +148,28 @@ fn roomiest(kitchen: &Kitchen) -> [f64; 2] {
     let room_m =
         |point: &[f64; 2]| areas().map(|area| area.distance_m(*point, kitchen.display_m)).fold(f64::INFINITY, f64::min);
     points.max_by(|a, b| room_m(a).total_cmp(&room_m(b))).unwrap_or([0.5, 0.5])
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct SignalSense {
+    /// A noticed signal: the time at which the participant will read the signal, the signal's location, and the signal.
+    pub pending: Option<(SessionTime, Option<LocationId>, Signal)>,
+    /// Proposed presses that the participant intends to make next.
+    pub follows: VecDeque<ButtonId>,
+    pub(crate) busy_until: SessionTime,
+    /// How useful the signals so far have been to the participant, from 0 to 1.
+    pub worth: f64,
+}
+
+impl Default for SignalSense {
+    fn default() -> SignalSense {
+        SignalSense { pending: None, follows: VecDeque::new(), busy_until: SessionTime::ZERO, worth: 1.0 }
+    }
+}
+
+impl SignalSense {
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.pending = self.pending.take().map(|(time, location, signal)| (time + by, location, signal));
+        self.busy_until = self.busy_until + by;
+    }
 }

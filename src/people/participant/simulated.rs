@@ -1,40 +1,35 @@
-//! Data of a simulated participant: traits, beliefs, plan, and the times of the participant's next actions.
+//! A simulated participant: its data, and what it does at which time.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::attention::LookQueue;
-use super::decision::ParticipantPlan;
-use super::eyes::Eyes;
-use super::habits::{Habits, Lapses};
-use super::knowledge::TaskKnowledge;
-use super::memory::RecipeMemory;
-use super::population::{Experience, ParticipantTraits, Population};
-use super::signal_sense::SignalSense;
-use super::true_beliefs::ParticipantBeliefs;
 use tomcom_core::base::rng::{Stream, of_trial, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::{ButtonId, Kitchen, LocationId, State, World};
+use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId, Press, State, World};
 use tomcom_core::mind::RecordedBelief;
+
+use super::beliefs::{ParticipantBeliefs, RecipeMemory};
+use super::decision::{Habits, Lapses, ParticipantPlan};
+use super::eyes::Eyes;
+use super::goals::TaskKnowledge;
+use super::population::{Experience, ParticipantTraits, Population};
+use super::rare_chance;
+use super::signals::SignalSense;
 
 /// Probability with which the simulated participant believes that the kitchen is empty at the start of a trial.
 const SURE_AT_START: f64 = 0.97;
 
-/// Action of a simulated participant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParticipantAction {
-    /// A gaze sample of the participant's simulated eye tracker.
     Gaze(GazeSample),
     /// A press of a button; `belief` records the participant's beliefs at the press and the cause of the press.
     Press {
-        /// The pressed button, as an index into the human's buttons.
         button: ButtonId,
-        /// The participant's beliefs at the press, and the cause of the press.
         belief: RecordedBelief,
     },
 }
 
-/// A simulated participant in one trial.
 #[derive(Clone, Debug)]
 pub struct SimulatedParticipant {
     pub(super) kitchen: Arc<Kitchen>,
@@ -61,14 +56,12 @@ pub struct SimulatedParticipant {
     pub(super) presses: u32,
     pub(super) looks_first: u32,
     pub(super) idle_since: Option<SessionTime>,
-    /// Time of the robot's last press.
     pub(super) robot_pressed_at: SessionTime,
     /// The button that the participant intended, if the last press was a slip that went unnoticed; else `None`.
     pub(super) meant: Option<ButtonId>,
     pub(super) signals: SignalSense,
     /// What the participant believed when the participant no longer knew how to go on; `None` if the participant knows.
     pub(super) stuck_in: Option<World>,
-    /// Seed of the random numbers with which the participant answers probes.
     pub(super) answer_seed: u64,
     /// Served orders, each with the session time at which the participant expects the order to disappear.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,
@@ -126,12 +119,10 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Individual traits of this simulated participant.
     pub fn person(&self) -> &ParticipantTraits {
         &self.person
     }
 
-    /// Present beliefs of the simulated participant.
     pub fn beliefs(&self) -> &ParticipantBeliefs {
         &self.beliefs
     }
@@ -147,7 +138,6 @@ impl SimulatedParticipant {
         Some((*button, self.press_at))
     }
 
-    /// Postpones all planned actions of the participant by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         self.eyes.postpone(by);
         self.memory.postpone(by);
@@ -159,5 +149,127 @@ impl SimulatedParticipant {
         for time in self.attention.read_at.iter_mut().chain(self.clearing.iter_mut().map(|(time, _)| time)) {
             *time = *time + by;
         }
+    }
+}
+
+const MOST_GLANCES: usize = 6;
+
+/// Queue of locations at which a simulated participant intends to look, and the time of the last reading of each
+/// location.
+#[derive(Clone, Debug, Default)]
+pub struct LookQueue {
+    pub glances: VecDeque<LocationId>,
+    pub(crate) looking_at: Option<LocationId>,
+    /// Session time of the participant's last reading of each location.
+    pub read_at: Vec<SessionTime>,
+}
+
+impl LookQueue {
+    /// Puts a location at the front of the queue of locations to look at.
+    pub fn first(&mut self, location: LocationId) {
+        self.glances.retain(|&other| other != location);
+        self.glances.push_front(location);
+        self.glances.truncate(MOST_GLANCES);
+    }
+
+    /// Puts a location at the end of the queue of locations to look at.
+    pub fn later(&mut self, location: LocationId) {
+        if !self.glances.contains(&location) && self.glances.len() < MOST_GLANCES {
+            self.glances.push_back(location);
+        }
+    }
+}
+
+/// Probability that all-knowing participants (a setting of the population) give to the true value of every aspect.
+const SURE: f64 = 0.99;
+
+impl SimulatedParticipant {
+    /// Starts the trial for the participant, who sees that the kitchen is empty.
+    pub fn on_trial_start(&mut self, now: SessionTime, state: State) {
+        self.is_started = true;
+        self.display = state;
+        self.eyes.start(now);
+        self.memory.fade(&self.kitchen, &mut self.beliefs, now, &[]);
+        self.attention.read_at.fill(now);
+        self.robot_pressed_at = now;
+        self.press_at = now + self.reaction();
+    }
+
+    /// Performs the simulated participant's next due action. Of the true `state` the participant uses only fixated
+    /// locations; the record of the participant's belief also uses P(truth).
+    pub fn act(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
+        if !self.is_started {
+            return None;
+        }
+        if self.population.all_knowing {
+            self.know(state);
+        }
+        if now >= self.press_at && self.press_at <= self.eyes.due() {
+            return self.move_hand(now, state);
+        }
+        if now < self.eyes.due() {
+            return None;
+        }
+        self.read_signal(now, state);
+        self.look(now, state);
+        if self.rethink && !self.is_reading_signal(now) {
+            self.think(now);
+        }
+        Some(ParticipantAction::Gaze(self.eyes.sample(now)))
+    }
+
+    /// Makes the beliefs of an all-knowing participant true: the most probable world is then the true one.
+    fn know(&mut self, state: State) {
+        let kitchen = self.kitchen.clone();
+        if self.beliefs.point(&kitchen) != World::with_true_recipes(&kitchen, state) {
+            self.beliefs = ParticipantBeliefs::of_state(&kitchen, state, SURE);
+            self.rethink = true;
+        }
+    }
+
+    /// Reacts to a press. Of a robot's press the simulated participant notices that it happened, but not which button
+    /// it was.
+    pub fn on_press(&mut self, now: SessionTime, press: &Press) {
+        match press.agent {
+            Agent::Robot => {
+                self.robot_pressed_at = now;
+                match press.result().filter(|_| rare_chance(&mut self.mind, self.person.guesses_robot)) {
+                    Some(after) => self.guess(press.before, after),
+                    None => self.wonder(),
+                }
+            }
+            Agent::Human => {
+                let button = self.meant.take().unwrap_or(press.button);
+                self.take_in(now, button, press.effective);
+                if let Some(after) = press.result() {
+                    self.display = after;
+                }
+            }
+        }
+    }
+}
+
+impl SimulatedParticipant {
+    /// Shows a target of the gaze accuracy check, or removes it. A copy of the eyes looks at the target, so a check
+    /// changes nothing in the trial; the copy has the same offset of the eye tracker.
+    pub fn on_target(&mut self, now: SessionTime, target: Option<[f64; 2]>) {
+        match (target, &mut self.at_targets) {
+            (None, eyes) => *eyes = None,
+            (Some(point), Some(eyes)) => eyes.look_at(now, point),
+            (Some(point), eyes) => {
+                let mut begun = self.eyes.clone();
+                begun.start(now);
+                begun.look_at(now, point);
+                *eyes = Some(begun);
+            }
+        }
+    }
+
+    pub fn target_due(&self) -> Option<SessionTime> {
+        self.at_targets.as_ref().map(|eyes| eyes.due())
+    }
+
+    pub fn look_at_target(&mut self, now: SessionTime) -> Option<GazeSample> {
+        self.at_targets.as_mut().map(|eyes| eyes.sample(now))
     }
 }

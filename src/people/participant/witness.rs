@@ -4,12 +4,17 @@
 //! the plan; if the press changes, it came from a false belief, namely the smallest replacement by the truth that
 //! changes the press. An order and the recipe of its dish are replaced together.
 
-use super::decision::DecisionContext;
-use super::true_beliefs::ParticipantBeliefs;
+use rand::RngExt;
+use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::kitchen::{
     AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State, World,
 };
 use tomcom_core::mind::{AspectBelief, PressOrigin, RecordedBelief, WORTH_TELLING};
+
+use super::beliefs::ParticipantBeliefs;
+use super::decision::DecisionContext;
+use super::simulated::SimulatedParticipant;
+use super::{chance, normal, witness};
 
 /// Records the belief about every aspect: the most probable value, the probability of the true value, and all other
 /// probabilities large enough for the log.
@@ -24,7 +29,7 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
 }
 
 /// Records the belief about every aspect at a freeze probe, which leads to no press.
-pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
+pub(crate) fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
     let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
@@ -43,29 +48,23 @@ pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: Sta
     }
 }
 
-/// Rounds a probability to six decimals for the log.
 pub(super) fn rounded(p: f64) -> f64 {
     (p * 1e6).round() / 1e6
 }
 
-/// Why a participant presses a button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressReason {
-    /// Whether the press comes from the plan, from a false belief, or from a slip.
     pub origin: PressOrigin,
-    /// The reason of the press, in words for the log.
     pub cause: String,
     /// The state aspects whose replacement by the truth changes the decision.
     pub targets: Vec<AspectId>,
 }
 
 impl PressReason {
-    /// The reason of a press that was a slip, with a description of the slip.
     pub fn slip(cause: String) -> PressReason {
         PressReason { origin: PressOrigin::Slip, cause, targets: Vec::new() }
     }
 
-    /// The reason of a press that the display proposed.
     pub fn proposed() -> PressReason {
         PressReason { origin: PressOrigin::Plan, cause: "as proposed on the display".to_string(), targets: Vec::new() }
     }
@@ -139,7 +138,6 @@ fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<
     targets
 }
 
-/// The code of an aspect's value in this world.
 fn code_of(kitchen: &Kitchen, world: &World, aspect: AspectId) -> u8 {
     match kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => world.state.code(location),
@@ -147,10 +145,71 @@ fn code_of(kitchen: &Kitchen, world: &World, aspect: AspectId) -> u8 {
     }
 }
 
-/// Sets a state aspect of a world to its true value.
 fn tell(kitchen: &Kitchen, world: &mut World, truth: &World, aspect: AspectId) {
     match kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => world.state.set_code(location, truth.state.code(location)),
         AspectKind::Recipe(dish) => world.recipes.set(dish, truth.recipes.get(dish)),
+    }
+}
+
+/// Standard deviation of the logarithm of one participant's answering times.
+const ANSWER_JITTER: f64 = 0.35;
+/// Least probabilities of the most probable value from which the confidence in an answer is 2 or 3 (of 3).
+const SURE_FROM: [f64; 2] = [2.0 / 3.0, 0.9];
+
+impl SimulatedParticipant {
+    pub fn believes(&self, state: State) -> RecordedBelief {
+        witness::without_press(&self.kitchen, &self.beliefs, state)
+    }
+
+    /// Time from a probe's question to the participant's answer, in seconds.
+    pub fn answers_after_s(&self, probe: u32, question: u32) -> f64 {
+        self.person.answer_s * (ANSWER_JITTER * normal(&mut self.of_answer(probe, question))).exp()
+    }
+
+    /// The participant's answer to a question about a state aspect: one of the choices, or `None` for "I don't know".
+    ///
+    /// If the true value is as probable as any other value, the participant answers the true value: so the answer is
+    /// right exactly where the belief is not false.
+    pub fn answer(
+        &self,
+        state: State,
+        aspect: AspectId,
+        choices: &[String],
+        (probe, question): (u32, u32),
+    ) -> Option<String> {
+        let mut random = self.of_answer(probe, question);
+        let _time = normal(&mut random);
+        let labels = &self.kitchen.aspects[aspect.index()].labels;
+        let most_likely = witness::rounded(self.beliefs.certainty(aspect));
+        let p_truth = witness::rounded(self.beliefs.p_truth(&self.kitchen, state, aspect));
+        let believed = match p_truth >= most_likely {
+            true => &labels[self.kitchen.true_value(state, aspect)],
+            false => &labels[self.beliefs.most_likely(aspect)],
+        };
+        if chance(&mut random, self.person.answers_wrong) {
+            let others: Vec<&String> = choices.iter().filter(|choice| *choice != believed).collect();
+            return (!others.is_empty()).then(|| others[random.random_range(0..others.len())].clone());
+        }
+        (most_likely >= self.population.answers_from).then(|| believed.clone())
+    }
+
+    /// The participant's confidence in its answer about an aspect, from 1 to 3.
+    pub fn confidence(&self, aspect: AspectId) -> u8 {
+        match self.beliefs.certainty(aspect) {
+            p if p < SURE_FROM[0] => 1,
+            p if p < SURE_FROM[1] => 2,
+            _ => 3,
+        }
+    }
+
+    /// The order that the participant expects to be served next: the order on which the participant works.
+    pub fn next_order(&self) -> Option<LocationId> {
+        self.intent.order.map(|(order, _)| order)
+    }
+
+    /// The random stream of one answer, separate for each answer, so that no answer depends on which others were given.
+    fn of_answer(&self, probe: u32, question: u32) -> Stream {
+        stream(self.answer_seed, "participant's answers", u64::from(probe) << 8 | u64::from(question))
     }
 }

@@ -5,30 +5,26 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
-
-use super::offer_reader::OfferReader;
-use super::seen::{ObservedPress, ParticipantSeenKitchen, explain, misleads};
-use super::settings::WizardSpec;
-use super::thought::SuspectedFalseBelief;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{self, HighlightSet, Signal};
+use tomcom_core::communication;
+use tomcom_core::communication::offer::UNREAD;
+use tomcom_core::communication::{HighlightSet, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
 
-/// Number of the participant's last presses that the wizard remembers.
+use super::seen::{ObservedPress, ParticipantSeenKitchen, SuspectedFalseBelief, explain, misleads};
+use super::{OfferReading, WizardSpec};
+
 const REMEMBERED_PRESSES: usize = 6;
 
 /// An action of the scripted wizard: a signal, or taking an offer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WizardAction {
-    /// The wizard sends a signal by its own judgement.
     Send(Signal),
-    /// The wizard takes the offer with this sequence number.
     TakeOffer(u64),
 }
 
-/// State of the scripted wizard in one trial.
 #[derive(Clone, Debug)]
 pub struct ScriptedWizard {
     kitchen: Arc<Kitchen>,
@@ -36,7 +32,6 @@ pub struct ScriptedWizard {
     highlights: HighlightSet,
     random: Stream,
     seen: ParticipantSeenKitchen,
-    /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
     /// The planned signal: the time to send it, and the suspected false belief that the signal is about.
     about_to: Option<(SessionTime, SuspectedFalseBelief)>,
@@ -79,7 +74,6 @@ impl ScriptedWizard {
         watched.chain(self.about_to.map(|(time, _)| time)).chain(offer).min()
     }
 
-    /// Starts the trial; the participant and the wizard see the empty kitchen.
     pub fn on_trial_start(&mut self, state: State) {
         self.seen = ParticipantSeenKitchen::new(state);
         (self.about_to, self.signalled_at) = (None, None);
@@ -113,7 +107,6 @@ impl ScriptedWizard {
         }
     }
 
-    /// Reacts to a change of the state that was not caused by the participant.
     pub fn on_change(&mut self, now: SessionTime, before: State, after: State) {
         let due = now + SessionTime::from_secs_f64(self.spec.overlooked_after_s);
         for location in self.kitchen.changed(before, after) {
@@ -122,7 +115,6 @@ impl ScriptedWizard {
         }
     }
 
-    /// Reacts to a signal about a location that appears on the participant's display.
     pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
         self.seen.told(location, state);
         self.signalled_at = Some(now);
@@ -130,14 +122,12 @@ impl ScriptedWizard {
         self.about_to.take_if(|(_, thought)| thought.location() == location);
     }
 
-    /// Reacts to an offer that opens on the wizard's screen.
     pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
         if let Some(reader) = &mut self.reader {
             reader.on_offer(now, offer);
         }
     }
 
-    /// Postpones planned signals and checks by the duration `by` of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.seen.postpone(by);
         self.about_to = self.about_to.map(|(time, thought)| (time + by, thought));
@@ -256,5 +246,48 @@ impl ScriptedWizard {
 
     fn chance(&mut self, p: f64) -> bool {
         self.random.random::<f64>() < p
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct OfferReader {
+    spec: OfferReading,
+    /// Standard deviation of the logarithm of the time for reading an offer.
+    spread: f64,
+    /// Random stream of the reader; the stream is separate so that the wizard's own judgement is the same with and
+    /// without offers.
+    random: Stream,
+    /// The offer that the wizard will take: the time of the taking, and the offer's sequence number.
+    takes: Option<(SessionTime, u64)>,
+}
+
+impl OfferReader {
+    pub fn new(spec: OfferReading, spread: f64, seed: u64, trial: u64) -> OfferReader {
+        OfferReader { spec, spread, random: stream(seed, "wizard's reading of offers", trial), takes: None }
+    }
+
+    pub fn due(&self) -> Option<SessionTime> {
+        self.takes.map(|(time, _)| time)
+    }
+
+    /// Reacts to an offer that opens: decides whether the wizard will take the offer, and when. The new offer replaces
+    /// the previous offer.
+    pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
+        let normal: f64 = StandardNormal.sample(&mut self.random);
+        let is_taken = self.random.random::<f64>() < self.spec.takes;
+        let reading = SessionTime::from_secs_f64(self.spec.reads_s * (self.spread * normal).exp());
+        self.takes = is_taken.then(|| (now + reading.max(UNREAD), offer));
+    }
+
+    pub fn take(&mut self, now: SessionTime) -> Option<u64> {
+        self.takes.take_if(|(time, _)| *time <= now).map(|(_, offer)| offer)
+    }
+
+    pub fn wait_until(&mut self, time: SessionTime) {
+        self.takes = self.takes.map(|(due, offer)| (due.max(time), offer));
+    }
+
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.takes = self.takes.map(|(time, offer)| (time + by, offer));
     }
 }

@@ -1,22 +1,19 @@
 //! What an observer of kitchen and gaze can infer about the participant's knowledge, and which false beliefs explain a
 //! press.
 
-use super::thought::SuspectedFalseBelief;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
+use tomcom_core::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationId, Recipes, State};
 
 /// The kitchen as the participant last saw it, location by location.
 #[derive(Clone, Debug)]
 pub struct ParticipantSeenKitchen {
-    /// The last seen content of every location.
     pub state: State,
     /// Location on which the gaze rests, and the time at which the gaze arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
 impl ParticipantSeenKitchen {
-    /// Creates the kitchen that the participant last saw in this state.
     pub fn new(state: State) -> ParticipantSeenKitchen {
         ParticipantSeenKitchen { state, resting: None }
     }
@@ -40,25 +37,19 @@ impl ParticipantSeenKitchen {
         self.state.set_code(location, truth.code(location));
     }
 
-    /// Whether the participant knows the content of a location.
     pub fn knows(&self, location: LocationId, truth: State) -> bool {
         self.state.code(location) == truth.code(location)
     }
 
-    /// Postpones the gaze's arrival time by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.resting = self.resting.map(|(location, since)| (location, since + by));
     }
 }
 
-/// A press of the participant, with the true state and the last seen state at that time.
 #[derive(Clone, Copy, Debug)]
 pub struct ObservedPress {
-    /// The true state before the press.
     pub truth: State,
-    /// The state of the kitchen as the participant last saw it before the press.
     pub seen: State,
-    /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,
 }
 
@@ -95,7 +86,7 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]
 }
 
 /// Whether a press seems useful to a person with this one false belief but does not reduce the true cost to go.
-pub fn misleads(
+pub(crate) fn misleads(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
     seen: &ParticipantSeenKitchen,
@@ -104,12 +95,11 @@ pub fn misleads(
 ) -> bool {
     let (state, recalled) = believed(kitchen, thought, truth, seen.state);
     let recipes = kitchen.true_recipes();
-    let mut presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+    let mut presses = kitchen.button_ids(Agent::Human);
     presses
         .any(|button| helps(kitchen, cost, state, &recalled, button) && !helps(kitchen, cost, truth, &recipes, button))
 }
 
-/// State and recipes that a person with this one false belief believes in.
 fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen: State) -> (State, Recipes) {
     let (mut state, mut recipes) = (truth, kitchen.true_recipes());
     match thought {
@@ -120,7 +110,6 @@ fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen
     (state, recipes)
 }
 
-/// Whether a human press reduces the cost to go, given the kitchen's `state` and `recipes`.
 fn helps(kitchen: &Kitchen, cost: &mut CostToGo, state: State, recipes: &Recipes, button: ButtonId) -> bool {
     let next = kitchen.press(state, recipes, Agent::Human, button);
     next.is_some_and(|next| cost.all_orders(next, recipes) < cost.all_orders(state, recipes))
@@ -142,5 +131,26 @@ mod tests {
         assert!(!seen.knows(location, truth), "taken before the change");
         seen.gaze(at(10.01), Some(location), Some(truth), 0.1);
         assert!(seen.knows(location, truth), "the gaze still rests there");
+    }
+}
+
+/// A false belief that the wizard suspects and wants to correct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SuspectedFalseBelief {
+    Place(LocationId),
+    /// A false belief about a recipe: the order, its dish, and the stack that the participant takes for the recipe.
+    Recipe(LocationId, DishId, ContentId),
+    /// A wrong guess of the wizard: a location that did not cause the error, but could plausibly have caused it.
+    Guess(LocationId),
+}
+
+impl SuspectedFalseBelief {
+    /// The location that a signal would be about if it corrected the false belief.
+    pub fn location(self) -> LocationId {
+        match self {
+            SuspectedFalseBelief::Place(location)
+            | SuspectedFalseBelief::Recipe(location, ..)
+            | SuspectedFalseBelief::Guess(location) => location,
+        }
     }
 }

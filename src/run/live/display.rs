@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;

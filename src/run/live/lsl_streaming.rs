@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
 use crate::run::desk::OperatorDesk;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_devices::lsl::{LslCounts, LslSample, LslStreams};
 use tomcom_devices::lsl::{LslSampleConverter, StreamSample};
 use tomcom_session::engine::SessionEngine;

@@ -29,7 +29,7 @@ use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, KitchenChange};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::robot::RobotEvent;
 use tomcom_people::participant::SimulatedParticipant;
-use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::population::Experience;
 use tomcom_people::wizard::ScriptedWizard;
 

@@ -10,7 +10,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
 
 use crate::features::{Feature, MissingFeature};
-use tomcom_core::base::printable::{printable, printable_lines};
+use tomcom_core::base::text::{printable, printable_lines};
 
 pub type FileResult<T> = Result<T, FileError>;
 

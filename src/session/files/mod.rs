@@ -24,11 +24,12 @@ use crate::wall_display::DisplaySpec;
 use crate::{SessionSpec, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
-use tomcom_core::kitchen::layout::LayoutSpec;
-use tomcom_core::kitchen::recipe::RecipesSpec;
-use tomcom_core::kitchen::{Kitchen, layout_ranges};
+use tomcom_core::kitchen::files::LayoutSpec;
+use tomcom_core::kitchen::files::RecipesSpec;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::files::check_layout;
 use tomcom_core::mind::model::HumanModel;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
@@ -223,7 +224,7 @@ fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
 /// The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
-    layout_ranges::check(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
+    check_layout(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {

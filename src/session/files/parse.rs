@@ -9,8 +9,8 @@ use crate::SessionSpec;
 use crate::files::file_error::{FileError, FileResult};
 use crate::questionnaire::Questionnaire;
 use crate::tutorial::Tutorial;
-use tomcom_core::kitchen::layout::LayoutSpec;
-use tomcom_core::kitchen::recipe::RecipesSpec;
+use tomcom_core::kitchen::files::LayoutSpec;
+use tomcom_core::kitchen::files::RecipesSpec;
 use tomcom_core::mind::model::HumanModel;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,8 +10,8 @@ use crate::log::RecordingWriteError;
 use crate::log::decisions::check_single;
 use crate::log::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::person_code;
-use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode};
-use tomcom_core::measures::consensus::{ConsensusCode, RaterConsensus};
+use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode};
+use tomcom_core::measures::raters::{ConsensusCode, RaterConsensus};
 
 pub const CONSENSUS_NAME: &str = "consensus.csv";
 

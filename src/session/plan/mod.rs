@@ -25,7 +25,7 @@ use crate::study_arm::StudyArm;
 pub use crate::tutorial::{Tutorial, TutorialStep, TutorialStepKind, TutorialTarget};
 use crate::wall_display::AnswerDevice;
 use tomcom_core::base::rng::{shuffle, stream};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 
 /// `[plan]` of a session file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -9,8 +9,8 @@ use crate::analysis::probe_accuracy::{ProbeAccuracyGrouping, ProbeAnswerAccuracy
 use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, RecordedBeliefComparison};
 use crate::charts;
 use crate::figures::StudySummary;
-use tomcom_core::base::words;
-use tomcom_core::measures::belief_detection::CALIBRATED;
+use tomcom_core::base::text;
+use tomcom_core::measures::detection::CALIBRATED;
 
 /// Section of the report on what participants knew; empty without freeze probes.
 pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Markup {
@@ -24,7 +24,7 @@ pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Mark
             @if let Some(effect) = &found.assistance {
                 " With assistance a participant knew " (number(Some(100.0 * effect.difference), 1)) " percentage points more than without"
                 (interval(effect.interval)) ", in the mean of "
-                (words::count(effect.participants, "participant", "participants")) "; practice is part of this difference, and the test in \
+                (text::count(effect.participants, "participant", "participants")) "; practice is part of this difference, and the test in \
                 “Does assistance help?” takes it out."
             }
         }
@@ -56,9 +56,9 @@ fn interval(ends: Option<[f64; 2]>) -> String {
 fn asked(counts: &ProbeCounts, participants: u64) -> Markup {
     html! {
         p {
-            "The task froze for " (words::count(counts.probes, "probe", "probes")) ", and "
-            (words::count(participants, "participant", "participants")) " said what they believed. "
-            (counts.counted) " of " (words::count(counts.questions, "question", "questions")) " count, "
+            "The task froze for " (text::count(counts.probes, "probe", "probes")) ", and "
+            (text::count(participants, "participant", "participants")) " said what they believed. "
+            (counts.counted) " of " (text::count(counts.questions, "question", "questions")) " count, "
             (counts.unsure) " of them answered with “I don’t know”. Each weighs the inverse of the chance with which it was drawn, since \
              the assistant’s estimate had a part in choosing questions for some probes; so the results are about everything that could be asked \
              at these times, not about what was chosen. They tell as much as " (number(Some(counts.effective), 0))
@@ -84,9 +84,9 @@ fn left_out(counts: &ProbeCounts) -> Markup {
         p class="note" {
             "Left out: " @if questions.is_empty() { "no question" } @else { (questions.join(", ")) } "."
             @if counts.dropped > 0 {
-                " " (words::count(counts.dropped, "probe", "probes")) " did not take place, since a signal or another probe was too close."
+                " " (text::count(counts.dropped, "probe", "probes")) " did not take place, since a signal or another probe was too close."
             }
-            @if counts.skipped > 0 { " The wizard cut " (words::count(counts.skipped, "probe", "probes")) " short." }
+            @if counts.skipped > 0 { " The wizard cut " (text::count(counts.skipped, "probe", "probes")) " short." }
         }
         "\n"
     }
@@ -141,7 +141,7 @@ fn scores(captions: &mut Captions, found: &ProbeSummary) -> Markup {
     let caption = format!(
         "How well {} are predicted: mean log of the probability of the answer, in nats; higher is better. How often the simple \
          predictions are right, and the share of answers at random, is learned on the other participants.",
-        words::count(of.n, "answer that names a value", "answers that name a value")
+        text::count(of.n, "answer that names a value", "answers that name a value")
     );
     captions.table(caption, &["", "log score", "gain of the estimate"], &rows)
 }

@@ -6,8 +6,8 @@ use super::elements::{arm, section};
 use crate::arm_group::RobotArmTotals;
 use crate::facts::RecordingFacts;
 use crate::figures::StudySummary;
-use tomcom_core::base::words;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::base::text;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
 
 /// Section of the report on methods: conduct and analysis of the trials.
@@ -42,8 +42,8 @@ fn conduct(figures: &StudySummary, facts: &RecordingFacts) -> String {
         "{} took part{planned}; {} recorded, {} left out of the analysis. Participants: {}. The task was that of the kitchen \
          \u{201c}{}\u{201d}. A trial was to end after {} presses of both agents or {} s{orders}, whichever came first.{}{} A press \
          of the robot took {}; it took the initiative when the participant had not pressed for {}. Gaze came from {}{accuracy}. A signal was shown for {}. Signals could show recipes, and highlight {}.",
-        words::count(figures.participants, "participant", "participants"),
-        words::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
+        text::count(figures.participants, "participant", "participants"),
+        text::count(figures.trials + figures.left_out.len() as u64, "trial was", "trials were"),
         figures.left_out.len(),
         all("participant"),
         all("kitchen"),
@@ -77,7 +77,7 @@ fn versions(figures: &StudySummary, facts: &RecordingFacts) -> String {
     let all = |key| all(facts, key);
     let models = figures.human_models.iter().map(|(model, trials)| match figures.human_models.len() {
         1 => model.clone(),
-        _ => format!("{model} (in {})", words::count(*trials, "trial", "trials")),
+        _ => format!("{model} (in {})", text::count(*trials, "trial", "trials")),
     });
     let models: Vec<String> = models.collect();
     format!(
@@ -142,7 +142,7 @@ fn endings(figures: &StudySummary) -> String {
 /// Sentence about the kinds of robot arm.
 fn arms(figures: &StudySummary) -> String {
     let trials =
-        |group: &RobotArmTotals| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+        |group: &RobotArmTotals| format!("{} in {}", arm(group.kind), text::count(group.trials, "trial", "trials"));
     match &figures.robot[..] {
         [] => String::new(),
         [one] => format!(" The robot\u{2019}s arm was {}.", arm(one.kind)),

@@ -5,10 +5,10 @@ use maud::{Markup, html};
 use super::elements::{Captions, UNKNOWN, cells, count, nothing, number, p_value, percent, scroll, section};
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
 use crate::figures::StudySummary;
-use tomcom_core::base::words;
+use tomcom_core::base::text;
 use tomcom_core::communication::offer::OfferCloseReason;
-use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::matching::MatchShares;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::study_arm::StudyArm;
@@ -100,7 +100,7 @@ fn offers(found: &OfferSummary) -> Markup {
     let reaction = found.reaction_s.map(|s| format!(", {s:.1} s after its opening in the median"));
     html! {
         p {
-            "The wizard saw " (words::count(found.all.n, "offer", "offers")) ", which stood " (times(&found.all)) " (" (reasons.join(", ")) "). "
+            "The wizard saw " (text::count(found.all.n, "offer", "offers")) ", which stood " (times(&found.all)) " (" (reasons.join(", ")) "). "
             "The signal of " (found.taken + found.by_own_key) " was sent" (reaction.unwrap_or_default()) ": of "
             (found.taken) " by the key of the offer, of " (found.by_own_key) " by the key of the signal. The table "
             code { "offers" } " has each of them."
@@ -200,7 +200,7 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
         @if let Some(found) = &figures.tutorial {
             p {
                 "Check of understanding in the tutorial: " (found.right_at_once) " of " (found.questions)
-                " questions answered rightly at once, by " (words::count(found.participants, "participant", "participants")) "."
+                " questions answered rightly at once, by " (text::count(found.participants, "participant", "participants")) "."
             }
             "\n"
         }

@@ -6,7 +6,7 @@ use super::elements::{Captions, arm, count, nothing, number, section};
 use crate::arm_group::RobotArmTotals;
 use crate::figures::StudySummary;
 use crate::robot_tally::ArmSafetySummary;
-use tomcom_core::base::words;
+use tomcom_core::base::text;
 use tomcom_core::robot::AbortReason;
 
 /// Table of robot statistics with one column per kind of robot arm.
@@ -45,7 +45,7 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
         did("locations corrected by the wizard", |group| group.robot.corrected),
     ]);
     let head =
-        |group: &RobotArmTotals| format!("{}, {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+        |group: &RobotArmTotals| format!("{}, {}", arm(group.kind), text::count(group.trials, "trial", "trials"));
     let heads: Vec<String> = std::iter::once("arm".to_string()).chain(groups.iter().map(head)).collect();
     let caption = html! {
         "Sums over trials, pauses included, by arm. A timed arm has no contacts. Values of each trial are in "

@@ -9,9 +9,9 @@ use crate::figures::{StudySummary, pairs_in_words};
 use crate::missing_trials::in_words;
 use crate::planned_trial::copies_in_words;
 use crate::trial_statistics::TrialStatistics;
-use tomcom_core::base::words;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::RaterAgreement;
+use tomcom_core::base::text;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::RaterAgreement;
 use tomcom_session::event::TrialEndReason;
 
 /// Least number of participants with both trials from which on r and p are shown among the main results.
@@ -33,12 +33,12 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
         ),
         (None, Some(found)) => card(&percent(found.signal.recall), "of the wizard's signals have a match"),
-        (None, None) => card(&words::count(totals.signals, "signal", "signals"), "shown to participants"),
+        (None, None) => card(&text::count(totals.signals, "signal", "signals"), "shown to participants"),
     };
     html! {
         p class="lead" {
-            (words::count(figures.trials, "trial", "trials")) " of "
-            (words::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
+            (text::count(figures.trials, "trial", "trials")) " of "
+            (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
         }
         "\n"
         @if figures.simulated_participants {
@@ -91,7 +91,7 @@ fn raters(found: &RaterAgreement, figures: &StudySummary) -> Markup {
                  ones, for " (shared.of_one) " one of them alone names one."
             }
             @for (pair, trials) in &figures.consensus {
-                " Codes of " (words::count(*trials, "trial", "trials")) ": consensus of " (pair.replace('+', " and "))
+                " Codes of " (text::count(*trials, "trial", "trials")) ": consensus of " (pair.replace('+', " and "))
                 ", settled together after each had coded alone; agreement is that of their own codes."
             }
         }
@@ -114,7 +114,7 @@ pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[
         (left_out(captions, figures))
         @if figures.practice > 0 {
             p class="note" {
-                (words::count(figures.practice, "recording is", "recordings are")) " of practice and not analysed."
+                (text::count(figures.practice, "recording is", "recordings are")) " of practice and not analysed."
             }
             "\n"
         }

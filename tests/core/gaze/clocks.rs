@@ -5,9 +5,9 @@ use rand::RngExt;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_core::gaze::device_clock::{ClockNews, DeviceClock};
 use tomcom_core::gaze::quality::{GazeFaultDetector, TOO_OLD_S};
-use tomcom_core::gaze::stamp_check::StampFault;
 
 /// Arrival of the first sample, in seconds: session time cannot be negative.
 const BEGUN_S: f64 = 1000.0;

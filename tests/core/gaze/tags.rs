@@ -1,6 +1,6 @@
 //! The tags in the corners of the wall display, and the map from a tracker's surface to it.
 
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_core::gaze::tags::{CELLS, DisplayTags};
 use tomcom_core::kitchen::DisplayArea;
 

@@ -8,8 +8,8 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
+use tomcom_core::mind::model::SignalModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::signal_model::SignalModel;
 
 use super::looks_at_nothing;
 use crate::files::kitchen;

@@ -4,7 +4,7 @@ use tomcom_core::kitchen::Agent;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
 use tomcom_core::measures::errors::PressJudge;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 
 use super::{at, belief, state};
 use crate::files::kitchen;

@@ -5,7 +5,7 @@ use tomcom_core::kitchen::AspectId;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::ChoiceModel;
 use tomcom_core::mind::belief::Belief;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 
 use super::{aspect, state};
 use crate::files::kitchen;

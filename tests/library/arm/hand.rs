@@ -1,7 +1,7 @@
 //! The human hand in the physics: when it sets out, where it goes, and what it keeps off.
 
 use nalgebra::Point3;
-use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::physics::bodies::HandPose;
 use tomcom_arm::reaching::{ReachingBehaviour, ReachingHand};
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;

@@ -5,7 +5,7 @@ use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::trajectory::JOINT_SPEED_RAD_S;
 use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::JointAngles;
+use tomcom_core::robot::JointAngles;
 
 use super::{AT_REST, Came, SUSHI, any_button, at, until_report};
 

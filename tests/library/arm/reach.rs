@@ -4,15 +4,15 @@ use std::path::Path;
 
 use rand::RngExt;
 use tomcom::edge::files::read_kitchen;
-use tomcom_arm::clearance::{ArmSurroundings, Obstruction};
 use tomcom_arm::inverse::{twist, wrapped};
 use tomcom_arm::kinematics::SerialArm;
-use tomcom_arm::motion::JointMotion;
+use tomcom_arm::reach::{ArmSurroundings, Obstruction};
 use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
+use tomcom_arm::trajectory::JointMotion;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::JointAngles;
+use tomcom_core::robot::JointAngles;
 
 use super::SUSHI;
 

@@ -1,14 +1,14 @@
 //! Stops and faults of the arm alone: protective and emergency stops, a joint that gives way, a button that does not click, a way that is blocked.
 
 use nalgebra::Point3;
-use tomcom_arm::clearance::{Capsule, Obstruction};
 use tomcom_arm::kinematics::SerialArm;
-use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::physics::bodies::HandPose;
 use tomcom_arm::reach::UnreachableReason;
-use tomcom_arm::report::PressFailure;
+use tomcom_arm::reach::{Capsule, Obstruction};
+use tomcom_arm::worker::PressFailure;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::JOINTS;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::JOINTS;
+use tomcom_core::robot::SafetyMode;
 
 use super::{AT_REST, Came, SUSHI, until_report};
 

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
-use tomcom_core::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
-use tomcom_core::measures::rater_choice::RaterChoice;
+use tomcom_core::measures::raters::RaterChoice;
+use tomcom_core::measures::raters::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::measures::raters::{RaterConsensus, unsettled};
 use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::rater_codes::{read_all, write};

@@ -8,7 +8,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{HighlightSet, Sender};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{DishId, LocationId};
-use tomcom_people::wizard::settings::{OfferReading, WizardKind, WizardSpec};
+use tomcom_people::wizard::{OfferReading, WizardKind, WizardSpec};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 use tomcom_session::admit::hygiene;
 use tomcom_session::headless::SimulationShard;

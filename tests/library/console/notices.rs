@@ -7,7 +7,7 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::SafetyMode;
 use tomcom_session::TimelineEvent;
 use tomcom_session::event::{Event, TrialEndReason};
 use tomcom_session::preflight_checks::PreflightVerdict;

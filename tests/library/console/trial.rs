@@ -6,7 +6,7 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::display_status::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
+use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_session::TrialPhase;
 use tomcom_session::event::Event;
 use tomcom_session::preflight_checks::PreflightVerdict;

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use rmpv::Value;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_devices::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use tomcom_devices::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom_devices::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};

@@ -7,7 +7,7 @@ use rmpv::Value;
 use tomcom::edge::files::read_session;
 use tomcom::run::options::SettingOverrides;
 use tomcom_core::base::rng::stream;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_devices::gaze_file;
 use tomcom_devices::pupil::message::{self, CaptureNotification, PupilMessage};
 use tomcom_devices::pupil::zmtp::ZmtpFrameAssembler;

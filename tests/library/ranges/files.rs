@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom_core::base::number_range::NumberRange;
-use tomcom_core::kitchen::layout_ranges;
+use tomcom_core::kitchen::files::LAYOUT_RANGES;
 use tomcom_session::files::read_human_model;
 use tomcom_session::ranges;
 
@@ -110,7 +110,7 @@ fn a_layout_with_an_extreme_number_is_refused() {
     let folder = folder("layout");
     let file = folder.join("layouts/extreme.toml");
     let layout: toml::Table = fs::read_to_string("layouts/sushi.toml").expect("a layout").parse().expect("TOML");
-    for range in layout_ranges::RANGES {
+    for range in LAYOUT_RANGES {
         // In each kind of table that has such a number.
         let kinds = ["order.serve", "hand.trash", "place.button", "process.button", "storage.button", "order", "hand"];
         let kinds = kinds.into_iter().chain(["place", "storage"]);

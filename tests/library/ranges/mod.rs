@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::number_range::{NumberRange, numbers};
-use tomcom_core::kitchen::{Kitchen, layout_ranges};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::files::LAYOUT_RANGES;
 use tomcom_session::ranges;
 
 /// A session file that has every setting with a range.
@@ -78,8 +79,8 @@ const SETTINGS: &str = r#"
 fn every_setting() -> toml::Table {
     let given: tomcom_session::SessionSpec = toml::from_str(SETTINGS).expect("a session");
     let mut all = toml::Table::try_from(given).expect("settings are TOML");
-    let offers = Some(tomcom_people::wizard::settings::OfferReading::default());
-    let wizard = tomcom_people::wizard::settings::WizardSpec { offers, ..Default::default() };
+    let offers = Some(tomcom_people::wizard::OfferReading::default());
+    let wizard = tomcom_people::wizard::WizardSpec { offers, ..Default::default() };
     all.insert("wizard".to_string(), toml::Value::try_from(wizard).expect("settings are TOML"));
     let plan = all["plan"].as_table_mut().expect("a plan");
     // Those are written to recordings; a file may leave them out.
@@ -242,7 +243,7 @@ fn every_number_of_every_settings_file_has_a_range() {
     check_complete("a questionnaire", &questionnaire(), &ranges::OF_QUESTIONNAIRES);
     for layout in ["sushi", "burger"] {
         let text = fs::read_to_string(format!("layouts/{layout}.toml")).expect("a layout");
-        check_complete(layout, &text.parse().expect("a layout is TOML"), &layout_ranges::RANGES);
+        check_complete(layout, &text.parse().expect("a layout is TOML"), &LAYOUT_RANGES);
         let recipes: toml::Table =
             fs::read_to_string(format!("recipes/{layout}.toml")).expect("recipes").parse().expect("recipes are TOML");
         assert!(numbers(&recipes, "").expect("numbers").is_empty(), "recipe files have no numbers");
@@ -251,7 +252,7 @@ fn every_number_of_every_settings_file_has_a_range() {
 
 #[test]
 fn ranges_are_finite_and_have_words() {
-    for range in ranges::of_sessions().iter().chain(&ranges::OF_QUESTIONNAIRES).chain(&layout_ranges::RANGES) {
+    for range in ranges::of_sessions().iter().chain(&ranges::OF_QUESTIONNAIRES).chain(&LAYOUT_RANGES) {
         assert!(range.least.is_finite() && range.most.is_finite() && range.least < range.most, "{range:?}");
         assert!(!range.holds(f64::NAN) && !range.holds(f64::INFINITY), "{range:?}");
         assert!(!range.reason.is_empty(), "{range:?}");
@@ -266,7 +267,7 @@ fn the_documentation_has_every_range() {
     for (title, ranges) in [
         ("Session files", ranges::of_sessions()),
         ("Questionnaires", ranges::OF_QUESTIONNAIRES.to_vec()),
-        ("Layouts", layout_ranges::RANGES.to_vec()),
+        ("Layouts", LAYOUT_RANGES.to_vec()),
     ] {
         let mut table = "| setting | range |\n|---|---|\n".to_string();
         for NumberRange { path, least, most, is_whole, unit, .. } in &ranges {

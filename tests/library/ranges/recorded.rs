@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::choice::ChoiceModel;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
-use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::mind::choice::ChoiceParameters;
+use tomcom_core::robot::ArmSample;
 use tomcom_session::log::{LOG_NAME, LogReader, SimulatedLogState};
 use tomcom_session::{Event, TimestampedEvent};
 

@@ -8,8 +8,8 @@ use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::base::number_range::NumberRange;
 use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::layout_ranges;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_core::kitchen::files::LAYOUT_RANGES;
+use tomcom_people::wizard::WizardKind;
 use tomcom_session::apply::apply;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::headless::SimulationShard;
@@ -148,7 +148,7 @@ fn layouts_at_the_ends_of_every_range_run_and_can_be_read() {
     let folder = folder("layouts");
     let layout: toml::Table = fs::read_to_string("layouts/sushi.toml").expect("a layout").parse().expect("TOML");
     let mut ran = 0;
-    for range in layout_ranges::RANGES {
+    for range in LAYOUT_RANGES {
         for value in [range.least, range.most] {
             let path = match range.path.strip_prefix("*.") {
                 Some(rest) => format!("storage.{}", rest.replacen('*', "button", 1)),

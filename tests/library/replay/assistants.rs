@@ -16,7 +16,7 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, LocationId};
 use tomcom_core::measures::matching::ComparedContent;
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::advisor::Advisor;
 use tomcom_session::engine::SessionEngine;

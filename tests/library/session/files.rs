@@ -5,7 +5,7 @@ use std::path::Path;
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom_core::communication::{Signal, signals};
-use tomcom_core::mind::named_models::{PAPER_2021, PLAIN};
+use tomcom_core::mind::model::{PAPER_2021, PLAIN};
 use tomcom_session::files::parse::parse;
 use tomcom_session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
 

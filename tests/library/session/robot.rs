@@ -8,7 +8,7 @@ use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::robot::IdleReason;
-use tomcom_core::robot::initiative::own_ways;
+use tomcom_core::robot::policy::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::apply::silence_so_far;
 use tomcom_session::engine::SessionEngine;

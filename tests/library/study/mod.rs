@@ -16,8 +16,8 @@ mod tutorials;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::sequences::BeliefErrorCounts;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use tomcom_session::study_arm::StudyArm;

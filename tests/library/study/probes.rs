@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::communication::concept::ConceptName;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;

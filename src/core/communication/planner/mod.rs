@@ -8,33 +8,24 @@
 //! rollout, which is skipped. Where signals take time, a rollout reads its signal after the mean delay, and its saving is
 //! multiplied by the probability that the signal is read: a human who misses the signal continues like the baseline.
 
-mod lattice;
 mod rollout;
-pub mod rollout_human;
-mod rollout_robot;
 mod sample;
-mod tally;
 mod work_ahead;
 
 use std::sync::Arc;
 
-use self::lattice::{PER_DECISION, QuasiRandomLattice};
-use self::rollout::{BaselineRollout, DecisionDraws, Rollout, RolloutContext, RolloutState};
-use self::rollout_robot::RobotPolicy;
-use self::sample::BeliefSamples;
-use self::tally::PairedDifferences;
-use super::concept::{Concept, DecisionPoint};
+use self::rollout::{BaselineRollout, DecisionDraws, RobotPolicy, Rollout, RolloutContext, RolloutState};
+use self::sample::{BeliefSamples, PER_DECISION, QuasiRandomLattice};
+use super::concept::{Concept, DecisionPoint, Situation};
 use super::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
 use super::settings::AssistantSpec;
 use super::signal::{Signal, unavailable};
-use super::situation::Situation;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, WeightedWorlds};
-use crate::mind::ChoiceModel;
+use crate::kitchen::{Agent, AspectId, Kitchen, WeightedWorlds};
 use crate::mind::choice::HumanChoice;
 use crate::mind::model::{HumanModel, LookingModel};
-use crate::mind::recorded_estimate::rounded;
+use crate::mind::{ChoiceModel, rounded};
 
 /// Number of rollouts after which the planner checks for which signals the sign of the net benefit is certain enough.
 const BATCH: usize = 32;
@@ -48,7 +39,6 @@ pub struct Planner {
     seed: u64,
     choice: ChoiceModel,
     foresight: f64,
-    /// Looking model of the rollouts: where, and how often, the human looks.
     looking: LookingModel,
     involved: Vec<Vec<AspectId>>,
     /// For each button of the human, the aspects at which the human looks before a press: the locations involved and,
@@ -58,17 +48,14 @@ pub struct Planner {
     samples: BeliefSamples,
     baseline: BaselineRollout,
     state: RolloutState,
-    /// Weighted worlds that represent the human's belief.
     believed: WeightedWorlds<u32>,
     draws: Vec<DecisionDraws>,
 }
 
-/// A signal whose expected saving is estimated.
 #[derive(Clone, Debug)]
 struct Candidate {
     signal: Signal,
     aspects: Vec<AspectId>,
-    /// Probability that the signal is read and understood.
     probability: f64,
     /// A benefit below this, in presses, is as good as none, so it need not be known more accurately.
     matters_above: f64,
@@ -79,7 +66,7 @@ struct Candidate {
 impl Planner {
     /// A planner for this human model. `seed` and the number of presses so far seed the planner's random stream.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
-        let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+        let buttons = kitchen.button_ids(Agent::Human);
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
         let watched = |button| kitchen.watched(button).into_iter().map(AspectId::of_location).collect();
         Planner {
@@ -280,5 +267,88 @@ impl Concept for Planner {
 
     fn work_ahead(&mut self, cost: &mut CostToGo, moment: &DecisionPoint, proceed: &mut dyn FnMut() -> bool) {
         self.prepare_for_presses(cost, moment, proceed);
+    }
+}
+
+/// Running statistics of the differences between paired rollouts, one with and one without a signal.
+#[derive(Clone, Debug, Default)]
+pub struct PairedDifferences {
+    count: u32,
+    sum: f64,
+    squares: f64,
+    divergences: Vec<Divergence>,
+}
+
+/// A pair of different choices of the human, at which the rollouts without and with the signal separate.
+#[derive(Clone, Copy, Debug)]
+struct Divergence {
+    baseline: HumanChoice,
+    signalled: HumanChoice,
+    /// Sum of the savings in rollouts with this pair of choices, and sum of their squares, in presses.
+    sum: f64,
+    squares: f64,
+}
+
+impl Divergence {
+    /// Total saving of rollouts with this pair of choices minus one standard error, so that a single large saving by
+    /// chance does not count as the reason.
+    fn surely_saved(&self) -> f64 {
+        self.sum - self.squares.sqrt()
+    }
+}
+
+impl PairedDifferences {
+    /// Adds the saving of a rollout, in presses, and the human's choices at which it diverged from the baseline.
+    pub fn add(&mut self, saved: f64, diverged: Option<(HumanChoice, HumanChoice)>) {
+        self.count += 1;
+        self.sum += saved;
+        self.squares += saved * saved;
+        if let Some((baseline, signalled)) = diverged {
+            match self
+                .divergences
+                .iter_mut()
+                .find(|divergence| divergence.baseline == baseline && divergence.signalled == signalled)
+            {
+                Some(divergence) => {
+                    divergence.sum += saved;
+                    divergence.squares += saved * saved;
+                }
+                None => self.divergences.push(Divergence { baseline, signalled, sum: saved, squares: saved * saved }),
+            }
+        }
+    }
+
+    /// Number of pairs of rollouts so far.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Mean saving of the rollouts with the signal, in presses; 0 without rollouts.
+    pub fn mean(&self) -> f64 {
+        self.sum / f64::from(self.count.max(1))
+    }
+
+    /// Standard error of the mean saving, in presses.
+    pub fn standard_error(&self) -> f64 {
+        self.error_with(0.0)
+    }
+
+    /// Standard error of the mean saving if one further rollout saved three presses: while no rollout differed, the
+    /// plain standard error would be 0.
+    pub(crate) fn cautious_error(&self) -> f64 {
+        self.error_with(9.0)
+    }
+
+    fn error_with(&self, square: f64) -> f64 {
+        let n = f64::from(self.count.max(2));
+        let spread = (self.squares - self.sum * self.sum / n).max(0.0) + square;
+        (spread / (n - 1.0) / n).sqrt()
+    }
+
+    /// The choice that the signal prevents with the largest saving, and the choice that replaces it.
+    pub(crate) fn turning_point(&self) -> Option<[HumanChoice; 2]> {
+        let all = self.divergences.iter();
+        let most = all.reduce(|best, one| if one.surely_saved() > best.surely_saved() { one } else { best })?;
+        (most.sum > 0.0).then_some([most.baseline, most.signalled])
     }
 }

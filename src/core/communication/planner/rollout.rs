@@ -6,15 +6,17 @@
 
 use rand::RngExt;
 
-use super::rollout_human::choice_weights;
-use super::rollout_robot::{self, OngoingRobotPress, RobotChoices, RobotPolicy};
 use crate::base::rng::Stream;
+use crate::communication::concept::{RobotIntent, Situation};
 use crate::communication::settings::RolloutSettings;
-use crate::communication::situation::{RobotIntent, Situation};
-use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
+use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State, WeightedWorlds};
-use crate::mind::choice::{ChoiceModel, HumanChoice};
+use crate::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Kitchen, OrderContent, Recipes, State,
+    WeightedWorld, WeightedWorlds, World,
+};
+use crate::mind::choice::{ChoiceModel, ChoiceWeights, HumanChoice};
+use crate::robot::policy;
 
 /// Number of robot presses between two decisions of the human that have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
@@ -31,7 +33,6 @@ pub struct DecisionDraws {
 }
 
 impl DecisionDraws {
-    /// Draws the random numbers of one rollout from this stream.
     pub fn draw(random: &mut Stream) -> DecisionDraws {
         let mut draws = DecisionDraws { decision: random.random(), slip: random.random(), ..DecisionDraws::default() };
         draws.looks.iter_mut().for_each(|draw| *draw = random.random());
@@ -52,19 +53,14 @@ impl DecisionDraws {
 
 /// Data shared by all rollouts of one recommendation.
 pub struct RolloutContext<'a> {
-    /// The kitchen in which the rollout is simulated.
     pub kitchen: &'a Kitchen,
-    /// The true recipes of all dishes in the rollout.
     pub recipes: Recipes,
-    /// The human's choice model.
     pub choice: &'a ChoiceModel,
     /// For each button of the human, the state aspects of the locations on which the button's effect depends.
     pub involved: &'a [Vec<AspectId>],
     /// For each button of the human, the state aspects at which the human looks before the press.
     pub watched: &'a [Vec<AspectId>],
-    /// Settings of the rollouts: their horizon, their number and their accuracy.
     pub model: &'a RolloutSettings,
-    /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
     /// Probability that the human looks at a location that the next press needs, before that press.
     pub looks: f64,
@@ -76,12 +72,9 @@ pub struct RolloutContext<'a> {
     pub foresight: f64,
 }
 
-/// State of a rollout before a decision of the human.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RolloutState {
-    /// The true state of the kitchen.
     pub kitchen: State,
-    /// The weighted worlds that represent the human's belief.
     pub worlds: WeightedWorlds<u32>,
     ongoing: Option<OngoingRobotPress>,
     is_still: bool,
@@ -154,15 +147,10 @@ impl RolloutState {
     }
 }
 
-/// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
-    /// The data that all rollouts for one recommendation share.
     pub context: &'a RolloutContext<'a>,
-    /// The cost to go, with its caches.
     pub cost: &'a mut CostToGo,
-    /// The robot's policy, with its caches.
     pub policy: &'a mut RobotPolicy,
-    /// The random numbers of each decision of the human, in order.
     pub draws: &'a [DecisionDraws],
     /// Time of the human's first decision, in seconds since the start of the rollout.
     pub first_s: f64,
@@ -255,8 +243,7 @@ impl Rollout<'_> {
             let choices = self.choices(state.kitchen);
             if ongoing.holds(choices) {
                 let before = state.kitchen;
-                state.kitchen =
-                    rollout_robot::press(self.context.kitchen, before, &self.context.recipes, ongoing.button);
+                state.kitchen = press_of_robot(self.context.kitchen, before, &self.context.recipes, ongoing.button);
                 state.spent += 1;
                 let draw = self.draws[step].predictions[presses % ROBOT_DRAWS];
                 if draw < self.context.foresight {
@@ -273,7 +260,6 @@ impl Rollout<'_> {
         state.now_s = until_s;
     }
 
-    /// The possible choices of the robot's task policy in the true state.
     fn choices(&mut self, state: State) -> RobotChoices {
         self.policy.choices(self.context.kitchen, self.cost, Fidelity::Searched, state, &self.context.recipes)
     }
@@ -292,7 +278,6 @@ impl Rollout<'_> {
         }
     }
 
-    /// Lets the human look at locations, decide, and press.
     fn decide(&mut self, state: &mut RolloutState, step: usize) -> HumanChoice {
         let (context, draws) = (self.context, &self.draws[step]);
         for (index, &draw) in draws.looks[..context.kitchen.locations.len()].iter().enumerate() {
@@ -327,4 +312,225 @@ impl Rollout<'_> {
         }
         choice
     }
+}
+
+// The human in a rollout. The belief is one belief sample, represented by worlds drawn from it; equal worlds are merged,
+// with their number of draws as weight. Most people are nearly certain of one value, so few distinct worlds remain.
+
+/// Worlds that are drawn less than once in this many draws use the lower bound of their cost to go.
+const FEW_DRAWS: u32 = 8;
+
+impl WeightedWorlds<u32> {
+    /// Whether a state aspect has its true value in all worlds.
+    pub fn are_certain_of(&self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
+        match kitchen.aspects[aspect.index()].kind {
+            AspectKind::Location(location) => {
+                let code = truth.code(location);
+                self.all.iter().all(|one| one.world.state.code(location) == code)
+            }
+            AspectKind::Recipe(dish) => {
+                let stack: ContentId = kitchen.dish(dish).stack();
+                self.all.iter().all(|one| one.world.recipes.get(dish) == stack)
+            }
+        }
+    }
+
+    /// Sets a state aspect to its true value in all worlds; returns whether a world changed.
+    pub fn learn(&mut self, kitchen: &Kitchen, aspect: AspectId, truth: State) -> bool {
+        if self.are_certain_of(kitchen, aspect, truth) {
+            return false;
+        }
+        for WeightedWorld { world, .. } in &mut self.all {
+            match kitchen.aspects[aspect.index()].kind {
+                AspectKind::Location(location) => world.state.set_code(location, truth.code(location)),
+                AspectKind::Recipe(dish) => world.recipes.set(dish, kitchen.dish(dish).stack()),
+            }
+        }
+        self.merge();
+        true
+    }
+
+    /// Conditions the worlds on the human's own press and on whether the press was effective. If no world is consistent
+    /// with it, the aspects involved are set to their true values, as if the human looked at them.
+    pub fn pressed(
+        &mut self,
+        kitchen: &Kitchen,
+        button: ButtonId,
+        involved: &[AspectId],
+        before: State,
+        after: Option<State>,
+    ) {
+        let press = |world: &World| kitchen.press(world.state, &world.recipes, Agent::Human, button);
+        if self.all.iter().any(|one| press(&one.world).is_some() == after.is_some()) {
+            self.all.retain_mut(|one| {
+                let next = press(&one.world);
+                one.world.state = next.unwrap_or(one.world.state);
+                next.is_some() == after.is_some()
+            });
+            return self.merge();
+        }
+        let truth = after.unwrap_or(before);
+        for &aspect in involved {
+            self.learn(kitchen, aspect, truth);
+        }
+        if let ButtonAction::Serve(order) = kitchen.button(Agent::Human, button).action
+            && let OrderContent::Dish(dish) = before.order(order)
+        {
+            self.learn(kitchen, kitchen.aspect_of_dish(dish), truth);
+        }
+    }
+
+    /// Predicts a press of the robot, of which the human notices only that it happened: the weight of every world is
+    /// divided evenly among the presses that the robot's policy allows in that world. The random number `draw`, uniform
+    /// in [0, 1), distributes remainders of integer weights.
+    pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, policy: &mut RobotPolicy, draw: f64) {
+        let n = self.draws();
+        for index in 0..self.all.len() {
+            let WeightedWorld { world: World { state, recipes }, weight: count } = self.all[index];
+            let choices: RobotChoices = policy.choices(kitchen, cost, fidelity(count, n), state, &recipes);
+            let ways = choices.count();
+            if ways == 0 {
+                continue;
+            }
+            let first = (draw * f64::from(ways)) as u32;
+            let share = |way: u32| count / ways + u32::from(way < count % ways);
+            let after = |way: u32| press_of_robot(kitchen, state, &recipes, choices.nth((first + way) % ways));
+            self.all[index].world.state = after(0);
+            self.all[index].weight = share(0);
+            for way in (1..ways).filter(|&way| share(way) > 0) {
+                let world = World { state: after(way), recipes };
+                self.all.push(WeightedWorld { world, weight: share(way) });
+            }
+        }
+        self.merge();
+    }
+}
+
+/// Fidelity of the cost to go of a world that was drawn `count` times in `n` draws.
+fn fidelity(count: u32, n: u32) -> Fidelity {
+    if count * FEW_DRAWS >= n { Fidelity::PlanBound } else { Fidelity::LowerBound }
+}
+
+/// Softmax weights of the choices of a human whose belief is given by weighted worlds.
+pub fn choice_weights(model: &ChoiceModel, cost: &mut CostToGo, worlds: &WeightedWorlds<u32>) -> ChoiceWeights {
+    let mut sums = [0u32; MAX_BUTTONS];
+    let n = worlds.draws();
+    let mut here = 0u32;
+    for &WeightedWorld { world: World { state, recipes }, weight } in &worlds.all {
+        let decision = cost.decision_with(fidelity(weight, n), state, &recipes, Agent::Human);
+        here += weight * u32::from(decision.here);
+        for (sum, &after) in sums.iter_mut().zip(&decision.after) {
+            *sum += weight * u32::from(after);
+        }
+    }
+    model.weights(here, &sums[..model.buttons()], n)
+}
+
+/// The cache of the robot's policy has 2^15 entries.
+const BITS: u32 = 15;
+
+/// The robot's possible presses in a state, as bit sets of buttons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RobotChoices {
+    /// The presses among which the policy chooses with equal probability, one bit for each button of the robot.
+    pub choices: u64,
+    /// The presses that the robot completes if its arm is already moving to their buttons, one bit for each button of
+    /// the robot.
+    pub useful: u64,
+}
+
+impl RobotChoices {
+    /// Number of equally likely presses among which the robot chooses.
+    pub fn count(self) -> u32 {
+        self.choices.count_ones()
+    }
+
+    /// The n-th of the robot's equally likely choices, counted from 0.
+    pub fn nth(self, n: u32) -> ButtonId {
+        let mut left = self.choices;
+        for _ in 0..n {
+            left &= left - 1;
+        }
+        ButtonId(left.trailing_zeros() as u8)
+    }
+}
+
+/// The robot's task policy with a cache by fidelity, state and ordered recipes. The policy's cache changes computing
+/// time, never results.
+#[derive(Clone, Debug)]
+pub struct RobotPolicy {
+    known: Vec<Option<(Fidelity, State, Recipes, RobotChoices)>>,
+}
+
+impl Default for RobotPolicy {
+    fn default() -> Self {
+        RobotPolicy { known: vec![None; 1 << BITS] }
+    }
+}
+
+impl RobotPolicy {
+    /// The possible choices of the robot's policy in a state, given the true recipes.
+    #[inline]
+    pub fn choices(
+        &mut self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        fidelity: Fidelity,
+        state: State,
+        recipes: &Recipes,
+    ) -> RobotChoices {
+        let wanted = wanted_recipes(kitchen, state, recipes);
+        let place = (crate::base::rng::mix(hash(state, &wanted) ^ fidelity as u64) >> (64 - BITS)) as usize;
+        if let Some((of_fidelity, known, of, choices)) = self.known[place]
+            && of_fidelity == fidelity
+            && known == state
+            && of == wanted
+        {
+            return choices;
+        }
+        let bits = |buttons: &[ButtonId]| buttons.iter().fold(0, |bits, button| bits | 1u64 << button.0);
+        let best = policy::best_presses(kitchen, cost, fidelity, state, recipes);
+        let useful = bits(&best);
+        let choices =
+            RobotChoices { choices: bits(&policy::chosen(kitchen, cost, fidelity, state, recipes, best)), useful };
+        self.known[place] = Some((fidelity, state, wanted, choices));
+        choices
+    }
+}
+
+/// The recipes of ordered dishes, with all other recipes set to a fixed value, since decisions do not depend on those.
+fn wanted_recipes(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Recipes {
+    let mut wanted = Recipes::default();
+    for &order in &kitchen.orders {
+        if let OrderContent::Dish(dish) = state.order(order) {
+            wanted.set(dish, recipes.get(dish));
+        }
+    }
+    wanted
+}
+
+fn hash(state: State, recipes: &Recipes) -> u64 {
+    let (state, recipes) = (state.bits(), recipes.bits());
+    let mix = crate::base::rng::mix;
+    mix(mix(state as u64 ^ mix((state >> 64) as u64)) ^ mix(recipes as u64 ^ mix((recipes >> 64) as u64)))
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OngoingRobotPress {
+    pub button: ButtonId,
+    /// Time at which the arm touches the button, in seconds since the start of the rollout.
+    pub due_s: f64,
+    /// Whether the wizard chose the press, so that the robot makes the press even if it is not useful.
+    pub driven: bool,
+}
+
+impl OngoingRobotPress {
+    /// Whether the arm completes the press when it reaches the button.
+    pub fn holds(&self, choices: RobotChoices) -> bool {
+        self.driven || choices.useful >> self.button.0 & 1 == 1
+    }
+}
+
+fn press_of_robot(kitchen: &Kitchen, state: State, recipes: &Recipes, button: ButtonId) -> State {
+    kitchen.press(state, recipes, Agent::Robot, button).unwrap_or(state)
 }

@@ -7,11 +7,10 @@
 //! answer is the same with and without working ahead.
 
 use super::Planner;
-use super::lattice::QuasiRandomLattice;
-use super::rollout_human::choice_weights;
+use super::rollout::choice_weights;
+use super::sample::QuasiRandomLattice;
 use crate::base::rng::stream;
-use crate::communication::concept::DecisionPoint;
-use crate::communication::situation::{RobotIntent, Situation};
+use crate::communication::concept::{DecisionPoint, RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use crate::mind::choice::HumanChoice;
@@ -27,21 +26,16 @@ const LEAST_SHARE: f64 = 0.05;
 /// A change of the trial that may come next.
 #[derive(Clone, Copy)]
 enum NextChange {
-    /// The robot finishes its ongoing press.
     RobotPress,
-    /// The human presses this button.
     HumanPress(ButtonId),
-    /// An order for this dish appears at this location.
     NewOrder(LocationId, DishId),
 }
 
-/// A situation of the trial that may come next.
 struct NextSituation {
     state: State,
     belief: DirichletBelief,
     changed: Vec<AspectId>,
     robot: RobotIntent,
-    /// Number of presses of both agents when the situation comes.
     presses: u32,
 }
 
@@ -69,7 +63,6 @@ impl Planner {
         }
     }
 
-    /// The human's likeliest next presses, the likeliest first.
     fn likely_presses(
         &mut self,
         cost: &mut CostToGo,
@@ -123,7 +116,6 @@ impl Planner {
         })
     }
 
-    /// The situation after a press of the human, who knows what the press changed.
     fn after_the_human(&self, moment: &DecisionPoint, button: ButtonId) -> Option<NextSituation> {
         let before = moment.situation.state;
         let state = self.kitchen.press(before, &self.kitchen.true_recipes(), Agent::Human, button)?;
@@ -134,7 +126,6 @@ impl Planner {
         Some(next)
     }
 
-    /// New orders of each dish where there is no order now.
     fn new_orders(&self, moment: &DecisionPoint) -> impl Iterator<Item = NextChange> {
         let state = moment.situation.state;
         let is_empty = move |order: &&LocationId| !matches!(state.order(**order), OrderContent::Dish(_));
@@ -145,13 +136,11 @@ impl Planner {
     }
 }
 
-/// The situation of a decision point, but in another state of the kitchen.
 fn unchanged(state: State, moment: &DecisionPoint) -> NextSituation {
     let Situation { belief, robot, .. } = moment.situation;
     NextSituation { state, belief: belief.clone(), changed: Vec::new(), robot, presses: moment.presses }
 }
 
-/// Makes the estimate certain of the true value of a state aspect.
 fn make_certain(kitchen: &Kitchen, belief: &mut DirichletBelief, aspect: AspectId, state: State) {
     let truth = kitchen.true_value(state, aspect);
     let dirichlet = &mut belief.aspects[aspect.index()];

@@ -1,12 +1,19 @@
-//! Enumerates the contents of a kitchen: the items (ingredients in their states), and the stacks that can be made of
-//! items.
+//! Contents and their words, processing steps, dishes and the variants of their recipes, from the recipe file.
+
+use std::collections::BTreeMap;
 
 use toml::Spanned;
 
-use super::spec_error::{KitchenFileKind, Result, look, wrong, wrong_file};
-use crate::kitchen::content::{Content, ContentId};
-use crate::kitchen::look::Appearance;
-use crate::kitchen::recipe::{DishSpec, RecipesSpec};
+use super::places::stored;
+use super::{KitchenFileKind, Result, in_recipes, look, wrong_file};
+use crate::kitchen::files::{
+    DeviationCombinationRule, DeviationSpec, DishSpec, LayoutSpec, ProcessingStepSpec, RecipesSpec,
+};
+use crate::kitchen::parts::{
+    Agent, Appearance, Content, ContentId, Dish, KitchenWords, Location, LocationId, LocationKind, ProcessingStep,
+    SCREEN_LANGUAGE,
+};
+use crate::kitchen::state::MAX_DISHES;
 
 /// Largest number of contents: a content is one byte, and one value of the byte means "none".
 const MAX_CONTENTS: usize = 255;
@@ -33,11 +40,11 @@ impl IngredientItems {
                 let name = format!("{}{suffix}", ingredient.name.get_ref());
                 if items.names.contains(&name) {
                     let found = format!("the item \"{name}\" a second time");
-                    return Err(wrong(KitchenFileKind::Recipes, ingredient.name.span(), found, "each item once"));
+                    return Err(in_recipes(ingredient.name.span(), found, "each item once"));
                 }
                 if items.names.len() == MAX_CONTENTS - 1 {
                     let found = format!("\"{name}\" as item number {MAX_CONTENTS}");
-                    return Err(wrong(KitchenFileKind::Recipes, ingredient.name.span(), found, TOO_MANY));
+                    return Err(in_recipes(ingredient.name.span(), found, TOO_MANY));
                 }
                 items.names.push(name);
                 items.ingredient.push(index);
@@ -50,8 +57,7 @@ impl IngredientItems {
     pub(super) fn find(&self, name: &Spanned<String>) -> Result<ContentId> {
         match self.names.iter().position(|item| item == name.get_ref()) {
             Some(index) => Ok(ContentId(index as u8 + 1)),
-            None => Err(wrong(
-                KitchenFileKind::Recipes,
+            None => Err(in_recipes(
                 name.span(),
                 format!("\"{}\"", name.get_ref()),
                 format!("one of the items {}", self.names.join(", ")),
@@ -93,12 +99,11 @@ fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result
     if !looks.is_empty() && looks.len() != states {
         let found = format!("{} looks of \"{}\"", looks.len(), ingredient.name.get_ref());
         let remedy = format!("one for each of its states: {states}");
-        return Err(wrong(KitchenFileKind::Recipes, looks[0].span(), found, remedy));
+        return Err(in_recipes(looks[0].span(), found, remedy));
     }
     looks.get(items.state[item]).map(|text| look(KitchenFileKind::Recipes, text)).transpose()
 }
 
-/// All stacks of two or more items, smaller stacks first.
 fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<ContentId>>> {
     let mut stacks: Vec<Vec<ContentId>> = vec![Vec::new()];
     let mut of_slots: Vec<ContentId> = Vec::new();
@@ -107,12 +112,12 @@ fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<Content
         for (item, name) in items.find_all(&slot.items)?.into_iter().zip(&slot.items) {
             if of_slots.contains(&item) {
                 let found = format!("\"{}\" in a second slot, or twice in one", name.get_ref());
-                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, "each item in at most one [[slot]]"));
+                return Err(in_recipes(name.span(), found, "each item in at most one [[slot]]"));
             }
             of_slots.push(item);
             stacks.extend(below.iter().map(|stack| [stack.as_slice(), &[item]].concat()));
             if stacks.len() > 2 * MAX_CONTENTS {
-                return Err(wrong(KitchenFileKind::Recipes, slot.name.span(), "too many different stacks", TOO_MANY));
+                return Err(in_recipes(slot.name.span(), "too many different stacks", TOO_MANY));
             }
         }
     }
@@ -169,7 +174,7 @@ fn look_alikes(
             let other = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
             let Some(other) = other else {
                 let found = format!("looks_like \"{}\"", name.get_ref());
-                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, "the name of another ingredient"));
+                return Err(in_recipes(name.span(), found, "the name of another ingredient"));
             };
             let twin =
                 (0..items.names.len()).find(|&twin| items.ingredient[twin] == other && items.state[twin] == state);
@@ -181,4 +186,198 @@ fn look_alikes(
         }
     }
     Ok(alike)
+}
+
+/// Largest length of the wording of a content, in characters: a longer wording would not fit under a place on the
+/// screen.
+const MAX_WORDING: usize = 40;
+
+/// The wordings of contents in all languages: those of the recipe file and, in the screens' language, a default for
+/// every other item.
+pub(super) fn content_words(spec: &RecipesSpec, items: &IngredientItems) -> Result<KitchenWords> {
+    let mut languages: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
+    let defaults = (0..items.names.len()).map(|item| (items.names[item].clone(), default_wording(spec, items, item)));
+    languages.insert(SCREEN_LANGUAGE.to_string(), defaults.collect());
+    for (language, entries) in &spec.words {
+        let words = languages.entry(language.clone()).or_default();
+        for (name, wording) in entries {
+            let dish = spec.dish.iter().any(|dish| dish.name.get_ref() == name);
+            let ingredient = spec.ingredient.iter().any(|ingredient| ingredient.name.get_ref() == name);
+            if !dish && !ingredient && !items.names.contains(name) {
+                let found = format!("words for \"{name}\" in the table [words.{language}]");
+                let remedy = format!("a dish, an ingredient, or one of the items {}", items.names.join(", "));
+                return Err(in_recipes(wording.span(), found, remedy));
+            }
+            let text = wording.get_ref();
+            let is_wording = (1..=MAX_WORDING).contains(&text.chars().count()) && text.trim() == text;
+            if !is_wording || text.chars().any(char::is_control) || text.contains(" + ") {
+                let remedy = format!("1 to {MAX_WORDING} characters in one line, such as \"cooked rice\"");
+                return Err(in_recipes(wording.span(), format!("{text:?} as words for \"{name}\""), remedy));
+            }
+            words.insert(name.clone(), text.clone());
+        }
+        check_distinct(spec, items, language, words)?;
+    }
+    Ok(KitchenWords::new(languages))
+}
+
+/// The default wording of an item: "cooked rice" for "rice" in the state "cooked".
+fn default_wording(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> String {
+    let ingredient = &spec.ingredient[items.ingredient[item]];
+    let name = ingredient.name.get_ref();
+    ingredient.states.get(items.state[item]).map_or(name.clone(), |state| format!("{} {name}", state.get_ref()))
+}
+
+/// Checks that no two items, and no two dishes, have the same wording: they could not be told apart on a screen.
+fn check_distinct(
+    spec: &RecipesSpec,
+    items: &IngredientItems,
+    language: &str,
+    words: &BTreeMap<String, String>,
+) -> Result<()> {
+    let dishes = spec.dish.iter().map(|dish| dish.name.get_ref());
+    let mut seen: BTreeMap<&str, &str> = BTreeMap::new();
+    for name in items.names.iter().chain(dishes) {
+        let Some(wording) = words.get(name) else { continue };
+        let Some(other) = seen.insert(wording, name) else { continue };
+        let entries = &spec.words[language];
+        let span = [name.as_str(), other].iter().find_map(|name| entries.get(*name)).map_or(0..0, |word| word.span());
+        let found = format!("\"{wording}\" as words for both \"{other}\" and \"{name}\"");
+        return Err(in_recipes(span, found, "words of its own for each item and each dish"));
+    }
+    Ok(())
+}
+
+pub(super) fn word(contents: &mut [Content], words: &KitchenWords) {
+    let wordings: Vec<String> =
+        contents.iter().map(|content| words.content(SCREEN_LANGUAGE, content, contents)).collect();
+    for (content, wording) in contents.iter_mut().zip(wordings) {
+        content.wording = wording;
+    }
+}
+
+pub(super) fn processes(
+    spec: &RecipesSpec,
+    items: &IngredientItems,
+    locations: &[Location],
+) -> Result<Vec<ProcessingStep>> {
+    let one = |process: &ProcessingStepSpec| {
+        let place = match process.at.get_ref().as_str() {
+            "hand" => None,
+            name => match locations.iter().position(|l| l.name == name && l.kind == LocationKind::Place) {
+                Some(index) => Some(LocationId(index as u8)),
+                None => {
+                    let found = format!("at = \"{name}\"");
+                    return Err(in_recipes(process.at.span(), found, "\"hand\" or a [[place]] of the layout"));
+                }
+            },
+        };
+        let steps = process.steps.iter().map(|step| Ok((items.find(&step.from)?, items.find(&step.to)?)));
+        let agents = Agent::BOTH.map(|agent| process.agents.contains(&agent));
+        Ok(ProcessingStep { name: process.name.get_ref().clone(), place, agents, steps: steps.collect::<Result<_>>()? })
+    };
+    spec.process.iter().map(one).collect()
+}
+
+pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Content]) -> Result<Vec<Dish>> {
+    if spec.dish.is_empty() || spec.dish.len() > MAX_DISHES {
+        let found = format!("{} dishes", spec.dish.len());
+        return Err(wrong_file(KitchenFileKind::Recipes, found, format!("1 to {MAX_DISHES} tables [[dish]]")));
+    }
+    let slots: Vec<Vec<ContentId>> = spec.slot.iter().map(|slot| items.find_all(&slot.items)).collect::<Result<_>>()?;
+    let mut dishes: Vec<Dish> = Vec::new();
+    for dish in &spec.dish {
+        let parts = items.find_all(dish.items.get_ref())?;
+        let by_slot: Option<Vec<ContentId>> =
+            slots.iter().map(|slot| slot.iter().copied().find(|item| parts.contains(item))).collect();
+        let Some(by_slot) = by_slot.filter(|by_slot| by_slot.len() == parts.len()) else {
+            let found = format!("\"{}\" of {} items", dish.name.get_ref(), parts.len());
+            return Err(in_recipes(dish.items.span(), found, "one item of each [[slot]]"));
+        };
+        let deviation = spec.deviation.iter().find_map(|deviation| match items.find_all(&deviation.dishes_with) {
+            Ok(with) => with.iter().any(|item| parts.contains(item)).then_some(Ok(deviation)),
+            Err(error) => Some(Err(error)),
+        });
+        let sets = match deviation.transpose()? {
+            Some(deviation) => variants(deviation, spec, items, &by_slot)?,
+            None => vec![by_slot],
+        };
+        let find = |mut set: Vec<ContentId>| {
+            set.sort_unstable();
+            contents.iter().position(|content| content.items == set).map(|index| ContentId(index as u8))
+        };
+        // Each set has one item of every slot, so it is a stack.
+        let variants: Vec<ContentId> = sets.into_iter().filter_map(find).collect();
+        if dishes.iter().any(|other| other.name == *dish.name.get_ref() || other.variants[0] == variants[0]) {
+            let found = format!("the dish \"{}\" a second time", dish.name.get_ref());
+            return Err(in_recipes(dish.name.span(), found, "each name and each recipe once"));
+        }
+        let look = dish.look.as_ref().map(|text| look(KitchenFileKind::Recipes, text)).transpose()?;
+        dishes.push(Dish { name: dish.name.get_ref().clone(), variants, look });
+    }
+    Ok(dishes)
+}
+
+/// The variants of a recipe that people may remember instead of `truth` (one item per slot), the true recipe first.
+fn variants(
+    deviation: &DeviationSpec,
+    spec: &RecipesSpec,
+    items: &IngredientItems,
+    truth: &[ContentId],
+) -> Result<Vec<Vec<ContentId>>> {
+    let mut sets = vec![truth.to_vec()];
+    for vary in &deviation.slots {
+        let Some(slot) = spec.slot.iter().position(|slot| slot.name.get_ref() == vary.slot.get_ref()) else {
+            let found = format!("slot = \"{}\"", vary.slot.get_ref());
+            return Err(in_recipes(vary.slot.span(), found, "the name of a [[slot]]"));
+        };
+        let starts = match deviation.combine {
+            DeviationCombinationRule::OneAtATime => vec![truth.to_vec()],
+            DeviationCombinationRule::All => sets.clone(),
+        };
+        for start in starts {
+            for (item, name) in items.find_all(&vary.items)?.into_iter().zip(&vary.items) {
+                let stackable = &spec.slot[slot].items;
+                if !stackable.iter().any(|other| other.get_ref() == name.get_ref()) {
+                    let found = format!("\"{}\" in the slot \"{}\"", name.get_ref(), vary.slot.get_ref());
+                    let of_slot: Vec<&str> = stackable.iter().map(|item| item.get_ref().as_str()).collect();
+                    let remedy = format!("an item of that [[slot]]: {}", of_slot.join(", "));
+                    return Err(in_recipes(name.span(), found, remedy));
+                }
+                let mut set = start.clone();
+                set[slot] = item;
+                if !sets.contains(&set) {
+                    sets.push(set);
+                }
+            }
+        }
+    }
+    Ok(sets)
+}
+
+/// Checks that every dish can be made: each item comes from a storage, and every processing step has an agent who can
+/// do the step.
+pub(super) fn check_obtainable(
+    spec: &RecipesSpec,
+    layout: &LayoutSpec,
+    items: &IngredientItems,
+    processes: &[ProcessingStep],
+) -> Result<()> {
+    let mut obtainable: Vec<ContentId> =
+        layout.storage.iter().map(|storage| stored(&storage.ingredient, spec, items)).collect::<Result<_>>()?;
+    let steps = processes.iter().filter(|process| process.agents.contains(&true)).flat_map(|process| &process.steps);
+    let steps: Vec<(ContentId, ContentId)> = steps.copied().collect();
+    while let Some((_, to)) = steps.iter().find(|(from, to)| obtainable.contains(from) && !obtainable.contains(to)) {
+        obtainable.push(*to);
+    }
+    for dish in &spec.dish {
+        for name in dish.items.get_ref() {
+            if !obtainable.contains(&items.find(name)?) {
+                let found = format!("\"{}\", which nobody can get", name.get_ref());
+                let remedy = "a [[storage]] of the layout that gives it, or steps of a [[process]] that lead to it";
+                return Err(in_recipes(name.span(), found, remedy));
+            }
+        }
+    }
+    Ok(())
 }

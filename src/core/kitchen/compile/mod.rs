@@ -1,35 +1,23 @@
-//! Compiles a [`Kitchen`] from a layout file and a recipe file: contents, buttons, recipe variants and state aspects.
-//!
-//! The steps of compiling in their order: `contents` (items and stacks), `content_words`, `places` (locations and
-//! storages), `dishes` (processing steps, dishes, variants), `buttons`; transition tables and aspects follow in this
-//! file. All steps share the errors of `spec_error`.
+//! Compiles a [`Kitchen`] from a layout file and a recipe file: contents, dishes and their variants, places, buttons,
+//! transition tables, state aspects.
 
-mod buttons;
-mod content_words;
 mod contents;
-mod dishes;
 mod places;
-mod spec_error;
+
+use std::ops::Range;
 
 use toml::Spanned;
 
 use self::contents::IngredientItems;
-pub use self::places::{MAX_ORDERS, MIN_GAP_M};
-pub use self::spec_error::{KitchenFileError, KitchenFileKind};
-use self::spec_error::{Result, wrong, wrong_file};
-use super::action::Button;
-use super::aspect::{AspectKind, StateAspect};
-use super::compiled::Kitchen;
-use super::content::{Content, ContentId};
+use super::compiled::{Kitchen, TransitionTables};
 use super::cost_to_go::{MAX_BUTTONS, MAX_STATES};
-use super::dish::{Dish, DishId};
-use super::layout::LayoutSpec;
-use super::layout_ranges;
-use super::location::{Location, LocationId, LocationKind};
-use super::process::ProcessingStep;
-use super::recipe::RecipesSpec;
+use super::files;
+use super::files::{LayoutSpec, RecipesSpec};
+use super::parts::{
+    Appearance, AspectKind, Button, Content, ContentId, Dish, DishId, Location, LocationId, LocationKind,
+    ProcessingStep, StateAspect,
+};
 use super::state::OrderContent;
-use super::transition_tables::TransitionTables;
 
 /// Largest number of places where items are processed (stations).
 const MAX_STATIONS: usize = 8;
@@ -48,7 +36,7 @@ impl Kitchen {
                 remedy: "a file like those in layouts and recipes".to_string(),
             }
         };
-        let ranges = layout_ranges::check(layout).map_err(|error| KitchenFileError {
+        let ranges = files::check_layout(layout).map_err(|error| KitchenFileError {
             file: KitchenFileKind::Layout,
             span: error.place,
             found: error.found,
@@ -65,15 +53,15 @@ impl Kitchen {
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
         let items = IngredientItems::read(recipes)?;
         let mut contents = contents::contents(recipes, &items)?;
-        let words = content_words::content_words(recipes, &items)?;
-        content_words::word(&mut contents, &words);
+        let words = contents::content_words(recipes, &items)?;
+        contents::word(&mut contents, &words);
         let locations = places::locations(layout)?;
         let (hands, board, plate) = places::roles(layout, &locations)?;
-        let processes = dishes::processes(recipes, &items, &locations)?;
-        let dishes = dishes::dishes(recipes, &items, &contents)?;
+        let processes = contents::processes(recipes, &items, &locations)?;
+        let dishes = contents::dishes(recipes, &items, &contents)?;
         let tables = tables(layout, recipes, &items, &contents, &locations, &processes)?;
         let orders: Vec<LocationId> = (0..layout.order.len()).map(|index| LocationId(index as u8)).collect();
-        let buttons = buttons::buttons(layout, recipes, &items, &locations, &processes)?;
+        let buttons = places::buttons(layout, recipes, &items, &locations, &processes)?;
         let aspects = aspects(&contents, &locations, &dishes, &tables);
         for (value, name) in [(&layout.display.width_m, "width_m"), (&layout.display.height_m, "height_m")] {
             positive(value, name)?;
@@ -88,7 +76,7 @@ impl Kitchen {
         places::check_gaps(layout, &locations, display_m)?;
         places::check_signal_keys(layout)?;
         check_size(&locations, &tables, &buttons, &processes)?;
-        dishes::check_obtainable(recipes, layout, &items, &processes)?;
+        contents::check_obtainable(recipes, layout, &items, &processes)?;
         Ok(Kitchen {
             name: layout.name.clone(),
             title: layout.title.clone(),
@@ -147,7 +135,7 @@ fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {
     if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
         return Ok(());
     }
-    Err(wrong(KitchenFileKind::Layout, value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
+    Err(in_layout(value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
 }
 
 fn tables(
@@ -211,7 +199,7 @@ fn accept(
             (other, None) => {
                 let found = format!("accepts \"{other}\"");
                 let remedy = "\"anything\", \"ingredients\", \"dishes\" or a [[group]] of the recipe file";
-                return Err(wrong(KitchenFileKind::Layout, name.span(), found, remedy));
+                return Err(in_layout(name.span(), found, remedy));
             }
         };
     }
@@ -257,4 +245,53 @@ fn aspects(
         wordings: dish.variants.iter().map(|variant| contents[variant.index()].wording.clone()).collect(),
     };
     locations.iter().enumerate().map(of_location).chain(dishes.iter().enumerate().map(of_dish)).collect()
+}
+
+/// The file of a kitchen that contains an error: layout or recipes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KitchenFileKind {
+    /// The layout file of a kitchen.
+    Layout,
+    /// The recipe file of a kitchen.
+    Recipes,
+}
+
+/// Error: a layout or recipe file contains something invalid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{found}")]
+pub struct KitchenFileError {
+    /// The file that contains the error.
+    pub file: KitchenFileKind,
+    /// Position of the error in the file's text, in bytes; `None` for the file as a whole.
+    pub span: Option<Range<usize>>,
+    /// What the file contains at the position of the error.
+    pub found: String,
+    /// What the file would have to contain there instead.
+    pub remedy: String,
+}
+
+pub(super) type Result<T> = std::result::Result<T, KitchenFileError>;
+
+pub(super) fn in_layout(span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> KitchenFileError {
+    KitchenFileError { span: Some(span), ..wrong_file(KitchenFileKind::Layout, found, remedy) }
+}
+
+pub(super) fn in_recipes(span: Range<usize>, found: impl Into<String>, remedy: impl Into<String>) -> KitchenFileError {
+    KitchenFileError { span: Some(span), ..wrong_file(KitchenFileKind::Recipes, found, remedy) }
+}
+
+pub(super) fn wrong_file(
+    file: KitchenFileKind,
+    found: impl Into<String>,
+    remedy: impl Into<String>,
+) -> KitchenFileError {
+    KitchenFileError { file, span: None, found: found.into(), remedy: remedy.into() }
+}
+
+/// Reads the appearance of an item, a dish or a place: a shape and its colours.
+pub(super) fn look(file: KitchenFileKind, text: &Spanned<String>) -> Result<Appearance> {
+    Appearance::read(text.get_ref()).map_err(|remedy| KitchenFileError {
+        span: Some(text.span()),
+        ..wrong_file(file, format!("look = \"{}\"", text.get_ref()), remedy)
+    })
 }

@@ -1,21 +1,20 @@
-//! Builds locations and storages from the layout file, and checks that an eye tracker can tell locations apart on the
-//! display.
+//! Locations, storages and buttons from the layout file, which an eye tracker can tell apart on the display.
 
 use toml::Spanned;
 
 use super::contents::IngredientItems;
-use super::spec_error::{KitchenFileKind, Result, look, wrong, wrong_file};
-use crate::kitchen::agent::Agent;
-use crate::kitchen::content::ContentId;
-use crate::kitchen::layout::{LayoutSpec, PlaceSpec, StorageSpec, is_same_key};
-use crate::kitchen::location::{DisplayArea, IngredientStorage, Location, LocationId, LocationKind};
-use crate::kitchen::recipe::RecipesSpec;
+use super::{KitchenFileKind, Result, in_layout, look, wrong_file};
+use crate::kitchen::files::{ButtonSpec, LayoutSpec, PlaceSpec, RecipesSpec, StorageSpec, is_same_key};
+use crate::kitchen::parts::{
+    Agent, Button, ButtonAction, ContentId, DisplayArea, IngredientStorage, Location, LocationId, LocationKind,
+    ProcessingStep,
+};
 use crate::kitchen::state::MAX_LOCATIONS;
 
 /// Largest number of simultaneous orders; the cost to go is computed for one and for two orders.
-pub const MAX_ORDERS: usize = 2;
+const MAX_ORDERS: usize = 2;
 /// Least distance between locations on the display, in metres, so that gaze can tell them apart.
-pub const MIN_GAP_M: f64 = 0.15;
+const MIN_GAP_M: f64 = 0.15;
 
 pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     let location =
@@ -36,7 +35,7 @@ pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     for (name, location) in orders.chain(hands).chain(places) {
         if locations.iter().any(|other| other.name == location.name) {
             let found = format!("the location \"{}\" a second time", location.name);
-            return Err(wrong(KitchenFileKind::Layout, name.span(), found, "each name once"));
+            return Err(in_layout(name.span(), found, "each name once"));
         }
         locations.push(location);
     }
@@ -76,7 +75,7 @@ pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([Loc
             (Some((index, _)), None) => Ok(LocationId((first_place + index) as u8)),
             (Some(_), Some((_, second))) => {
                 let found = format!("a second place with {which} = true, \"{}\"", second.name.get_ref());
-                Err(wrong(KitchenFileKind::Layout, second.name.span(), found, "one such place"))
+                Err(in_layout(second.name.span(), found, "one such place"))
             }
             (None, _) => {
                 let found = format!("no place with {which} = true");
@@ -98,19 +97,14 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
         let inside = area.x >= 0.0 && area.y >= 0.0 && area.x + area.w <= 1.0 && area.y + area.h <= 1.0;
         if !(inside && area.w > 0.0 && area.h > 0.0) {
             let found = format!("\"{}\" reaches beyond the display", location.name);
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                spans[index].clone(),
-                found,
-                "x, y, w and h as fractions within 0 to 1",
-            ));
+            return Err(in_layout(spans[index].clone(), found, "x, y, w and h as fractions within 0 to 1"));
         }
         for other in &locations[..index] {
             let gap = area.gap_m(other.display, display_m);
             if gap < MIN_GAP_M - 1e-9 {
                 let found = format!("\"{}\" only {gap:.3} m from \"{}\"", location.name, other.name);
                 let remedy = format!("at least {MIN_GAP_M} m between locations, so that gaze can tell them apart");
-                return Err(wrong(KitchenFileKind::Layout, spans[index].clone(), found, remedy));
+                return Err(in_layout(spans[index].clone(), found, remedy));
             }
         }
     }
@@ -125,12 +119,7 @@ pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
         if key.get_ref().is_whitespace() || twin.is_some() {
             let whose = twin.map_or(String::new(), |(other, _)| format!(", which \"{other}\" has already"));
             let found = format!("signal = \"{}\" for \"{name}\"{whose}", key.get_ref());
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                key.span(),
-                found,
-                "a key of its own that is not the space bar",
-            ));
+            return Err(in_layout(key.span(), found, "a key of its own that is not the space bar"));
         }
         seen.push((name, *key.get_ref()));
     }
@@ -146,12 +135,7 @@ pub(super) fn storages(
         let DisplayArea { x, y, w, h } = *storage.display.get_ref();
         if ![x, y, w, h].iter().all(|fraction| fraction.is_finite()) {
             let found = format!("a storage of \"{}\" at no place", storage.ingredient.get_ref());
-            return Err(wrong(
-                KitchenFileKind::Layout,
-                storage.display.span(),
-                found,
-                "x, y, w and h as fractions within 0 to 1",
-            ));
+            return Err(in_layout(storage.display.span(), found, "x, y, w and h as fractions within 0 to 1"));
         }
         Ok(IngredientStorage {
             agent: storage.agent,
@@ -163,13 +147,128 @@ pub(super) fn storages(
     layout.storage.iter().map(one).collect()
 }
 
-/// The item that a storage of this ingredient supplies.
 pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &IngredientItems) -> Result<ContentId> {
     let ingredient = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
     let item = ingredient.and_then(|ingredient| items.ingredient.iter().position(|&of| of == ingredient));
     item.map(|item| ContentId(item as u8 + 1)).ok_or_else(|| {
         let names: Vec<&str> = spec.ingredient.iter().map(|ingredient| ingredient.name.get_ref().as_str()).collect();
         let found = format!("ingredient = \"{}\"", name.get_ref());
-        wrong(KitchenFileKind::Layout, name.span(), found, format!("one of {}", names.join(", ")))
+        in_layout(name.span(), found, format!("one of {}", names.join(", ")))
     })
+}
+
+// Builds locations, storages and buttons from the layout file, and checks that an eye tracker can tell locations apart
+// on the display.
+
+/// Largest length of the name of an area of buttons on the table, in characters.
+const MAX_AREA: usize = 40;
+/// Largest number of a gamepad button; no gamepad or button box has more buttons.
+const MAX_GAMEPAD: u8 = 63;
+
+/// The buttons of both agents, each in the order: own storages, places, processing steps, own trash, orders.
+pub(super) fn buttons(
+    layout: &LayoutSpec,
+    spec: &RecipesSpec,
+    items: &IngredientItems,
+    locations: &[Location],
+    processes: &[ProcessingStep],
+) -> Result<[Vec<Button>; 2]> {
+    let located = |name: &Spanned<String>| {
+        let index = locations.iter().position(|location| location.name == *name.get_ref());
+        LocationId(index.unwrap_or_default() as u8)
+    };
+    let mut buttons = [Vec::new(), Vec::new()];
+    for agent in Agent::BOTH {
+        let mut list: Vec<(String, ButtonAction, &ButtonSpec)> = Vec::new();
+        for storage in layout.storage.iter().filter(|storage| storage.agent == agent) {
+            let item = stored(&storage.ingredient, spec, items)?;
+            list.push((format!("take {}", storage.ingredient.get_ref()), ButtonAction::Take(item), &storage.button));
+        }
+        for place in &layout.place {
+            list.push((place.name.get_ref().clone(), ButtonAction::Use(located(&place.name)), &place.button));
+        }
+        for (index, process) in processes.iter().enumerate().filter(|(_, process)| process.agents[agent.index()]) {
+            let button = layout.process.iter().find(|button| *button.name.get_ref() == process.name);
+            let Some(button) = button else {
+                let found = format!("no button for the process \"{}\" of the recipe file", process.name);
+                return Err(wrong_file(
+                    KitchenFileKind::Layout,
+                    found,
+                    "a table [[process]] with this name and a button",
+                ));
+            };
+            list.push((process.name.clone(), ButtonAction::Process(index as u8), &button.button));
+        }
+        for hand in layout.hand.iter().filter(|hand| *hand.agent.get_ref() == agent) {
+            list.push(("trash".to_string(), ButtonAction::Trash, &hand.trash));
+        }
+        for (index, order) in layout.order.iter().enumerate() {
+            list.push((format!("serve {}", index + 1), ButtonAction::Serve(located(&order.name)), &order.serve));
+        }
+        for (name, action, spec) in list {
+            buttons[agent.index()].push(button(agent, name, action, spec, &buttons[agent.index()])?);
+        }
+    }
+    for process in &layout.process {
+        if !processes.iter().any(|known| known.name == *process.name.get_ref()) {
+            let found = format!("a button for the process \"{}\"", process.name.get_ref());
+            return Err(in_layout(process.name.span(), found, "a [[process]] of the recipe file"));
+        }
+    }
+    Ok(buttons)
+}
+
+fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, others: &[Button]) -> Result<Button> {
+    if others.iter().any(|other| other.name == name) {
+        let found = format!("a second button \"{name}\" of the {}", agent.name());
+        return Err(in_layout(spec.at_m.span(), found, "a name of its own for each button of an agent"));
+    }
+    let at_m = *spec.at_m.get_ref();
+    if !at_m.iter().all(|metres| metres.is_finite()) {
+        return Err(in_layout(spec.at_m.span(), "a button at no place", "at_m = [x, y] in metres"));
+    }
+    let key = match (agent, &spec.key) {
+        (Agent::Robot, _) => None,
+        (Agent::Human, None) => {
+            let found = format!("no key for the human's button \"{name}\"");
+            return Err(in_layout(spec.at_m.span(), found, "button = { at_m = [x, y], key = \"k\" }"));
+        }
+        (Agent::Human, Some(key)) => {
+            let has_it = |other: &&Button| other.key.is_some_and(|other| is_same_key(other, *key.get_ref()));
+            let twin = others.iter().find(has_it);
+            if key.get_ref().is_whitespace() || twin.is_some() {
+                let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
+                let found = format!("the key \"{}\" for \"{name}\"{whose}", key.get_ref());
+                return Err(in_layout(key.span(), found, "a key of its own that is not the space bar"));
+            }
+            Some(*key.get_ref())
+        }
+    };
+    let gamepad = gamepad(agent, &name, spec, others)?;
+    Ok(Button { name, action, at_m, key, gamepad, colour: spec.colour, area: area(spec)? })
+}
+
+/// The checked name of the button's area on the table; `None` if the layout names none.
+fn area(spec: &ButtonSpec) -> Result<Option<String>> {
+    let Some(area) = &spec.area else { return Ok(None) };
+    let name = area.get_ref();
+    let is_name = (1..=MAX_AREA).contains(&name.chars().count()) && name.trim() == name;
+    if !is_name || name.chars().any(char::is_control) {
+        let found = format!("area = {name:?}");
+        return Err(in_layout(area.span(), found, "a name of 1 to 40 characters, such as \"storage\""));
+    }
+    Ok(Some(name.clone()))
+}
+
+/// The checked number of the gamepad button; each number may be given to only one of the human's buttons.
+fn gamepad(agent: Agent, name: &str, spec: &ButtonSpec, others: &[Button]) -> Result<Option<u8>> {
+    let Some(number) = spec.gamepad.as_ref().filter(|_| agent == Agent::Human) else { return Ok(None) };
+    let twin = others.iter().find(|other| other.gamepad == Some(*number.get_ref()));
+    if *number.get_ref() > MAX_GAMEPAD || twin.is_some() {
+        let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
+        let found = format!("gamepad = {} for \"{name}\"{whose}", number.get_ref());
+        let remedy = "the number of a gamepad button, 0 to 63, each once";
+        return Err(in_layout(number.span(), found, remedy));
+    }
+    Ok(Some(*number.get_ref()))
 }

@@ -1,14 +1,8 @@
 //! A goal of the cost to go: the dishes that are still to be served (targets), with tables of the use of every content
-//! for these dishes.
-//!
-//! Only the use of a content for the goal matters: all useless contents form one class, the obstacles.
+//! for these dishes. Only that use matters: all useless contents form one class, the obstacles.
 
+use super::ground::{CompactState, JourneyNeeds, JourneyTables, KitchenTables, MAX_TARGETS, NEVER, USELESS};
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
-
-use super::classes::{CompactState, MAX_TARGETS, USELESS};
-use super::ground::KitchenTables;
-use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
-use super::task::{DeliveryTask, STORAGE};
 
 /// Value of an item at its place for one target dish, packed into one number so that the maximum of many values is
 /// found without branches: a larger gain is better, ties go to the first location.
@@ -28,7 +22,6 @@ impl ItemValue {
         self.0 as u8
     }
 
-    /// The index of the item's location.
     #[inline]
     pub fn location(self) -> u8 {
         !((self.0 >> 8) as u8)
@@ -40,7 +33,6 @@ impl ItemValue {
 pub struct ServingGoal {
     /// The stacks (dishes) to be served, in ascending order of their ids.
     pub targets: Vec<ContentId>,
-    /// The equivalence class of each content.
     pub class_of: Vec<u8>,
     /// For each class of contents, one content that belongs to the class.
     pub content: Vec<ContentId>,
@@ -61,9 +53,7 @@ pub struct ServingGoal {
     pub fresh: [Vec<(u8, JourneyNeeds)>; MAX_TARGETS],
     /// For each target dish, the component index of its j-th item (see `journeys`).
     pub components: [Vec<usize>; MAX_TARGETS],
-    /// For each target dish, the bit set of all its items.
     pub complete: [u8; MAX_TARGETS],
-    /// For each target dish, the class of its complete stack.
     pub target_class: [u8; MAX_TARGETS],
     /// `[target][bits]`: the class of a stack of these items of the target dish.
     pub part_class: [Vec<u8>; MAX_TARGETS],
@@ -75,7 +65,6 @@ pub struct ServingGoal {
     pub becomes: Vec<Vec<u8>>,
     /// `[below * classes + above]`: the class of the stack if it is a useful class, else 0.
     pub stacks: Vec<u8>,
-    /// Index of the first physical location, and of one past the last.
     first: usize,
     last: usize,
     /// `[(location - first) * contents + content]`: the content's class times the location's stride; the sum over all
@@ -86,7 +75,6 @@ pub struct ServingGoal {
 }
 
 impl ServingGoal {
-    /// The tables for these target dishes in this kitchen.
     pub fn new(kitchen: &Kitchen, ground: &KitchenTables, targets: Vec<ContentId>) -> ServingGoal {
         let journeys = &ground.journeys;
         let mut content = vec![ContentId::EMPTY];
@@ -340,4 +328,82 @@ fn stands_for(kitchen: &Kitchen, class_of: &[u8]) -> Vec<ContentId> {
             })
     };
     contents().map(|one| contents().find(|&other| alike(one, other)).unwrap_or(one)).collect()
+}
+
+/// Stands for the location of an item that is still in a storage.
+pub const STORAGE: u8 = u8::MAX;
+
+/// A task: an item to bring to the board, or a complete stack to serve.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DeliveryTask {
+    pub target: u8,
+    /// Bit set of the target dish's items that the task provides; all bits for a complete stack.
+    pub bits: u8,
+    /// The present location of the task's item, or [`STORAGE`].
+    pub at: u8,
+}
+
+/// Calls `visit` with every state after one press, without presses that can never help. Only items in `wanted` (a bit
+/// set of items for each target dish) are taken from a storage.
+pub fn successors(
+    ground: &KitchenTables,
+    goal: &ServingGoal,
+    state: &CompactState,
+    wanted: [u8; MAX_TARGETS],
+    mut visit: impl FnMut(CompactState),
+) {
+    let is_wanted =
+        |class: u8| (0..goal.targets.len()).any(|target| goal.fills[target][usize::from(class)] & wanted[target] != 0);
+    for agent in Agent::BOTH {
+        let hand = ground.hands[agent.index()];
+        if state[hand] == 0 {
+            for &class in goal.takes[agent.index()].iter().filter(|&&class| is_wanted(class)) {
+                let mut next = *state;
+                next[hand] = class;
+                visit(next);
+            }
+        }
+    }
+    for &(agent, action) in &ground.moves {
+        let hand = ground.hands[agent.index()];
+        let held = state[hand];
+        let mut next = *state;
+        match action {
+            ButtonAction::Use(location) => {
+                let location = location.index();
+                let there = state[location];
+                match (held, there) {
+                    (0, 0) => continue,
+                    (0, _) => (next[hand], next[location]) = (there, 0),
+                    // Useless contents are thrown away rather than put down somewhere.
+                    (USELESS, _) => continue,
+                    (_, 0) => {
+                        if !ground.accepts(location, goal.content[usize::from(held)]) {
+                            continue;
+                        }
+                        (next[hand], next[location]) = (0, held);
+                    }
+                    _ if location == ground.board => {
+                        let stack = goal.stacks[usize::from(there) * goal.content.len() + usize::from(held)];
+                        if stack == 0 {
+                            continue;
+                        }
+                        (next[hand], next[location]) = (0, stack);
+                    }
+                    _ => continue,
+                }
+            }
+            ButtonAction::Process(process) => {
+                let place = ground.process_place[usize::from(process)].unwrap_or(hand);
+                let result = goal.becomes[usize::from(process)][usize::from(state[place])];
+                if result == 0 {
+                    continue;
+                }
+                next[place] = result;
+            }
+            ButtonAction::Trash if held != 0 => next[hand] = 0,
+            _ => continue,
+        }
+        visit(next);
+    }
 }

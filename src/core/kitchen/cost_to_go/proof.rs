@@ -10,12 +10,11 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::classes::CompactState;
-use super::fidelity::Fidelity;
-use super::floor::floor;
-use super::goal::ServingGoal;
+use super::Fidelity;
+use super::assign::floor;
+use super::goal::{ServingGoal, successors};
+use super::ground::CompactState;
 use super::store::CostToGo;
-use super::successors::successors;
 use crate::kitchen::{ContentId, LocationId, OrderContent, Recipes, State};
 
 /// Number of states that the proofs of one judgement expand together at most. The 11,000 proofs of the tests expand at most
@@ -60,7 +59,6 @@ struct Open {
 /// A search for the least number of presses, which ends with a proof or with the budget.
 struct ProofSearch<'a> {
     costs: &'a mut CostToGo,
-    /// Length of the shortest way so far.
     best: u32,
     open: BinaryHeap<Open>,
     /// Least number of presses to each state so far, by the state's key.

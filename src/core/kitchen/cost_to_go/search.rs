@@ -9,19 +9,15 @@ use std::collections::BinaryHeap;
 
 use rustc_hash::FxHashMap;
 
-use super::classes::CompactState;
-use super::fidelity::Fidelity;
-use super::goal::ServingGoal;
-use super::partial_plan::{BLOCKED, PressPlan};
-use super::rating::RankedAssignments;
+use super::Fidelity;
+use super::goal::{ServingGoal, successors};
+use super::ground::CompactState;
+use super::plan::{BLOCKED, PressPlan, RankedAssignments};
 use super::store::{CostToGo, UNREACHABLE};
-use super::successors::successors;
 use crate::kitchen::{ContentId, State};
 
-/// Limits of a best-first search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchLimits {
-    /// Largest number of states that the search expands.
     expansions: usize,
     /// Whether the search takes items from a storage before their way to the board is free.
     takes: bool,
@@ -52,12 +48,10 @@ struct Open {
     gap: Reverse<u32>,
     /// Number of the state in the search's order of discovery.
     met: usize,
-    /// Number of presses from the search's start state to this state.
     presses: u32,
     state: CompactState,
 }
 
-/// One best-first search over single presses.
 pub struct BestFirstSearch<'a> {
     costs: &'a mut CostToGo,
     slot: usize,
@@ -65,7 +59,6 @@ pub struct BestFirstSearch<'a> {
     /// Length of the best solution found so far, in presses.
     best: u32,
     open: BinaryHeap<Open>,
-    /// Number of states added to the search so far.
     met: usize,
     /// Least number of presses found to each state, by the state's key.
     seen: FxHashMap<u64, u32>,

@@ -1,27 +1,22 @@
 //! The update of the estimate by the likelihood of the human's press.
 //!
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the
-//! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
+//! prior, each by the worlds drawn from it (see [`super::draws`]). The posterior of an aspect is the mixture of
 //! Dir(alpha + n_j) with the weights w_j, collapsed by its mean and second moment. As a control variate, the moments
 //! under equal weights are subtracted and the prior's exact moments are added, so that an uninformative press leaves
 //! the estimate unchanged.
 
 use rand::RngExt;
 
-use crate::base::bits::ones;
+use super::draws::{Alike, DistinctDraws, DistinctWorlds, PolyaUrn, Run};
+use super::unseen::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
+use crate::base::maths::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, World};
 use crate::mind::choice::ChoiceModel;
-use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::InferenceSettings;
-
-use super::distinct::DistinctWorlds;
-use super::distinct_draws::{Alike, DistinctDraws, Run};
-use super::look_news::{SampleLookEffects, UnseenLooks, ValueSeenByLook};
-use super::moments::MixtureMoments;
-use super::proposal_mixture::ProposalMixture;
-use super::urn::PolyaUrn;
 
 /// Share of the first draws of a recipe that is spread evenly over the recipe's variants (importance sampling), so that
 /// improbable variants get samples.
@@ -42,11 +37,8 @@ pub struct PressEvidence {
 
 /// The models that define the likelihood of a press of the human.
 pub struct EvidenceModel<'a> {
-    /// The kitchen, with the rules of its buttons.
     pub kitchen: &'a Kitchen,
-    /// The human's choice model.
     pub choice: &'a ChoiceModel,
-    /// Sample sizes of the inference.
     pub inference: &'a InferenceSettings,
     /// For each button of the human, the bit set of locations at which the human looks before the press.
     pub watched: &'a [u32],
@@ -74,9 +66,7 @@ pub struct BeliefSampler {
     pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
-    /// The groups of equal draws in the present belief sample.
     alike: DistinctDraws,
-    /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
     pub(super) looks: Vec<SampleLookEffects>,
@@ -90,7 +80,6 @@ pub struct BeliefSampler {
 pub(super) struct Sample {
     /// Bit set of the aspects of which the belief sample has several values (mixed aspects).
     mixed: u32,
-    /// Start of the mixed aspects' rows in [`BeliefSampler::rows`].
     rows: usize,
     /// Range of the sample's distinct worlds in [`BeliefSampler::runs`].
     pub(super) runs: [usize; 2],
@@ -105,7 +94,6 @@ impl Sample {
 }
 
 impl BeliefSampler {
-    /// A sampler of beliefs about this kitchen.
     pub fn new(kitchen: &Kitchen) -> BeliefSampler {
         BeliefSampler {
             wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(),
@@ -181,7 +169,6 @@ impl BeliefSampler {
         self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks.is_some())));
     }
 
-    /// Draws belief samples until there are `wanted` of them.
     pub(super) fn draw(&mut self, model: &EvidenceModel, cost: &mut CostToGo, wanted: usize, random: &mut Stream) {
         let (kitchen, states) = (model.kitchen, model.inference.states);
         let (aspects, old) = (self.urns.len(), self.samples.len());
@@ -232,7 +219,6 @@ impl BeliefSampler {
         mixed
     }
 
-    /// Counts the distinct worlds of the newest belief sample.
     fn count_worlds(&mut self, kitchen: &Kitchen, states: usize) {
         let index = self.samples.len() - 1;
         let Sample { rows, .. } = self.samples[index];
@@ -245,7 +231,6 @@ impl BeliefSampler {
         self.samples[index].runs[1] = self.runs.len();
     }
 
-    /// The world of one draw of a belief sample.
     pub(super) fn world_of(&self, kitchen: &Kitchen, index: usize, draw: usize, states: usize) -> World {
         let aspects = self.urns.len();
         let Sample { mixed, rows, .. } = self.samples[index];
@@ -285,7 +270,6 @@ impl BeliefSampler {
         &sums[..model.kitchen.buttons[Agent::Human.index()].len()]
     }
 
-    /// The distinct worlds of one belief sample.
     #[inline]
     fn runs_of(&self, sample: &Sample) -> &[Run] {
         &self.runs[sample.runs[0]..sample.runs[1]]
@@ -353,4 +337,137 @@ fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
         OrderContent::None | OrderContent::Served => 0,
     };
     kitchen.aspects[order.index()].values.iter().map(wanted).collect()
+}
+
+/// The likelihood of a press: p(a | belief) = `proposed` + `chosen` p(choice = a | belief). A press that the display
+/// proposes may be made because of the proposal, which is equally likely under any belief.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProposalMixture {
+    pub button: ButtonId,
+    /// Probability that the human presses the button because the display proposes it.
+    pub proposed: f64,
+    /// Probability that the human follows a choice of its own rather than a proposal.
+    pub chosen: f64,
+}
+
+impl ProposalMixture {
+    /// A press of `button` while the display proposes `proposed`, by a human who makes proposed presses with the
+    /// probability `follows`.
+    pub fn new(button: ButtonId, proposed: Option<ButtonId>, follows: f64) -> ProposalMixture {
+        match proposed {
+            None => ProposalMixture { button, proposed: 0.0, chosen: 1.0 },
+            Some(other) => {
+                let proposed = if other == button { follows } else { 0.0 };
+                ProposalMixture { button, proposed, chosen: 1.0 - follows }
+            }
+        }
+    }
+
+    /// p(a | belief), from the probability `choice` that a human with the belief chooses the button.
+    #[inline]
+    pub fn likelihood(&self, choice: f64) -> f64 {
+        self.proposed + self.chosen * choice
+    }
+}
+
+/// Mean and second moment of a mixture of Dirichlets that share one prior, accumulated as changes to the prior's
+/// moments.
+pub struct MixtureMoments<'a> {
+    prior: &'a Dirichlet,
+    mean: Vec<f64>,
+    second: f64,
+    square: f64,
+    /// Weight of the prior's mean, which is added at the end.
+    share: f64,
+    /// Total weight of the belief samples whose draws all have the same value, by value; the last entry is for samples
+    /// in which the aspect was not drawn.
+    pure: Vec<f64>,
+    /// Distinct values of one belief sample, each with its number of draws.
+    counts: Vec<(u8, u32)>,
+}
+
+impl MixtureMoments<'_> {
+    pub fn from_prior(prior: &Dirichlet) -> MixtureMoments<'_> {
+        let mean = prior.mean().to_vec();
+        let square = mean.iter().map(|m| m * m).sum();
+        let pure = vec![0.0; mean.len() + 1];
+        MixtureMoments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
+    }
+
+    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. The weights of
+    /// all added distributions sum to 0.
+    pub fn add(&mut self, drawn: impl Iterator<Item = (u8, u32)>, draws: usize, weight: f64) {
+        self.counts.clear();
+        for (value, times) in drawn {
+            match self.counts.iter_mut().find(|(other, _)| *other == value) {
+                Some((_, count)) => *count += times,
+                None => self.counts.push((value, times)),
+            }
+        }
+        let (precision, prior) = (self.prior.precision(), self.prior.mean());
+        let size = precision + draws as f64;
+        let (mut cross, mut squares) = (0.0, 0.0);
+        for &(value, count) in &self.counts {
+            let (value, count) = (usize::from(value), f64::from(count));
+            self.mean[value] += weight * count / size;
+            cross += prior[value] * count;
+            squares += count * count;
+        }
+        self.add_moments(weight, size, cross, squares);
+    }
+
+    /// Adds a belief sample whose draws all have one value (or were not drawn): such samples are summed first and added
+    /// to the moments at the end.
+    #[inline]
+    pub fn add_later(&mut self, value: u8, weight: f64) {
+        let last = self.pure.len() - 1;
+        self.pure[usize::from(value).min(last)] += weight;
+    }
+
+    /// Adds a belief that is certain of one value, with this weight.
+    pub fn add_certain(&mut self, value: u8, weight: f64) {
+        self.mean[usize::from(value)] += weight;
+        self.second += weight;
+    }
+
+    fn add_pure(&mut self, value: usize, draws: usize, weight: f64) {
+        if value == self.mean.len() {
+            self.share += weight;
+            self.second += weight * self.prior.second();
+            return;
+        }
+        let draws = draws as f64;
+        let size = self.prior.precision() + draws;
+        self.mean[value] += weight * draws / size;
+        self.add_moments(weight, size, self.prior.mean()[value] * draws, draws * draws);
+    }
+
+    fn add_moments(&mut self, weight: f64, size: f64, cross: f64, squares: f64) {
+        let precision = self.prior.precision();
+        // The contribution of the prior's alphas, which cancels where all samples have the same number of draws.
+        self.share += weight * precision / size;
+        let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
+        self.second += weight * second / (size * (size + 1.0));
+    }
+
+    /// The Dirichlet with the accumulated moments. A gain of the value that represents the improbable values (tail)
+    /// belongs to that value alone; a loss is shared by the whole tail in proportion to the probabilities.
+    pub fn collapsed(mut self, draws: usize, stand_in: Option<usize>) -> Dirichlet {
+        for value in 0..self.pure.len() {
+            if self.pure[value] != 0.0 {
+                self.add_pure(value, draws, self.pure[value]);
+            }
+        }
+        let prior = self.prior.mean();
+        self.mean.iter_mut().zip(prior).for_each(|(mean, p)| *mean += self.share * p);
+        if let Some(value) = stand_in
+            && self.mean[value] < prior[value]
+        {
+            let tail = || (0..prior.len()).filter(|&value| PolyaUrn::is_tail(prior, value));
+            let of_tail: f64 = tail().map(|value| prior[value]).sum();
+            let left = (1.0 + (self.mean[value] - prior[value]) / of_tail).max(0.0);
+            tail().for_each(|value| self.mean[value] = left * prior[value]);
+        }
+        Dirichlet::of_moments(self.mean, self.second)
+    }
 }

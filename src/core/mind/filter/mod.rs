@@ -5,30 +5,23 @@
 //! location. Samples are used for the likelihood of a press, for the human's presses that involve several locations,
 //! and for presses of the robot.
 
-mod distinct;
-mod distinct_draws;
+pub mod draws;
 mod evidence;
-mod exchange;
-mod gamma;
-mod look_news;
-mod moments;
 mod own_press;
 mod perception;
-mod proposal_mixture;
 mod robot_press;
-mod sample_observation;
-mod serving;
-pub mod signals_so_far;
-mod standing_signal;
-mod unknown_gaze;
-mod unseen_looks;
-pub mod urn;
+pub mod signals;
+pub mod unseen;
 
 use std::sync::Arc;
 
+use self::evidence::{BeliefSampler, EvidenceModel, ProposalMixture};
+use self::own_press::{ExchangeUpdate, ServingUpdate};
+use self::perception::GazeBeliefUpdate;
+use self::signals::SignalReadingHistory;
+use self::unseen::{UnknownGazePeriod, UnknownGazeTimer, UnseenLooks};
 use super::choice::ChoiceModel;
 use super::dirichlet::DirichletBelief;
-use super::gaze_presence::UnknownGazeTimer;
 use super::model::{HumanModel, LookingModel};
 use super::observation::{Observation, ObservedEvidence, ProposedPresses};
 use crate::base::rng::{Stream, stream};
@@ -37,14 +30,6 @@ use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
 pub use evidence::PressEvidence;
-use evidence::{BeliefSampler, EvidenceModel};
-use exchange::ExchangeUpdate;
-use look_news::UnseenLooks;
-use perception::GazeBeliefUpdate;
-use proposal_mixture::ProposalMixture;
-use serving::ServingUpdate;
-use signals_so_far::SignalReadingHistory;
-use unknown_gaze::UnknownGazePeriod;
 
 /// How the human's press of a button changes the belief: the press involves one location, or several that jointly
 /// determine its effect.
@@ -86,7 +71,6 @@ pub struct BeliefFilter {
     frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
-    /// Signals of the trial, as far as they take time to be read.
     signals: SignalReadingHistory,
     evidence: Option<PressEvidence>,
 }
@@ -107,7 +91,7 @@ impl BeliefFilter {
             presence: UnknownGazeTimer::new(&model),
             needs: None,
             stretch: None,
-            watched: unknown_gaze::watched(&kitchen),
+            watched: unseen::watched(&kitchen),
             choice: ChoiceModel::for_draws(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
             prior,
@@ -165,7 +149,6 @@ impl BeliefFilter {
         (self.needs, self.stretch) = (None, None);
     }
 
-    /// Updates the estimate with an event's evidence at the session time `now`.
     fn update(&mut self, now: SessionTime, what: &ObservedEvidence, cost: &mut CostToGo) {
         match *what {
             ObservedEvidence::Started { state } => {
@@ -262,7 +245,6 @@ impl BeliefFilter {
         }
     }
 
-    /// Updates the estimate with a gaze sample, and with the time of unknown gaze before it.
     fn take_sample(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo) {
         let known = self.model.perception.known_share(sample.confidence);
         let time = self.presence.sample(sample, known, taken);

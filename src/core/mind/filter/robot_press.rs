@@ -5,14 +5,14 @@
 //! its mean is m T and, since b is Dirichlet with precision A, S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A +
 //! 1). Values that no press changes are not affected.
 
+use super::draws::PolyaUrn;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, State};
-use crate::kitchen::{WeightedWorld, WeightedWorlds, World};
+use crate::kitchen::{
+    Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, State, WeightedWorld, WeightedWorlds, World,
+};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
-
-use super::urn::PolyaUrn;
 
 /// Share of the draws below which a world's costs to go are computed by lower bounds instead of plans.
 const COUNTS: f64 = 0.05;
@@ -127,7 +127,6 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
     together
 }
 
-/// Whether any active order shows this content.
 fn is_wanted(kitchen: &Kitchen, state: State, content: OrderContent) -> bool {
     kitchen.orders.iter().any(|&order| state.order(order) == content)
 }

@@ -6,7 +6,7 @@ use super::tsv::{or_nothing, seconds};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
-use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_session::event::Event;
 use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::probes::{ProbeEvent, ProbeSubject};

@@ -26,20 +26,13 @@ pub struct Acceptance {
     pub mean: Option<f64>,
 }
 
-/// Answers to one questionnaire item in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ItemSummary {
-    /// Name of the questionnaire to which the item belongs.
     pub questionnaire: String,
-    /// Identifier of the questionnaire item.
     pub item: String,
-    /// Statement of the questionnaire item, as participants read it.
     pub text: String,
-    /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
-    /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
-    /// Kind of answer that the item takes.
     pub kind: QuestionnaireItemKind,
     /// Condition of the trial after which the item was asked; `None` for items asked before the trials.
     pub condition: Option<StudyArm>,
@@ -47,9 +40,7 @@ pub struct ItemSummary {
     pub points: Option<u8>,
     /// Number of answers at each scale point, from 1, or with each option, in the order of the item's options.
     pub counts: Vec<u64>,
-    /// Texts of the item's answer options, in their order.
     pub options: Vec<String>,
-    /// Number of answers to the item.
     pub answers: u64,
     /// Number of participants' questionnaires in which the item was left without an answer.
     pub left_out: u64,
@@ -57,17 +48,13 @@ pub struct ItemSummary {
     pub mean: Option<f64>,
 }
 
-/// Scores of one questionnaire after trials of one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScoreSummary {
-    /// Name of the questionnaire that was scored.
     pub questionnaire: String,
     /// Condition of the trial after which the questionnaire was asked; `None` if the questionnaire was asked before the
     /// trials.
     pub condition: Option<StudyArm>,
-    /// Scores of the occasions on which a participant answered every item of the questionnaire.
     pub scores: Vec<f64>,
-    /// Mean of the questionnaire's scores.
     pub mean: Option<f64>,
     /// Standard deviation of the questionnaire's scores.
     pub sd: Option<f64>,

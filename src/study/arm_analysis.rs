@@ -3,25 +3,20 @@
 
 use serde::Serialize;
 
-use super::arm_comparison::{StudyArmComparison, compare_arms};
-use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
-use super::tables::probe_table::PROBES_WRONG;
-use super::tables::trials::measures;
-use super::trial_statistics::{TrialStatistics, mean};
-use super::trial_totals::TrialTotals;
+use crate::arm_comparison::{StudyArmComparison, compare_arms};
+use crate::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
+use crate::tables::probe_table::PROBES_WRONG;
+use crate::tables::trials::measures;
+use crate::trial_statistics::{TrialStatistics, TrialTotals, mean};
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::study_arm::StudyArm;
 
 /// A trial that was carried out in another arm than the one to which the plan assigned it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ArmDeviation {
-    /// Folder of the trial's recording.
     pub recording: String,
-    /// The participant's code.
     pub participant: String,
-    /// Arm that the plan assigned to the trial, under which the trial counts.
     pub planned: StudyArm,
-    /// Arm in which the trial was carried out.
     pub carried_out: StudyArm,
     /// Whether the wizard was shown during the trial what the assistants would send.
     pub unblinded: bool,
@@ -51,9 +46,7 @@ impl ArmDeviation {
 /// Comparison of the conditions of a study: rates by condition, the effect of assistance, and the comparison of arms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmAnalysis {
-    /// Summary of the trials in each condition.
     pub conditions: Vec<StudyConditionSummary>,
-    /// Effects of assistance on all compared measures, starting with errors per press.
     pub effects: Vec<AssistanceEffect>,
     /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
     /// arms.
@@ -68,30 +61,23 @@ impl ArmAnalysis {
         ArmAnalysis { conditions: conditions(trials), effects, arms: compare_arms(trials) }
     }
 
-    /// The same comparison with each trial in the arm in which it was carried out.
     pub fn as_carried_out(trials: &[TrialStatistics], seed: u64) -> ArmAnalysis {
         let moved = trials.iter().map(|trial| TrialStatistics { planned_arm: trial.study_arm, ..trial.clone() });
         ArmAnalysis::from_trials(&moved.collect::<Vec<_>>(), seed)
     }
 }
 
-/// Summary of the trials of a study in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyConditionSummary {
     /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
     pub condition: StudyArm,
-    /// Number of trials in the condition.
     pub trials: u64,
-    /// Sums and means over the trials of the condition.
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// Mean number of the human's errors per trial.
     pub mean_errors: Option<f64>,
-    /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
     pub mean_order_s: Option<f64>,
     /// Mean over trials of the summed regret of both agents per served order.
     pub mean_additional_presses_per_order: Option<f64>,
-    /// Mean over trials of the median time between presses of the human, in seconds.
     pub mean_press_s: Option<f64>,
     /// Number of error sequences by their length: sequences with 1, 2, 3, … errors.
     pub sequence_lengths: Vec<u64>,
@@ -103,7 +89,6 @@ fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
     measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
 }
 
-/// Summaries of the trials that count, by condition.
 fn conditions(trials: &[TrialStatistics]) -> Vec<StudyConditionSummary> {
     let of = |condition: StudyArm| {
         let is_own = |trial: &&TrialStatistics| trial.counts() && trial.planned_arm == condition;

@@ -7,27 +7,23 @@
 //! come in runs. Contrasts are ratios of rates; their p values are corrected together (Holm 1979). With three or more
 //! arms, a model with the effect of the previous arm (carry-over) is a sensitivity analysis.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde::Serialize;
 
-use super::arm_design::{ArmComparisonDesign, StudyArmTrial, pairs};
-use super::effect::{LEVEL, LeftOutParticipant};
-use super::group_orders::{GroupOrder, group_orders};
-use super::linear_mixed_model::{LinearMixedModel, MixedModelContrast};
-use super::negative_binomial_model::WaldContrast;
-use super::trial_statistics::TrialStatistics;
+use crate::effect::{LEVEL, LeftOutParticipant};
+use crate::linear_mixed_model::{LinearMixedModel, MixedModelContrast, MixedModelMeasurement};
+use crate::negative_binomial_model::{CountObservation, NegativeBinomialModel, WaldContrast};
+use crate::trial_statistics::TrialStatistics;
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
 use tomcom_session::study_arm::StudyArm;
 
-/// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmComparison {
     /// Primary outcome: the event whose rate is compared between study arms.
     pub outcome: PrimaryOutcome,
-    /// Number of participants in the comparison of arms.
     pub participants: usize,
-    /// Number of trials in the comparison of arms.
     pub trials: usize,
-    /// Participants with recordings whom the comparison leaves out.
     pub left_out: Vec<LeftOutParticipant>,
     /// Numbers of trials, events and presses of each arm, in the order of tables.
     pub arms: Vec<StudyArmCounts>,
@@ -40,22 +36,15 @@ pub struct StudyArmComparison {
     pub with_carry_over: Vec<StudyArmContrast>,
     /// Comparison by the mixed negative binomial model; null where the model cannot be estimated.
     pub negative_binomial: Option<NegativeBinomialComparison>,
-    /// Non-inferiority of the assistant's arms to the wizard's.
     pub non_inferiority: Vec<NonInferiority>,
-    /// Starting groups with their orders of conditions.
     pub groups: Vec<GroupOrder>,
 }
 
-/// Counts of trials, events and presses of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmCounts {
-    /// Study arm of the counts.
     pub arm: StudyArm,
-    /// Number of trials in this study arm.
     pub trials: usize,
-    /// Number of events of the primary outcome in this study arm.
     pub events: u64,
-    /// Number of the human's presses in this study arm.
     pub presses: u64,
 }
 
@@ -66,25 +55,18 @@ impl StudyArmCounts {
     }
 }
 
-/// Comparison of one study arm with another in the primary model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmContrast {
-    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Study arm with which `arm` is compared.
     pub against: StudyArm,
-    /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
     /// 95 % confidence interval of the ratio of rates.
     pub interval: [f64; 2],
-    /// p value after Holm's correction over all contrasts.
     pub p_holm: f64,
-    /// Contrast (difference) of the log rates, with its t test.
     #[serde(flatten)]
     pub contrast: MixedModelContrast,
 }
 
-/// Comparison of study arms by the mixed negative binomial model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NegativeBinomialComparison {
     /// Standard deviation of log rates between participants.
@@ -96,18 +78,12 @@ pub struct NegativeBinomialComparison {
     pub contrasts: Vec<NegativeBinomialContrast>,
 }
 
-/// Comparison of one study arm with another in the negative binomial model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NegativeBinomialContrast {
-    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Study arm with which `arm` is compared.
     pub against: StudyArm,
-    /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
-    /// p value after Holm's correction over all contrasts of the negative binomial model.
     pub p_holm: f64,
-    /// Contrast (difference) of the log rates, with its Wald test.
     #[serde(flatten)]
     pub contrast: WaldContrast,
 }
@@ -115,11 +91,8 @@ pub struct NegativeBinomialContrast {
 /// Test whether an arm of the assistant is not worse than the wizard (non-inferiority).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NonInferiority {
-    /// Study arm of the assistant.
     pub arm: StudyArm,
-    /// Study arm of the wizard, with which the assistant's arm is compared.
     pub against: StudyArm,
-    /// Largest ratio of rates that is acceptable (non-inferiority margin).
     pub margin: f64,
     /// Ratio of the assistant's rate of the primary outcome to the wizard's.
     pub ratio: f64,
@@ -178,7 +151,6 @@ fn counted(trials: &[TrialStatistics], outcome: PrimaryOutcome) -> (Vec<StudyArm
     (rows, left_out)
 }
 
-/// Contrasts of the primary model, with Holm's correction.
 fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<StudyArmContrast> {
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
@@ -221,7 +193,7 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
 
 /// Contrasts of the primary model alone, for trials ordered by participant and period; empty where the model cannot be
 /// estimated.
-pub fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
+pub(crate) fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
     let design = ArmComparisonDesign::new(trials);
     let model = if design.is_within() { design.linear(false) } else { None };
     model.map_or_else(Vec::new, |model| contrasts(&design, &model))
@@ -239,7 +211,7 @@ pub fn compare_arms(trials: &[TrialStatistics]) -> Option<StudyArmComparison> {
 
 /// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups, and
 /// leaves nobody out.
-pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
+pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
     let design = ArmComparisonDesign::new(trials);
     if !design.is_within() {
         return None;
@@ -283,4 +255,153 @@ pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<Stu
         negative_binomial: count_comparison(&design),
         groups: Vec::new(),
     })
+}
+
+/// A trial in the comparison of arms: participant, period, arm, and counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StudyArmTrial {
+    pub participant: usize,
+    /// Number of the trial in the participant's series, from 1.
+    pub period: u32,
+    pub arm: StudyArm,
+    pub events: u64,
+    /// Number of the human's presses in the trial; above 0.
+    pub presses: u64,
+}
+
+impl StudyArmTrial {
+    /// Dependent variable of the primary model: log((events + 0.5) / presses).
+    fn log_rate(&self) -> f64 {
+        ((self.events as f64 + 0.5) / self.presses as f64).ln()
+    }
+}
+
+/// Design of a comparison of arms: one row of effects per trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmComparisonDesign {
+    trials: Vec<StudyArmTrial>,
+    arms: Vec<StudyArm>,
+    periods: Vec<u32>,
+}
+
+/// The pairs of study arms that are compared: every arm with the one without signals, and every other one with the
+/// wizard's. If neither exists, all others are compared with the first arm.
+pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
+    let mut pairs = Vec::new();
+    for against in [StudyArm::None, StudyArm::Wizard] {
+        let others = arms.iter().copied().filter(|arm| *arm != against && *arm != StudyArm::None);
+        pairs.extend(others.filter(|_| arms.contains(&against)).map(|arm| (arm, against)));
+    }
+    if pairs.is_empty() {
+        pairs.extend(arms.iter().skip(1).map(|arm| (*arm, arms[0])));
+    }
+    pairs
+}
+
+impl ArmComparisonDesign {
+    /// The design for these trials, which must be ordered by participant and period.
+    pub fn new(trials: Vec<StudyArmTrial>) -> ArmComparisonDesign {
+        let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
+        let arms = StudyArm::ALL.into_iter().filter(has).collect();
+        let mut periods: Vec<u32> = trials.iter().map(|trial| trial.period).collect();
+        periods.sort_unstable();
+        periods.dedup();
+        ArmComparisonDesign { trials, arms, periods }
+    }
+
+    /// The trials of the comparison, ordered by participant and period.
+    pub fn trials(&self) -> &[StudyArmTrial] {
+        &self.trials
+    }
+
+    /// The study arms that occur in the trials, in the order of tables.
+    pub fn arms(&self) -> &[StudyArm] {
+        &self.arms
+    }
+
+    fn is_within(&self) -> bool {
+        self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
+    }
+
+    /// The study arm of the participant's trial before the one with this index.
+    fn before(&self, index: usize) -> Option<StudyArm> {
+        let before = self.trials.get(index.checked_sub(1)?)?;
+        (before.participant == self.trials[index].participant).then_some(before.arm)
+    }
+
+    /// Row of fixed effects of a trial in the design matrix: intercept, arms without the first, periods without the
+    /// first and, with `carry_over`, previous arms without the first.
+    fn effects(&self, index: usize, carry_over: bool) -> Vec<f64> {
+        let (trial, before) = (&self.trials[index], self.before(index));
+        let is = |holds: bool| f64::from(u8::from(holds));
+        let arms = self.arms.iter().skip(1).map(|arm| is(trial.arm == *arm));
+        let periods = self.periods.iter().skip(1).map(|period| is(trial.period == *period));
+        let carried = self.arms.iter().skip(1).filter(|_| carry_over).map(|arm| is(before == Some(*arm)));
+        std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
+    }
+
+    /// The primary (linear mixed) model, with `carry_over` including the effect of the previous arm; `None` where the
+    /// model cannot be estimated.
+    pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
+        let measurement = |(index, trial): (usize, &StudyArmTrial)| MixedModelMeasurement {
+            participant: trial.participant,
+            effects: self.effects(index, carry_over),
+            value: trial.log_rate(),
+        };
+        LinearMixedModel::fit(&self.trials.iter().enumerate().map(measurement).collect::<Vec<_>>())
+    }
+
+    /// The negative binomial model of counts; `None` where the model cannot be estimated.
+    pub fn counts(&self) -> Option<NegativeBinomialModel> {
+        let count = |(index, trial): (usize, &StudyArmTrial)| CountObservation {
+            participant: trial.participant,
+            effects: self.effects(index, false),
+            count: trial.events,
+            exposure: trial.presses as f64,
+        };
+        NegativeBinomialModel::fit(&self.trials.iter().enumerate().map(count).collect::<Vec<_>>())
+    }
+
+    /// Weights of the fixed effects for the difference between two arms, in a model with `size` effects.
+    pub fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
+        let mut weights = vec![0.0; size];
+        for (place, other) in self.arms.iter().enumerate().skip(1) {
+            weights[place] = f64::from(i8::from(*other == arm) - i8::from(*other == against));
+        }
+        weights
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct GroupOrder {
+    /// Name of the starting group, with a letter for each trial: "BAC".
+    pub group: String,
+    /// Planned condition of each trial of the group; `None` for a missing trial.
+    pub order: Vec<Option<StudyArm>>,
+    pub participants: usize,
+}
+
+/// The starting groups of the trials that the analysis includes, sorted by name.
+fn group_orders(trials: &[TrialStatistics]) -> Vec<GroupOrder> {
+    let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
+    for trial in trials.iter().filter(|trial| trial.counts()) {
+        let (Some(group), Some(period)) = (&trial.group, trial.period) else { continue };
+        let (order, participants) = groups.entry(group).or_default();
+        order.insert(period, trial.planned_arm);
+        participants.insert(&trial.participant);
+    }
+    let one = |(group, (order, participants)): (&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>))| GroupOrder {
+        group: group.to_string(),
+        order: (1..=group.chars().count() as u32).map(|period| order.get(&period).copied()).collect(),
+        participants: participants.len(),
+    };
+    groups.into_iter().map(one).collect()
+}
+
+impl GroupOrder {
+    /// The starting group as text: "BAC: wizard, unassisted, ToM-Com (2)".
+    pub fn describe(&self) -> String {
+        let order: Vec<&str> = self.order.iter().map(|arm| arm.map_or("?", StudyArm::title)).collect();
+        format!("{}: {} ({})", self.group, order.join(", "), self.participants)
+    }
 }

@@ -28,30 +28,20 @@
 //! [`code_exchange`], [`bids_export`] and `mcap_export`; [`pool`] and [`power_measurement`] simulate. [`analysis`] has
 //! computation over events, [`files`] what is read and written.
 
-#![warn(missing_docs)]
 #![deny(unsafe_code)]
 
 pub mod acceptance;
-pub mod acting_arm;
 pub mod analysis;
 pub mod arm_analysis;
-pub mod arm_chart;
 pub mod arm_comparison;
-pub mod arm_design;
-pub mod arm_group;
 pub mod arm_table;
-pub mod belief_trace;
 pub mod bids_export;
 pub mod charts;
 pub mod code_exchange;
 pub mod codes;
 pub mod cohort_chart;
 pub mod column;
-pub mod concept_totals;
-pub mod consents;
 pub mod definitions;
-pub mod detail_totals;
-pub mod dictionary;
 pub mod drawn_study;
 pub mod effect;
 pub mod facts;
@@ -60,14 +50,11 @@ pub mod files;
 pub mod fit;
 pub mod frozen_plan;
 pub mod gathered;
-pub mod group_orders;
 pub mod kept_cost;
-pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;
 #[cfg(feature = "mcap")]
 pub mod mcap_export;
-pub mod missing_trials;
 pub mod negative_binomial_model;
 pub mod pairwise_differences;
 pub mod parallel;
@@ -75,24 +62,16 @@ pub mod pass;
 pub mod planned_trial;
 pub mod pool;
 pub mod power;
-pub mod power_answer;
-pub mod power_chart;
 pub mod power_measurement;
-pub mod preregistration;
 pub mod prevention;
 pub mod rater_episodes;
-pub mod recorded_consent;
 pub mod report;
 pub mod robot_tally;
 pub mod roc;
 pub mod similarity;
-pub mod simulation_pool;
 pub mod standing;
 pub mod statistics;
 pub mod study_part;
 pub mod svg;
 pub mod tables;
-pub mod trial_details;
 pub mod trial_statistics;
-pub mod trial_totals;
-pub mod tutorial_summary;

@@ -4,31 +4,27 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::parallel;
 use crate::drawn_study::{DrawnEffect, PowerTest, StudySampler, tests};
-use crate::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, count, ratios};
-use crate::power_answer::{PowerSummary, SampleSizeRejections};
-use crate::simulation_pool::SimulationPool;
+use crate::parallel;
+use crate::pool::SimulationPool;
+use crate::power::{
+    POOLS, PowerSummary, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, SampleSizeRejections, count_rejections,
+    ratios,
+};
 use tomcom_session::files::file_error::{FileError, FileResult};
 
-/// Number of studies that a thread draws in one block.
 const BLOCK: u64 = 25;
 
 /// Request of a power analysis: study sizes, number of drawn studies, and effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerRequest {
-    /// Numbers of participants of the drawn studies, in ascending order.
     pub sizes: Vec<usize>,
-    /// Number of studies that are drawn for each number of participants.
     pub studies: u64,
-    /// Effect that the drawn studies have.
     pub effect: DrawnEffect,
 }
 
-/// Source from which the studies of a block are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drawn {
-    /// Studies are drawn from the pool, with the requested effect.
     Pool,
     /// Studies are drawn from the bootstrap resample of the pool with this number, from 1.
     Resampled(u64),
@@ -36,7 +32,6 @@ enum Drawn {
     Ratio(usize),
 }
 
-/// A block of studies that one thread draws.
 #[derive(Clone, Debug)]
 struct Block {
     size: usize,
@@ -134,8 +129,8 @@ fn counts(
 ) -> Vec<RejectionCount> {
     let numbers = block.numbers.clone();
     match block.drawn {
-        Drawn::Pool => count(source, tests, block.size, effect, numbers),
-        Drawn::Resampled(number) => count(&source.resampled(number), tests, block.size, effect, numbers),
-        Drawn::Ratio(index) => count(source, tests, block.size, DrawnEffect::Ratio(ratios[index]), numbers),
+        Drawn::Pool => count_rejections(source, tests, block.size, effect, numbers),
+        Drawn::Resampled(number) => count_rejections(&source.resampled(number), tests, block.size, effect, numbers),
+        Drawn::Ratio(index) => count_rejections(source, tests, block.size, DrawnEffect::Ratio(ratios[index]), numbers),
     }
 }

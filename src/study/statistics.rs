@@ -9,16 +9,12 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 use super::pairwise_differences::PairwiseDifferences;
 use tomcom_core::base::rng::{shuffle, stream};
 
-/// Result of an F test in an analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
-    /// Value of the F statistic.
     pub f: f64,
-    /// Degrees of freedom of the effect and of the residuals.
     pub df: [f64; 2],
     /// p value: probability, without an effect, of an F statistic at least this large.
     pub p: f64,
-    /// Number of participants on whom the test rests.
     pub n: usize,
     /// Partial eta squared: the effect's sum of squares divided by the sum of effect and residual sums of squares.
     pub partial_eta_sq: f64,
@@ -39,18 +35,15 @@ impl FTest {
 /// Mixed analysis of variance with two measurements per person (within) and any number of groups (between).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MixedAnova {
-    /// F test of the factor within participants.
     pub within: Option<FTest>,
-    /// F test of the factor between groups.
     pub between: Option<FTest>,
-    /// F test of the interaction of both factors.
     pub interaction: Option<FTest>,
 }
 
 /// Mixed analysis of variance; each row holds a person's group and the person's two measurements. Sums of squares are of
 /// type III: the factor within is tested at the unweighted mean of the groups, so that groups of unequal size do not mix the
 /// factor between into it.
-pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
+pub(crate) fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
     let sizes: Vec<f64> = (0..groups).map(|group| in_group(group).count() as f64).collect();
@@ -80,14 +73,10 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     }
 }
 
-/// A correlation coefficient with its two-sided p value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
-    /// Pearson's correlation coefficient r.
     pub r: f64,
-    /// Two-sided p value of the correlation.
     pub p: f64,
-    /// Number of pairs of values in the correlation.
     pub n: usize,
 }
 
@@ -112,7 +101,6 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
 
 /// Largest number of permutations that are enumerated; if there are more, permutations are sampled at random.
 const MAX_ENUMERATED: f64 = 200_000.0;
-/// Number of permutations that are sampled at random.
 const SAMPLED_PERMUTATIONS: u32 = 100_000;
 /// Largest number of pairs of values of two samples for which the distribution of U is exact (two samples of 250). Above,
 /// the normal approximation leaves out at most one difference more or less, and rounding would spoil the exact numbers.
@@ -169,14 +157,10 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
     }
 }
 
-/// An estimate with its confidence interval and level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ConfidenceInterval {
-    /// Point estimate, such as a mean or a share.
     pub estimate: f64,
-    /// The lower end of the confidence interval.
     pub low: f64,
-    /// The upper end of the confidence interval.
     pub high: f64,
     /// Actual coverage of the interval; it differs from the requested level where only some levels are possible.
     pub level: f64,
@@ -253,13 +237,13 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
 }
 
 /// Proportion `part` / `whole` with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
-pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
+pub(crate) fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
     wilson(part as f64 / whole as f64, whole as f64, level)
 }
 
 /// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of
 /// independent observations with the same variance. `None` if `n` is 0.
-pub fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
+pub(crate) fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     if n <= 0.0 {
         return None;
     }

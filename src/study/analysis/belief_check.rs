@@ -6,10 +6,9 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::likelihood::PressLogLikelihood;
-use super::probe_figures::ProbeSummary;
-use super::probe_lines;
-use super::seen_contents::LastSeenContents;
+use crate::analysis::likelihood::PressLogLikelihood;
+use crate::analysis::probe_figures::{self, ProbeSummary};
+use crate::analysis::seen_contents::LastSeenContents;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::base::words::{count, decimal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -231,7 +230,7 @@ pub fn describe(check: &BeliefCheck) -> String {
     for aspect in &found.aspects {
         text.push_str(&format!("{:<32}{:>8}{:>8.3}\n", aspect.aspect, number(aspect.auc), aspect.wrong));
     }
-    text += &check.probes.as_ref().map_or(String::new(), probe_lines::describe);
+    text += &check.probes.as_ref().map_or(String::new(), probe_figures::describe);
     text + &legend(check)
 }
 

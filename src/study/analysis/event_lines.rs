@@ -19,7 +19,6 @@ use tomcom_session::wall_display::DisplayEvent;
 use tomcom_session::wizard_screen::WizardScreenContent;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
-/// Heading above the text lines of events.
 pub const HEADING: &str = " trial time  what happened";
 
 /// The text line for an event that was just applied, with the time on the trial's clock; `None` for events without a

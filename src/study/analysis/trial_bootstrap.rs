@@ -48,7 +48,7 @@ pub fn intervals<T: Copy, const N: usize>(
 
 /// The 95 % interval of a statistic that is undefined for some resamples, which are left out. `None` with fewer than
 /// five units, or if the statistic is undefined for more than half of the resamples.
-pub fn interval_where_known<T: Copy>(
+pub(crate) fn interval_where_known<T: Copy>(
     units: &[T],
     seed: u64,
     statistic: impl Fn(&[T]) -> Option<f64>,

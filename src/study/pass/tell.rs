@@ -1,19 +1,17 @@
 //! Text summary of a study for the terminal.
 
-use crate::analysis::probe_lines;
+use crate::analysis::probe_figures;
 use crate::arm_comparison::StudyArmComparison;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::{StudySummary, pairs_in_words};
 use crate::live_arms::SignalSenderResults;
-use crate::missing_trials::in_words;
-use crate::planned_trial::copies_in_words;
+use crate::planned_trial::{copies_in_words, in_words};
 use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use tomcom_core::base::words::count;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::matching::{MatchShares, Similarity};
 use tomcom_session::event::TrialEndReason;
 
-/// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
@@ -153,7 +151,7 @@ pub fn describe(figures: &StudySummary) -> String {
             text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
     }
-    text += &figures.probes.as_ref().map_or(String::new(), probe_lines::describe);
+    text += &figures.probes.as_ref().map_or(String::new(), probe_figures::describe);
     text += &of_live(&figures.live);
     let compared = [
         ("wizard and ToM-Com", &figures.similarity),
@@ -168,7 +166,6 @@ pub fn describe(figures: &StudySummary) -> String {
     text
 }
 
-/// Results of concepts that sent signals by themselves, as one line of text each.
 fn of_live(arms: &[SignalSenderResults]) -> String {
     let Some(first) = arms.first() else { return String::new() };
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
@@ -257,7 +254,6 @@ fn p_value(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_string() } else { format!("p = {p:.3}") }
 }
 
-/// Contrasts of the primary outcome between study arms, as text.
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
         "{} per press of the human, by condition (linear mixed model of {} of {}{}):\n",

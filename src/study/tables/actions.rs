@@ -7,14 +7,10 @@ use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_core::mind::recorded_estimate::rounded;
 
-/// A recorded press of either agent with its time and number.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPress {
-    /// Sequence number of the press in the log.
     pub seq: u64,
-    /// Time of the press on the trial's clock, in seconds.
     pub time_s: f64,
-    /// The press with the states before and after it.
     pub press: Press,
     /// Number of the press among the presses of its agent, from 1.
     pub number: u32,
@@ -31,11 +27,8 @@ pub struct PressAnalysis<'a> {
     pub judged: &'a JudgedPress,
     /// Number of the error sequence to which the press belongs, in the trial, from 1.
     pub sequence: Option<usize>,
-    /// Cause of a person's error according to the assistant's belief estimate.
     pub by_estimate: Option<ErrorCause>,
-    /// Codes that two raters gave to the error.
     pub codes: [Option<&'a ErrorCauseCode>; 2],
-    /// Consensus code of the two raters, where that code determines the cause of the error.
     pub shared: Option<&'a ErrorCauseCode>,
     /// Beginning of the false belief behind the error, on the trial's clock in seconds, where it is known.
     pub false_since_s: Option<f64>,
@@ -47,11 +40,8 @@ pub struct PressAnalysis<'a> {
 /// Row of the table of actions: a press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
-    /// Name of the recording in tables.
     pub recording: &'a str,
-    /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// The recorded press.
     pub recorded: &'a RecordedPress,
     /// Analysis of a human press; `None` for presses of the robot.
     pub analysis: Option<PressAnalysis<'a>>,

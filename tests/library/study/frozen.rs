@@ -7,13 +7,13 @@ use tomcom::edge::files::read_session;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::column::CsvTable;
-use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
-use tomcom_study::files::frozen_file::{freeze, read_frozen};
+use tomcom_study::files::pool_file::{freeze, read_frozen};
 use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan};
-use tomcom_study::preregistration::{PreregistrationCheck, RecordedPlan};
+use tomcom_study::frozen_plan::{PreregistrationCheck, RecordedPlan};
 use tomcom_study::report;
+use tomcom_study::trial_statistics::DetailTotals;
 
 use super::trials;
 

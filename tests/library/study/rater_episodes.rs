@@ -10,10 +10,9 @@ use tomcom_core::measures::attribution::FalseBeliefTarget;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::errors::PressJudge;
-use tomcom_study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
-use tomcom_study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use tomcom_study::prevention::TrialGroundTruth;
 use tomcom_study::rater_episodes::rater_episodes;
+use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent, KnownFalseBeliefs, RaterFalseBeliefAgreement};
 
 use super::at;
 use crate::kitchen;

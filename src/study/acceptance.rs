@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::trial_statistics::{QuestionnaireAnswer, TrialStatistics, mean};
+use crate::statistics::{mean, sample_sd};
+use crate::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::study_arm::StudyArm;
 
@@ -95,13 +96,6 @@ pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
         one.sd = sample_sd(&one.scores);
     }
     found
-}
-
-/// Standard deviation of a sample of values; `None` with fewer than two values.
-fn sample_sd(values: &[f64]) -> Option<f64> {
-    let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
-    let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
-    Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
 /// Answers to the items of all questionnaires by condition, in the order in which items and conditions occur.

@@ -5,9 +5,10 @@ use serde::Serialize;
 
 use crate::arm_comparison::{StudyArmComparison, compare_arms};
 use crate::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
+use crate::statistics::mean;
 use crate::tables::probe_table::PROBES_WRONG;
 use crate::tables::trials::measures;
-use crate::trial_statistics::{TrialStatistics, TrialTotals, mean};
+use crate::trial_statistics::{TrialStatistics, TrialTotals};
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::study_arm::StudyArm;
 

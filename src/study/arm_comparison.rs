@@ -158,7 +158,7 @@ fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<Stud
         let interval = contrast.interval(LEVEL).map(f64::exp);
         Some(StudyArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
     };
-    let mut all: Vec<StudyArmContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let mut all: Vec<StudyArmContrast> = pairs(&design.arms).into_iter().filter_map(contrast).collect();
     let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
     all.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
     all
@@ -171,7 +171,7 @@ fn count_comparison(design: &ArmComparisonDesign) -> Option<NegativeBinomialComp
         let (arm, against) = pair;
         Some(NegativeBinomialContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
     };
-    let mut contrasts: Vec<NegativeBinomialContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let mut contrasts: Vec<NegativeBinomialContrast> = pairs(&design.arms).into_iter().filter_map(contrast).collect();
     let corrected = holm(&contrasts.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
     contrasts.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
     let size = Some(model.size).filter(|size| size.is_finite());
@@ -218,7 +218,7 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
     }
     let model = design.linear(false)?;
     let found = contrasts(&design, &model);
-    let with_carry_over = match design.arms().len() {
+    let with_carry_over = match design.arms.len() {
         0..=2 => Vec::new(),
         _ => design.linear(true).map_or_else(Vec::new, |model| contrasts(&design, &model)),
     };
@@ -234,7 +234,7 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
         holds: one.interval[1] < aims.margin,
     });
     let outcome_of = |arm: StudyArm| {
-        let own = || design.trials().iter().filter(|trial| trial.arm == arm);
+        let own = || design.trials.iter().filter(|trial| trial.arm == arm);
         StudyArmCounts {
             arm,
             trials: own().count(),
@@ -244,10 +244,10 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
     };
     Some(StudyArmComparison {
         outcome: aims.outcome,
-        participants: design.trials().last().map_or(0, |trial| trial.participant + 1),
-        trials: design.trials().len(),
+        participants: design.trials.last().map_or(0, |trial| trial.participant + 1),
+        trials: design.trials.len(),
         left_out: Vec::new(),
-        arms: design.arms().iter().copied().map(outcome_of).collect(),
+        arms: design.arms.iter().copied().map(outcome_of).collect(),
         standard_deviations: [model.between.sqrt(), model.within.sqrt()],
         non_inferiority: non_inferiority.collect(),
         contrasts: found,
@@ -307,16 +307,6 @@ impl ArmComparisonDesign {
         periods.sort_unstable();
         periods.dedup();
         ArmComparisonDesign { trials, arms, periods }
-    }
-
-    /// The trials of the comparison, ordered by participant and period.
-    pub fn trials(&self) -> &[StudyArmTrial] {
-        &self.trials
-    }
-
-    /// The study arms that occur in the trials, in the order of tables.
-    pub fn arms(&self) -> &[StudyArm] {
-        &self.arms
     }
 
     fn is_within(&self) -> bool {

@@ -18,6 +18,7 @@ use crate::kept_cost::KeptCost;
 use crate::pass::reading;
 use crate::planned_trial::{RecordingCopy, copies_in_words};
 use crate::standing;
+use crate::trial_statistics::kind_name;
 use tomcom_core::base::path_text::PathText;
 use tomcom_core::base::words::count;
 use tomcom_core::kitchen::KitchenChange;
@@ -26,7 +27,6 @@ use tomcom_session::event::Event;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogEnding, LogReader};
 use tomcom_session::protocol::ProtocolEvent;
-use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{LogHeader, apply};
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
@@ -203,12 +203,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
             None => rows.push(BidsParticipant {
                 label: one.label.clone(),
                 code: spec.participant.code.clone(),
-                kind: match spec.participant.kind {
-                    ParticipantKind::Simulated => "simulated",
-                    ParticipantKind::Keyboard => "keyboard",
-                    ParticipantKind::Display => "display",
-                }
-                .to_string(),
+                kind: kind_name(spec.participant.kind).to_string(),
                 group: spec.step.as_ref().map(|step| step.group.clone()),
                 recordings: 1,
                 consent: consent.unwrap_or_default(),

@@ -190,7 +190,7 @@ pub fn effect(measure: StudyMeasure, paired: PairedTrials, seed: u64) -> Assista
         high: interval.high / 2.0,
         ..interval
     };
-    let mean = |values: &[f64]| super::trial_statistics::mean(values.iter().copied());
+    let mean = |values: &[f64]| crate::statistics::mean(values.iter().copied());
     AssistanceEffect {
         measure,
         groups: [with.len(), without.len()],

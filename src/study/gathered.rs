@@ -208,7 +208,7 @@ fn folder(log: &Path) -> &Path {
     log.parent().unwrap_or(Path::new("."))
 }
 
-pub(super) fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
+fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
     let seed = header.started.is_none().then_some(header.session.seed);
     PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
 }

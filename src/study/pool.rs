@@ -1,4 +1,4 @@
-//! Simulates the participants of a pool in memory ([`crate::simulation_pool`]): every trial of the plan, and its
+//! A pool of simulated participants in memory: every trial of the plan, and its
 //! unassisted twin (the same trial without signals). The commands `tomcom power` and `tomcom arms` use the pool.
 
 use std::convert::Infallible;
@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::trial_summary::{SignalTimes, TrialSummary};
 use crate::kept_cost::KeptCost;
 use crate::parallel;
+use crate::study_part::ShardMismatch;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::engine::SessionEngine;
@@ -279,30 +280,16 @@ pub struct SimulationPool {
     pub persons: Vec<PoolParticipant>,
 }
 
-/// Mismatch in the lines of a pool's file, or between shards that are joined.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PoolMismatch {
-    pub index: usize,
-    pub found: String,
-    pub remedy: String,
-}
-
-impl PoolMismatch {
-    fn new(index: usize, found: String, remedy: &str) -> PoolMismatch {
-        PoolMismatch { index, found, remedy: remedy.to_string() }
-    }
-}
-
 impl SimulationPool {
     /// The pool that consists of these trials, which are ordered by participant and period.
     ///
     /// # Errors
     /// A trial is missing, occurs twice, or does not fit the header.
-    pub fn from_trials(header: PoolHeader, trials: Vec<PoolTrial>) -> Result<SimulationPool, PoolMismatch> {
+    pub fn from_trials(header: PoolHeader, trials: Vec<PoolTrial>) -> Result<SimulationPool, ShardMismatch> {
         let mut persons: Vec<PoolParticipant> = Vec::new();
         let count = trials.len();
         for (index, trial) in trials.into_iter().enumerate() {
-            let wrong = |found: String, remedy: &str| Err(PoolMismatch::new(index, found, remedy));
+            let wrong = |found: String, remedy: &str| Err(ShardMismatch::new(index, found, remedy));
             if !header.conditions.contains(&trial.planned) || trial.counts.human_presses == 0 {
                 let found = format!("a trial of {} with {} presses", trial.planned.name(), trial.counts.human_presses);
                 return wrong(found, "a trial of the pool's conditions with presses of the human");
@@ -341,7 +328,7 @@ impl SimulationPool {
         match persons.iter().find(|person| !is_complete(person)) {
             Some(person) => {
                 let found = format!("participant {} without all trials", person.participant);
-                Err(PoolMismatch::new(count.saturating_sub(1), found, "a pool that was written to its end"))
+                Err(ShardMismatch::new(count.saturating_sub(1), found, "a pool that was written to its end"))
             }
             None => Ok(SimulationPool { header, persons }),
         }
@@ -369,9 +356,9 @@ impl SimulationPool {
     ///
     /// # Errors
     /// Shards are of different pools, occur twice, or are not complete.
-    pub fn joined(parts: Vec<SimulationPool>) -> Result<SimulationPool, PoolMismatch> {
+    pub fn joined(parts: Vec<SimulationPool>) -> Result<SimulationPool, ShardMismatch> {
         let Some(first) = parts.first().map(|part| part.header.clone()) else {
-            return Err(PoolMismatch::new(0, "no part".to_string(), "at least one"));
+            return Err(ShardMismatch::new(0, "no part".to_string(), "at least one"));
         };
         let whole = PoolHeader { shard: 1, shards: 1, ..first.clone() };
         let mut persons: Vec<(usize, PoolParticipant)> = Vec::new();
@@ -380,7 +367,7 @@ impl SimulationPool {
                 || part.header.shards != first.shards
             {
                 let found = "a part of another pool than the first file".to_string();
-                return Err(PoolMismatch::new(
+                return Err(ShardMismatch::new(
                     index,
                     found,
                     "parts of one plan, seed, number of participants and program",
@@ -391,11 +378,11 @@ impl SimulationPool {
         persons.sort_by_key(|(_, person)| person.participant);
         if let Some(pair) = persons.windows(2).find(|pair| pair[0].1.participant == pair[1].1.participant) {
             let found = format!("participant {}, who is in another part, too", pair[1].1.participant);
-            return Err(PoolMismatch::new(pair[1].0, found, "each part once"));
+            return Err(ShardMismatch::new(pair[1].0, found, "each part once"));
         }
         if persons.len() != whole.participants as usize {
             let found = format!("{} of {} participants", persons.len(), whole.participants);
-            return Err(PoolMismatch::new(0, found, "all parts of the pool, such as 1/4 to 4/4"));
+            return Err(ShardMismatch::new(0, found, "all parts of the pool, such as 1/4 to 4/4"));
         }
         Ok(SimulationPool { header: whole, persons: persons.into_iter().map(|(_, person)| person).collect() })
     }

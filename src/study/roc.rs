@@ -8,6 +8,7 @@
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::trial_bootstrap::percentiles;
 use crate::prevention::{PreventionCounts, PreventionRates};
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::concept::ConceptName;
@@ -233,14 +234,13 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
 /// A statistic of the curves with its percentile interval over the bootstrap resamples.
 fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
-    let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
+    let drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
     // If fewer than half of the resamples have a value, an interval from them would be biased.
     if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
         return BootstrapInterval { value, low: None, high: None };
     }
-    drawn.sort_by(f64::total_cmp);
-    let at = |share: f64| drawn[((drawn.len() - 1) as f64 * share).round() as usize];
-    BootstrapInterval { value, low: Some(at((1.0 - COVERED) / 2.0)), high: Some(at((1.0 + COVERED) / 2.0)) }
+    let [low, high] = percentiles(drawn, [(1.0 - COVERED) / 2.0, (1.0 + COVERED) / 2.0]);
+    BootstrapInterval { value, low: Some(low), high: Some(high) }
 }
 
 fn band(curves: &Curves, resampled: &[Curves], concept: usize) -> Vec<[f64; 3]> {

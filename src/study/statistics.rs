@@ -52,11 +52,11 @@ pub(crate) fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let difference = |values: [f64; 2]| values[1] - values[0];
     let sum = |values: [f64; 2]| values[1] + values[0];
     let decompose = |of: fn([f64; 2]) -> f64| {
-        let all = mean(rows.iter().map(|(_, values)| of(*values)));
-        let means: Vec<f64> = (0..groups).map(|group| mean(in_group(group).map(of))).collect();
+        let all = mean_or_zero(rows.iter().map(|(_, values)| of(*values)));
+        let means: Vec<f64> = (0..groups).map(|group| mean_or_zero(in_group(group).map(of))).collect();
         let between: f64 = used.iter().map(|&group| sizes[group] * (means[group] - all).powi(2)).sum();
         let residual: f64 = rows.iter().map(|(group, values)| (of(*values) - means[*group]).powi(2)).sum();
-        let unweighted = mean(used.iter().map(|&group| means[group]));
+        let unweighted = mean_or_zero(used.iter().map(|&group| means[group]));
         (unweighted, between / 2.0, residual / 2.0)
     };
     let (mean_difference, interaction, residual_within) = decompose(difference);
@@ -86,7 +86,7 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     if n < 3 {
         return None;
     }
-    let (mx, my) = (mean(x[..n].iter().copied()), mean(y[..n].iter().copied()));
+    let (mx, my) = (mean_or_zero(x[..n].iter().copied()), mean_or_zero(y[..n].iter().copied()));
     let pairs = || x[..n].iter().zip(&y[..n]).map(|(x, y)| (x - mx, y - my));
     let (xx, yy, xy) = pairs().fold((0.0, 0.0, 0.0), |(xx, yy, xy), (x, y)| (xx + x * x, yy + y * y, xy + x * y));
     if xx <= 0.0 || yy <= 0.0 {
@@ -230,7 +230,7 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
     if a.is_empty() || b.is_empty() || df <= 0.0 {
         return None;
     }
-    let (ma, mb) = (mean(a.iter().copied()), mean(b.iter().copied()));
+    let (ma, mb) = (mean_or_zero(a.iter().copied()), mean_or_zero(b.iter().copied()));
     let squares = |values: &[f64], m: f64| values.iter().map(|value| (value - m).powi(2)).sum::<f64>();
     let pooled = ((squares(a, ma) + squares(b, mb)) / df).sqrt();
     (pooled > 0.0).then(|| (ma - mb) / pooled * (1.0 - 3.0 / (4.0 * (df + 2.0) - 9.0)))
@@ -253,8 +253,19 @@ pub(crate) fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     Some(ConfidenceInterval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
 }
 
-/// Mean of the values; 0 without values.
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
+/// Mean of the values; `None` without values.
+pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
-    if count == 0 { 0.0 } else { sum / f64::from(count) }
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+fn mean_or_zero(values: impl Iterator<Item = f64>) -> f64 {
+    mean(values).unwrap_or(0.0)
+}
+
+/// Standard deviation of a sample; `None` with fewer than two values.
+pub(crate) fn sample_sd(values: &[f64]) -> Option<f64> {
+    let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
+    let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
+    Some((sum / (values.len() - 1) as f64).sqrt())
 }

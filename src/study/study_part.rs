@@ -105,18 +105,18 @@ impl AnalysedRecording {
     }
 }
 
-/// Why parts of a study cannot be joined.
+/// Why the parts of a study, or the shards of a pool, cannot be joined, or why lines make no pool.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PartMismatch {
-    /// Index of the part that does not fit.
+pub struct ShardMismatch {
+    /// Index of the part or line that does not fit.
     pub index: usize,
     pub found: String,
     pub remedy: String,
 }
 
-impl PartMismatch {
-    fn new(index: usize, found: String, remedy: &str) -> PartMismatch {
-        PartMismatch { index, found, remedy: remedy.to_string() }
+impl ShardMismatch {
+    pub(crate) fn new(index: usize, found: String, remedy: &str) -> ShardMismatch {
+        ShardMismatch { index, found, remedy: remedy.to_string() }
     }
 }
 
@@ -143,16 +143,16 @@ impl PartHeader {
 /// # Errors
 /// A part is of another program, study or number of parts, was analysed with other options, occurs twice, or is
 /// missing.
-pub(crate) fn check_parts(parts: &[PartHeader]) -> Result<(), PartMismatch> {
+pub(crate) fn check_parts(parts: &[PartHeader]) -> Result<(), ShardMismatch> {
     let Some(first) = parts.first() else {
-        return Err(PartMismatch::new(0, "no part".to_string(), "all parts of a study"));
+        return Err(ShardMismatch::new(0, "no part".to_string(), "all parts of a study"));
     };
     let version = env!("CARGO_PKG_VERSION");
     // A part without recordings fits any study.
     let study = parts.iter().find(|part| part.recordings > 0).unwrap_or(first);
     let mut places = BTreeMap::new();
     for (index, part) in parts.iter().enumerate() {
-        let wrong = |found: String, remedy: &str| Err(PartMismatch::new(index, found, remedy));
+        let wrong = |found: String, remedy: &str| Err(ShardMismatch::new(index, found, remedy));
         if part.program != version {
             let remedy = format!("parts of version {version}, which joins them; or the program that made them");
             return wrong(format!("a part of version {} of the program", part.program), &remedy);
@@ -181,7 +181,7 @@ pub(crate) fn check_parts(parts: &[PartHeader]) -> Result<(), PartMismatch> {
         (1..=first.shards).filter(|shard| !places.contains_key(shard)).map(|one| one.to_string()).collect();
     if !missing.is_empty() {
         let found = format!("{} of {} parts, without {}", parts.len(), first.shards, missing.join(", "));
-        return Err(PartMismatch::new(0, found, "all parts of the study, such as 1/8 to 8/8"));
+        return Err(ShardMismatch::new(0, found, "all parts of the study, such as 1/8 to 8/8"));
     }
     Ok(())
 }

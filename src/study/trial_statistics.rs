@@ -9,7 +9,7 @@ use crate::effect::LEVEL;
 use crate::rater_episodes::RaterFalseBeliefAgreement;
 use crate::robot_tally::RobotEventSummary;
 use crate::roc::{ConceptPreventionCounts, ConceptTotals};
-use crate::statistics::{ConfidenceInterval, share_interval};
+use crate::statistics::{ConfidenceInterval, mean, share_interval};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
@@ -144,11 +144,7 @@ impl TrialStatistics {
     }
 
     pub(crate) fn kind_name(&self) -> &'static str {
-        match self.kind {
-            ParticipantKind::Simulated => "simulated",
-            ParticipantKind::Keyboard => "keyboard",
-            ParticipantKind::Display => "display",
-        }
+        kind_name(self.kind)
     }
 
     pub fn presses(&self) -> u64 {
@@ -183,12 +179,6 @@ impl TrialStatistics {
 /// Mean of the lengths of error sequences; `None` without sequences.
 pub(crate) fn mean_length(lengths: &[u32]) -> Option<f64> {
     mean(lengths.iter().map(|&length| f64::from(length)))
-}
-
-/// Mean of the values; `None` without values.
-pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
-    (count > 0).then(|| sum / f64::from(count))
 }
 
 /// Sets participant names, and periods where no study plan defines them, and sorts the trials by participant and
@@ -432,5 +422,14 @@ fn of_trial(trial: &TrialStatistics, similarity: &Similarity) -> WizardAssistant
         with_n: similarity.with_n,
         matched: similarity.matched,
         recall: similarity.signal.recall,
+    }
+}
+
+/// Name of the kind of participant in tables.
+pub(crate) fn kind_name(kind: ParticipantKind) -> &'static str {
+    match kind {
+        ParticipantKind::Simulated => "simulated",
+        ParticipantKind::Keyboard => "keyboard",
+        ParticipantKind::Display => "display",
     }
 }

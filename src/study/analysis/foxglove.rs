@@ -38,41 +38,31 @@ impl McapChannel {
         McapChannel::Beliefs,
     ];
 
-    pub fn topic(self) -> &'static str {
+    /// Name (topic) of the channel, name of the type of its messages, and the JSON Schema of that type, which has no title.
+    fn declared(self) -> (&'static str, &'static str, fn() -> Value) {
         match self {
-            McapChannel::Joints => "/robot/joints",
-            McapChannel::Frames => "/tf",
-            McapChannel::Arm => "/robot/arm",
-            McapChannel::Log => "/log",
-            McapChannel::Events => "/events",
-            McapChannel::Gaze => "/gaze",
-            McapChannel::Beliefs => "/beliefs",
+            McapChannel::Joints => ("/robot/joints", "foxglove.JointStates", joints_schema),
+            McapChannel::Frames => ("/tf", "foxglove.FrameTransforms", frames_schema),
+            McapChannel::Arm => ("/robot/arm", "tomcom.Arm", arm_schema),
+            McapChannel::Log => ("/log", "foxglove.Log", log_schema),
+            McapChannel::Events => ("/events", "tomcom.Event", event_schema),
+            McapChannel::Gaze => ("/gaze", "tomcom.Gaze", gaze_schema),
+            McapChannel::Beliefs => ("/beliefs", "tomcom.Beliefs", beliefs_schema),
         }
     }
 
-    pub(crate) fn schema_name(self) -> &'static str {
-        match self {
-            McapChannel::Joints => "foxglove.JointStates",
-            McapChannel::Frames => "foxglove.FrameTransforms",
-            McapChannel::Arm => "tomcom.Arm",
-            McapChannel::Log => "foxglove.Log",
-            McapChannel::Events => "tomcom.Event",
-            McapChannel::Gaze => "tomcom.Gaze",
-            McapChannel::Beliefs => "tomcom.Beliefs",
-        }
+    pub fn topic(self) -> &'static str {
+        self.declared().0
+    }
+
+    pub fn schema_name(self) -> &'static str {
+        self.declared().1
     }
 
     pub fn schema(self) -> Value {
-        let mut schema = match self {
-            McapChannel::Joints => joints_schema(),
-            McapChannel::Frames => frames_schema(),
-            McapChannel::Arm => arm_schema(),
-            McapChannel::Log => log_schema(),
-            McapChannel::Events => event_schema(),
-            McapChannel::Gaze => gaze_schema(),
-            McapChannel::Beliefs => beliefs_schema(),
-        };
-        schema["title"] = self.schema_name().into();
+        let (_, name, schema) = self.declared();
+        let mut schema = schema();
+        schema["title"] = name.into();
         schema
     }
 }

@@ -271,7 +271,7 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
 
 /// Accuracy in each group of each grouping, over the probe questions of the main results; `participants` holds the
 /// trials of each participant.
-pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerAccuracy> {
+fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerAccuracy> {
     let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
         .flatten()
@@ -289,7 +289,7 @@ pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAns
         .collect()
 }
 
-pub fn accuracy(
+fn accuracy(
     participants: &[Vec<&ProbedTrial>],
     (by, group): (ProbeAccuracyGrouping, &str),
     seed: u64,

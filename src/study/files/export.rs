@@ -33,6 +33,10 @@ pub struct AnalysisWriteError {
     pub reason: io::Error,
 }
 
+fn at<T>(path: &Path, done: io::Result<T>) -> Result<T, AnalysisWriteError> {
+    done.map_err(|reason| AnalysisWriteError { path: path.to_path_buf(), reason })
+}
+
 /// Rows of one CSV table, without the header line, which are written to memory or to a file.
 #[derive(Debug)]
 pub struct TableRows<Out: Write = Vec<u8>> {
@@ -89,14 +93,14 @@ impl TableFile {
     pub fn add<Row: CsvRow>(&mut self, row: &Row) -> Result<(), AnalysisWriteError> {
         debug_assert_eq!(Row::TABLE, self.table, "a row of another table");
         self.has_rows = true;
-        self.rows.write(row).map_err(|reason| AnalysisWriteError { path: self.path.clone(), reason })
+        at(&self.path, self.rows.write(row))
     }
 
     /// Completes the table and gives its file its name. Returns the table if it has rows.
     pub fn finish(self) -> Result<Option<CsvTable>, AnalysisWriteError> {
         let TableFile { table, path, rows, has_rows } = self;
         let written = rows.rows.into_inner().map_err(csv::IntoInnerError::into_error).and_then(Replacement::finish);
-        written.map_err(|reason| AnalysisWriteError { path, reason })?;
+        at(&path, written)?;
         Ok(has_rows.then_some(table))
     }
 }
@@ -117,14 +121,12 @@ impl AnalysisFolder {
         export.check_replaced()?;
         let parts = export.parts();
         // Temporary files that an interrupted analysis left are removed.
-        remove_parts(&parts).map_err(|reason| AnalysisWriteError { path: parts.clone(), reason })?;
-        fs::create_dir_all(&parts).map_err(|reason| AnalysisWriteError { path: parts, reason })?;
+        at(&parts, remove_parts(&parts).and_then(|()| fs::create_dir_all(&parts)))?;
         Ok(export)
     }
 
     fn check_replaced(&self) -> Result<(), AnalysisWriteError> {
-        let written = ListedTables::read(&self.folder)
-            .map_err(|reason| AnalysisWriteError { path: self.folder.clone(), reason })?;
+        let written = at(&self.folder, ListedTables::read(&self.folder))?;
         for table in CsvTable::ALL {
             let path = self.folder.join(format!("{}.csv", table.name()));
             let is_own = |head: &[u8]| {
@@ -132,11 +134,11 @@ impl AnalysisFolder {
                 reader(head).read_byte_record(&mut header).unwrap_or(false) && written.has(table.name(), &header)
             };
             let what = format!("the table \"{}\"", table.name());
-            overwrite::check(&path, &what, is_own).map_err(|reason| AnalysisWriteError { path, reason })?;
+            at(&path, overwrite::check(&path, &what, is_own))?;
         }
         let path = self.folder.join(REPORT_NAME);
         let is_own = |head: &[u8]| report::participants_of_page(&String::from_utf8_lossy(head)).is_some();
-        overwrite::check(&path, "a report", is_own).map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, overwrite::check(&path, "a report", is_own))
     }
 
     fn parts(&self) -> PathBuf {
@@ -152,7 +154,7 @@ impl AnalysisFolder {
     pub fn keep(&self, index: usize, rows: &[Vec<u8>; 5]) -> Result<(), AnalysisWriteError> {
         for (table, rows) in CsvTable::OF_EVENTS.into_iter().zip(rows) {
             let path = self.part(index, table.name());
-            fs::write(&path, rows).map_err(|reason| AnalysisWriteError { path, reason })?;
+            at(&path, fs::write(&path, rows))?;
         }
         Ok(())
     }
@@ -161,14 +163,14 @@ impl AnalysisFolder {
     pub fn keep_analysed(&self, index: usize, recording: &AnalysedRecording) -> Result<(), AnalysisWriteError> {
         let path = self.part(index, ANALYSED);
         let written = serde_json::to_vec(recording).map_err(io::Error::from).and_then(|text| fs::write(&path, text));
-        written.map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, written)
     }
 
     /// The stored analysed recording with this number.
     pub fn kept_analysed(&self, index: usize) -> Result<AnalysedRecording, AnalysisWriteError> {
         let path = self.part(index, ANALYSED);
         let read = fs::read(&path).and_then(|text| serde_json::from_slice(&text).map_err(io::Error::from));
-        read.map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, read)
     }
 
     /// Removes the temporary files of the analysis.
@@ -177,16 +179,14 @@ impl AnalysisFolder {
     /// The folder for temporary files cannot be changed.
     pub fn remove_kept(&self) -> Result<(), AnalysisWriteError> {
         let path = self.parts();
-        remove_parts(&path).map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, remove_parts(&path))
     }
 
     /// Begins a table of the analysis with its header line.
     pub fn begin(&self, table: CsvTable) -> Result<TableFile, AnalysisWriteError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
-        match begin_table(&path, table).map(TableRows::new) {
-            Ok(rows) => Ok(TableFile { table, path, rows, has_rows: false }),
-            Err(reason) => Err(AnalysisWriteError { path, reason }),
-        }
+        let rows = TableRows::new(at(&path, begin_table(&path, table))?);
+        Ok(TableFile { table, path, rows, has_rows: false })
     }
 
     /// Writes a table of the analysis; returns the table if it has rows.
@@ -213,7 +213,7 @@ impl AnalysisFolder {
                 }
                 out.finish().map(|()| (bytes > 0).then_some(table))
             };
-            filled.extend(write().map_err(|reason| AnalysisWriteError { path: path.clone(), reason })?);
+            filled.extend(at(&path, write())?);
         }
         Ok(filled)
     }
@@ -221,10 +221,8 @@ impl AnalysisFolder {
     /// Writes the analysis report and returns its path.
     pub fn report(&self, page: &str) -> Result<PathBuf, AnalysisWriteError> {
         let path = self.folder.join(REPORT_NAME);
-        match replace_file::replace(&path, page.as_bytes()) {
-            Ok(()) => Ok(path),
-            Err(reason) => Err(AnalysisWriteError { path, reason }),
-        }
+        at(&path, replace_file::replace(&path, page.as_bytes()))?;
+        Ok(path)
     }
 }
 

@@ -1,5 +1,5 @@
-//! Files of pools (simulated participants for power analyses) in the format JSON Lines
-//! ([`crate::simulation_pool`]).
+//! Files of pools (simulated participants for power analyses) in the format JSON Lines, of the table of power, and of
+//! frozen plans.
 
 use std::io::{self, ErrorKind};
 use std::ops::Range;

@@ -63,7 +63,7 @@ fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStat
     }
 }
 
-pub(super) fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Markup {
+fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Markup {
     let columns: [PageColumn<StudyConditionSummary>; 15] = [
         ("condition", |one| one.condition.title().render()),
         ("trials", |one| one.trials.render()),
@@ -124,7 +124,7 @@ fn experience(figures: &StudySummary) -> Markup {
 }
 
 /// Table of statistical tests, with one row per compared measure, and the participants whom the tests leave out.
-pub(super) fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
+fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 13] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
@@ -166,7 +166,7 @@ pub(super) fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Ma
 }
 
 /// Sentence on the participants whom the tests of something leave out; empty if nobody is left out.
-pub(super) fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
+fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
     let Some(who) = left_out_in_words(left_out) else { return nothing() };
     html! { p class="note" { "Left out of the tests of " (what) ": " (who) "." } "\n" }
 }

@@ -101,7 +101,7 @@ fn meta_tag(name: &str, begins: &str) -> String {
 /// Least number of participants with both trials from which on r and p are shown among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;
 
-pub(super) fn summary(figures: &StudySummary) -> Markup {
+fn summary(figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
     let pairs: usize = figures.effects.first().map_or(0, |effect| effect.groups.iter().sum());
     let effect = match (figures.pearson, &figures.similarity) {
@@ -241,7 +241,7 @@ fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_text("Excluded trials.", &["recording", "participant", "reason"], &rows)
 }
 
-pub(super) fn definitions() -> Markup {
+fn definitions() -> Markup {
     let content = html! {
         dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
     };
@@ -249,7 +249,7 @@ pub(super) fn definitions() -> Markup {
 }
 
 /// Section of the report that lists the non-empty tables beside the report.
-pub(super) fn files(tables: &[CsvTable]) -> Markup {
+fn files(tables: &[CsvTable]) -> Markup {
     let content = html! {
         p {
             "Beside this page: "

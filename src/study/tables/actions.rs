@@ -1,7 +1,7 @@
 //! Table of the presses of both agents, for the CSV file of actions.
 
 use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use tomcom_core::kitchen::{Agent, Kitchen, Press};
+use tomcom_core::kitchen::{Kitchen, Press};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
@@ -95,13 +95,6 @@ fn cause_name(cause: ErrorCause) -> &'static str {
     }
 }
 
-fn agent_name(agent: Agent) -> &'static str {
-    match agent {
-        Agent::Human => "human",
-        Agent::Robot => "robot",
-    }
-}
-
 impl CsvRow for ActionRow<'_> {
     const TABLE: CsvTable = CsvTable::Actions;
 
@@ -112,7 +105,7 @@ impl CsvRow for ActionRow<'_> {
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", "number of the event in the log", |row| row.recorded.seq.into()),
             Self::column("time_s", "s", "time on the trial's clock", |row| rounded(row.recorded.time_s).into()),
-            Self::column("agent", "", "human or robot", |row| agent_name(row.recorded.press.agent).into()),
+            Self::column("agent", "", "human or robot", |row| row.recorded.press.agent.name().into()),
             Self::column("press", "presses", "number of the press among this agent's presses, from 1", |row| {
                 row.recorded.number.into()
             }),

@@ -440,7 +440,7 @@ enum TrialColumn {
 }
 
 /// Declares a column of the table of trials that the report does not compare.
-pub(super) fn plain(
+fn plain(
     name: &'static str,
     unit: &'static str,
     meaning: impl Into<Cow<'static, str>>,
@@ -451,7 +451,7 @@ pub(super) fn plain(
 
 /// Columns for the arm as carried out, the planned arm, what the wizard could see, the contents of signals, and presses
 /// whose judgement is not proven.
-pub(super) fn arms() -> Vec<TrialColumn> {
+fn arms() -> Vec<TrialColumn> {
     vec![
         plain(
             "study_arm",

@@ -257,7 +257,7 @@ impl BidsLabelMap {
 }
 
 /// A free label: `label`, with a number behind it if that label is taken; the returned label counts as taken.
-pub(super) fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> String {
+fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> String {
     let tried = |number: usize| match number {
         1 => label.to_string(),
         number => format!("{label}{between}{number}"),

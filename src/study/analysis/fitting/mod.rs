@@ -412,6 +412,6 @@ fn bounds_of(parameters: &[HumanModelParameter]) -> Vec<[f64; 2]> {
     parameters.iter().map(|one| one.bounds().map(|end| one.to_scale(end))).collect()
 }
 
-pub fn is_possible(model: &HumanModel) -> bool {
+fn is_possible(model: &HumanModel) -> bool {
     ranges::check_human_model(model).is_ok() && model.fault().is_none()
 }

@@ -25,7 +25,7 @@ pub fn points(variables: usize) -> usize {
 }
 
 /// The points at which [`surface`] evaluates its function, in the order of evaluation.
-pub(crate) fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
     design(centre.len()).into_iter().map(at).collect()
 }

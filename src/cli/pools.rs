@@ -19,7 +19,7 @@ use tomcom_study::files::pool_file;
 use tomcom_study::pass::describe_arms;
 use tomcom_study::pool::SimulationPool;
 use tomcom_study::pool::{self, PoolRequest};
-use tomcom_study::power_measurement::{self, PowerRequest};
+use tomcom_study::power::{self, PowerRequest};
 use tomcom_study::{arm_table, charts, power};
 
 /// Default numbers of participants for `tomcom power`.
@@ -188,8 +188,8 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     sizes.sort_unstable();
     sizes.dedup();
     let request = PowerRequest { sizes, studies: args.studies, effect };
-    let bar = progress(power_measurement::blocks(&request, &pool), "blocks of drawn studies");
-    let found = power_measurement::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
+    let bar = progress(power::blocks(&request, &pool), "blocks of drawn studies");
+    let found = power::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
     bar.finish_and_clear();
     if let Some(file) = &args.csv {
         pool_file::write_table(file, &found)?;

@@ -1,10 +1,9 @@
-//! Charts of the study report, modelled on the figures of the paper.
+//! Charts of the study report, modelled on the figures of the paper; of the ratios between arms, and of power.
 
 use maud::Markup;
 
 use crate::analysis::probe_figures::ProbeSummary;
-use crate::arm_analysis::StudyConditionSummary;
-use crate::arm_comparison::StudyArmContrast;
+use crate::arm_comparison::{StudyArmContrast, StudyConditionSummary};
 use crate::drawn_study::{SignificanceTestMethod, reference};
 use crate::effect::{TrialPair, pairs};
 use crate::figures::StudySummary;

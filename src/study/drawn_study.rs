@@ -13,7 +13,7 @@
 use rand::RngExt;
 use serde::Serialize;
 
-use crate::arm_comparison::{StudyArmTrial, pairs, primary_contrasts};
+use crate::arm_comparison::{StudyArmTrial, arm_pairs, primary_contrasts};
 use crate::pool::SimulationPool;
 use crate::statistics::mixed_anova;
 use tomcom_core::base::rng::{Stream, shuffle, stream};
@@ -68,7 +68,7 @@ pub fn tests(conditions: &[StudyArm]) -> Vec<PowerTest> {
     let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
     let test =
         |method: SignificanceTestMethod| move |(arm, against): (StudyArm, StudyArm)| PowerTest { method, arm, against };
-    let both = pairs(&arms);
+    let both = arm_pairs(&arms);
     let papers = both.iter().copied().filter(|_| matches!(arms[..], [StudyArm::None, _]));
     papers
         .map(test(SignificanceTestMethod::MixedAnova))

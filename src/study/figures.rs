@@ -7,8 +7,7 @@ use serde::Serialize;
 use crate::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
-use crate::arm_analysis::{ArmAnalysis, ArmDeviation, StudyConditionSummary};
-use crate::arm_comparison::StudyArmComparison;
+use crate::arm_comparison::{ArmAnalysis, ArmDeviation, StudyArmComparison, StudyConditionSummary};
 use crate::effect::AssistanceEffect;
 use crate::facts::RecordingFacts;
 use crate::frozen_plan::PreregistrationCheck;
@@ -18,7 +17,7 @@ use crate::rater_episodes::RaterFalseBeliefAgreement;
 use crate::robot_tally::{RobotArmTotals, by_arm};
 use crate::roc::{ConceptRocCurve, compare};
 use crate::statistics::{Correlation, FTest};
-use crate::tables::participants::{TutorialQuestionRow, TutorialSummary};
+use crate::tables::participants::TutorialSummary;
 use crate::trial_statistics::{DetailTotals, TrialStatistics, TrialTotals, WizardAssistantSimilarity};
 use tomcom_core::base::words::count;
 use tomcom_core::measures::belief_basis::BeliefSource;
@@ -173,7 +172,8 @@ pub struct ExcludedTrial {
 }
 
 impl StudySummary {
-    /// Summarises the trials of a study, which must be ordered by participant, with the sums over their details.
+    /// Summarises the trials of a study, which must be ordered by participant, with the sums over their details. What does
+    /// not follow from trials (frozen plan, missing trials, copies, corrections, tutorials) is left empty.
     pub fn from_trials(
         trials: &[TrialStatistics],
         details: DetailTotals,
@@ -194,14 +194,18 @@ impl StudySummary {
             let (recording, participant) = (trial.recording.clone(), trial.participant.clone());
             Some(ExcludedTrial { recording, participant, reason: trial.left_out.clone()? })
         });
+        let stale = counting.iter().filter_map(|trial| {
+            let reason = trial.stale_consensus.clone()?;
+            Some(StaleConsensus { recording: trial.recording.clone(), reason })
+        });
         StudySummary {
             title: title(facts, trials, simulated_participants),
             simulated_participants,
             trials: counting.len() as u64,
             participants: participants.len() as u64,
             totals: TrialTotals::from_trials(&counting),
-            human_models: human_models(&counting),
-            ended: ended(&counting),
+            human_models: counts(counting.iter().map(|trial| trial.human_model.clone())),
+            ended: counts(counting.iter().filter_map(|trial| trial.ended)),
             robot: by_arm(&counting),
             preregistration: None,
             missing_trials: Vec::new(),
@@ -237,49 +241,21 @@ impl StudySummary {
             probes: ProbeSummary::from_trials(details.probes.iter().map(|(code, probes)| (code.as_str(), probes))),
             raters: agreement(&counting),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
-            rater_pairs: rater_pairs(&counting),
+            rater_pairs: counts(counting.iter().filter_map(|trial| Some(trial.raters.as_ref()?.name()))),
             identical_codes: counting.iter().filter_map(|trial| identical_codes(trial)).collect(),
-            consensus: consensus(&counting),
-            stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),
+            consensus: counts(counting.iter().filter_map(|trial| Some(trial.settled_by.as_ref()?.join("+")))),
+            stale_consensus: stale.collect(),
             left_out: left_out.collect(),
             practice,
         }
     }
-
-    /// Adds the study's agreement with its frozen plan, if a frozen plan was given.
-    pub fn with_preregistration(self, preregistration: Option<PreregistrationCheck>) -> StudySummary {
-        StudySummary { preregistration, ..self }
-    }
-
-    pub(crate) fn with_missing_trials(self, missing_trials: Vec<MissingTrials>) -> StudySummary {
-        StudySummary { missing_trials, ..self }
-    }
-
-    pub(crate) fn with_corrections(self, corrections: Vec<CorrectedRecording>) -> StudySummary {
-        StudySummary { corrections, ..self }
-    }
-
-    /// The summary with the recordings that were left out, since they are copies of others.
-    pub(crate) fn with_copies(self, copies: Vec<RecordingCopy>) -> StudySummary {
-        StudySummary { copies, ..self }
-    }
-
-    /// Adds the answers to the questions of tutorials, which must be ordered by participant.
-    pub(crate) fn with_tutorials(self, answers: &[TutorialQuestionRow]) -> StudySummary {
-        StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
-    }
 }
 
-fn human_models(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
-    let mut models = BTreeMap::new();
-    trials.iter().for_each(|trial| *models.entry(trial.human_model.clone()).or_default() += 1);
-    models
-}
-
-fn ended(trials: &[&TrialStatistics]) -> BTreeMap<TrialEndReason, u64> {
-    let mut ended = BTreeMap::new();
-    trials.iter().filter_map(|trial| trial.ended).for_each(|reason| *ended.entry(reason).or_default() += 1);
-    ended
+/// How often each of these occurs.
+fn counts<K: Ord>(all: impl Iterator<Item = K>) -> BTreeMap<K, u64> {
+    let mut counts = BTreeMap::new();
+    all.for_each(|one| *counts.entry(one).or_default() += 1);
+    counts
 }
 
 fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> Option<BeliefSource> {
@@ -296,15 +272,6 @@ fn title(facts: &RecordingFacts, trials: &[TrialStatistics], simulated: bool) ->
     }
 }
 
-/// Number of trials that use the consensus of two raters, by pair of raters.
-fn consensus(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
-    let mut settled = BTreeMap::new();
-    for raters in trials.iter().filter_map(|trial| trial.settled_by.as_ref()) {
-        *settled.entry(raters.join("+")).or_default() += 1;
-    }
-    settled
-}
-
 /// Pairs of raters in words: "R1 and R2", with their numbers of trials if there are several pairs.
 pub(crate) fn pairs_in_words(pairs: &BTreeMap<String, u64>) -> String {
     let word = |(pair, trials): (&String, &u64)| match pairs.len() {
@@ -312,19 +279,6 @@ pub(crate) fn pairs_in_words(pairs: &BTreeMap<String, u64>) -> String {
         _ => format!("{} in {}", pair.replace('+', " and "), count(*trials, "trial", "trials")),
     };
     pairs.iter().map(word).collect::<Vec<String>>().join("; ")
-}
-
-fn stale(trial: &TrialStatistics) -> Option<StaleConsensus> {
-    let reason = trial.stale_consensus.clone()?;
-    Some(StaleConsensus { recording: trial.recording.clone(), reason })
-}
-
-fn rater_pairs(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
-    let mut pairs = BTreeMap::new();
-    for pair in trials.iter().filter_map(|trial| trial.raters.as_ref()) {
-        *pairs.entry(pair.name()).or_default() += 1;
-    }
-    pairs
 }
 
 fn identical_codes(trial: &TrialStatistics) -> Option<IdenticalCodes> {

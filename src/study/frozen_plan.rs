@@ -1,12 +1,12 @@
 //! The frozen plan of a study (preregistration): study plan, definitions of the measures, and analysis, as written down
-//! before the study begins.
+//! before the study begins; and the comparison of a study with it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::arm_comparison::pairs;
+use crate::arm_comparison::arm_pairs;
 use crate::definitions::DEFINITIONS;
 use crate::effect::LEVEL;
 use tomcom_core::base::words::count;
@@ -83,7 +83,7 @@ impl FrozenAnalysis {
         FrozenAnalysis {
             program: env!("CARGO_PKG_VERSION").to_string(),
             outcome: study.plan.aims.outcome,
-            contrasts: pairs(&arms).into_iter().map(|(arm, against)| [arm, against]).collect(),
+            contrasts: arm_pairs(&arms).into_iter().map(|(arm, against)| [arm, against]).collect(),
             margin: study.plan.aims.margin,
             level: LEVEL,
             methods: METHODS.map(str::to_string).to_vec(),

@@ -1,4 +1,5 @@
-//! Trials of a study plan, for each of which one recording counts; and copies of recordings, which do not count.
+//! Trials of a study plan, for each of which one recording counts; copies of recordings, which do not count; and trials
+//! without a recording.
 
 use std::collections::{BTreeMap, BTreeSet};
 

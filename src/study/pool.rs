@@ -1,5 +1,12 @@
-//! A pool of simulated participants in memory: every trial of the plan, and its
-//! unassisted twin (the same trial without signals). The commands `tomcom power` and `tomcom arms` use the pool.
+//! A pool of simulated participants, from which studies are drawn ([`super::drawn_study`]), for `tomcom power` and
+//! `tomcom arms`. Of every trial it contains only the counts that an analysis needs.
+//!
+//! Each participant has a starting group and one trial in each arm of the plan. Each trial can have an unassisted twin:
+//! the same participant, orders and random streams, without signals. Twins tell how large an effect has to be to be
+//! detected, and how often a test rejects without an effect.
+//!
+//! A pool is a file of JSON Lines: a [`PoolHeader`], then one [`PoolTrial`] per line. Parts of a pool, simulated as
+//! shards, are joined.
 
 use std::convert::Infallible;
 use std::path::Path;

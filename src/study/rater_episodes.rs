@@ -1,5 +1,5 @@
-//! False belief episodes of people, derived from the causes that raters gave to errors. [`RULE`] states the rule of
-//! this derivation, and the report prints it.
+//! False beliefs of participants: known from the recorded beliefs of simulated participants, or, of people, derived
+//! from the causes that raters gave to errors. [`RULE`] states the rule of this derivation, and the report prints it.
 //!
 //! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate is not
 //! used, so that the estimate can be evaluated against these episodes.
@@ -387,6 +387,8 @@ pub enum BeliefEvidenceEvent {
     },
 }
 
+/// Everything in a trial that can change or show the participant's beliefs, in order: changes of the kitchen, looks,
+/// signals and the participant's presses. Neither estimates nor recorded beliefs are part of it.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefEvidence {
     pub events: Vec<(SessionTime, BeliefEvidenceEvent)>,

@@ -1,5 +1,5 @@
-//! Counts of robot events other than presses, and of the wizard's interventions in the robot, while a trial is
-//! replayed.
+//! Counts of robot events other than presses, and of the wizard's interventions in the robot: in a trial that is
+//! replayed, and summed by kind of arm.
 
 use std::collections::BTreeMap;
 

@@ -298,6 +298,9 @@ impl RateCounts {
     }
 }
 
+/// Prevention counts of every concept and parameter value, over all unassisted trials and for each participant, as the
+/// bootstrap needs them. Only the counts from which rates follow are kept for each participant, so that a large study
+/// needs little memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConceptTotals {
     trials: u64,

@@ -1,5 +1,5 @@
-//! Statistics of one trial, which the analysis keeps in memory for every trial of a study. Recordings themselves, and
-//! the details of trials ([`super::trial_details`]), are not kept in memory.
+//! Statistics of trials: those that the analysis keeps in memory for every trial of a study, the details that it keeps
+//! in temporary files and reads trial by trial, and sums over both.
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 

@@ -1,4 +1,4 @@
-//! Summary over recordings of how far wizard and assistants agree, and where they differ.
+//! Comparison of wizard and assistants over recordings: how far they agree, and where they differ.
 
 use serde::Serialize;
 

@@ -219,6 +219,8 @@ fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<Value
     }))
 }
 
+// JSON Schemas of the messages. Those for joints, frames and log are Foxglove's types, with the fields that are used.
+
 fn time_schema(description: &str) -> Value {
     json!({
         "type": "object",

@@ -1,5 +1,5 @@
-//! Report of a wizard's training, as text: the criterion, every false belief that led to errors with the signal that
-//! would have corrected it, and the score.
+//! A wizard's training: the record of a session, as the program saves it, and its report as text: the criterion, every
+//! false belief that led to errors with the signal that would have corrected it, and the score.
 
 use std::path::Path;
 

@@ -1,6 +1,9 @@
 //! Accuracy of the belief estimate measured by answers to freeze probes, as an estimate for all state aspects at all
 //! probes. Each question is weighted by the inverse of the probability with which it was drawn, so that using the
 //! estimate to draw questions does not make the estimate look better.
+//!
+//! The answers are also predicted by three baselines that use no gaze model, no memory and no presses: the usual
+//! content, the content last seen, and the true content.
 
 use serde::Serialize;
 

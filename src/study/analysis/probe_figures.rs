@@ -1,4 +1,5 @@
-//! Results of freeze probes: what participants knew, and how well the estimate predicted their beliefs.
+//! Results of freeze probes: what participants knew (by state aspect, by what happened at the aspect's location, by
+//! condition), the effect of assistance, and how well the estimate predicted beliefs.
 
 use serde::Serialize;
 

@@ -1,5 +1,5 @@
-//! A question of a freeze probe as the analysis needs it: what was true, estimated and (in simulations) believed when
-//! the trial froze; and the answer.
+//! The questions of a recording's freeze probes as the analysis needs them: what was true, estimated and (in
+//! simulations) believed when the trial froze; and the answer.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Summary of one recording: presses, errors, beliefs, signals, gaze.
+//! Summary of one recording (presses, errors, beliefs, signals, gaze), and the list of the recordings in a folder.
 
 use serde::Serialize;
 

@@ -1,4 +1,5 @@
-//! Summaries of trials and simulations that commands print. A number that cannot be computed is null in JSON.
+//! Summaries of trials and simulations that commands print, and times of orders and signals. A number that cannot be
+//! computed is null in JSON.
 
 use std::collections::BTreeMap;
 

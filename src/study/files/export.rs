@@ -258,6 +258,7 @@ fn remove_parts(folder: &Path) -> io::Result<()> {
     fs::remove_dir(folder)
 }
 
+/// The tables in a folder that this program wrote, by the data dictionary beside them.
 #[derive(Debug, Default)]
 pub struct ListedTables {
     columns: BTreeMap<Vec<u8>, Vec<Vec<u8>>>,

@@ -145,7 +145,8 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
     write().map_err(|reason| FileError::unwritable(path, reason))
 }
 
-/// Text in the first line of a frozen plan's file, before the digest.
+/// Text in the first line of a frozen plan's file, before the digest: SHA-256 of every byte after that line, so that it
+/// can be checked without this program (`tail -n +2 FILE | sha256sum`).
 const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";
 const FROZEN_REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchanged";
 

@@ -28,7 +28,9 @@ pub use crate::pass::tell::{describe, describe_arms};
 use crate::planned_trial::{RecordingCopy, missing_trials};
 use crate::study_part::AnalysedRecording;
 use crate::tables::communications::concepts;
-use crate::tables::participants::{AnswerRow, ParticipantRow, TutorialQuestionRow, answers, participants};
+use crate::tables::participants::{
+    AnswerRow, ParticipantRow, TutorialQuestionRow, TutorialSummary, answers, participants,
+};
 use crate::tables::probe_table::probes;
 use crate::trial_statistics::{DetailTotals, TrialStatistics, arrange};
 use crate::{parallel, report};
@@ -237,13 +239,14 @@ fn conclude(
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
-    let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
-    let figures = StudySummary::from_trials(&trials, details, &facts, practice).with_tutorials(&tutorials);
-    let figures = figures
-        .with_preregistration(preregistration)
-        .with_missing_trials(missing_trials(&plans))
-        .with_copies(copies)
-        .with_corrections(corrections);
+    let figures = StudySummary {
+        preregistration: frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans)),
+        missing_trials: missing_trials(&plans),
+        copies,
+        corrections,
+        tutorial: TutorialSummary::from_answers(&tutorials),
+        ..StudySummary::from_trials(&trials, details, &facts, practice)
+    };
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     export.remove_kept()?;

@@ -1,4 +1,5 @@
-//! Replays one recording of a study once, and reduces the recording to the statistics that the analysis keeps.
+//! Replays one recording of a study once, and reduces the recording to the statistics that the analysis keeps. Reads
+//! also the consent and the answers to tutorials, which can stand in practice recordings.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! Collects the rows of the CSV tables of events while a recording is replayed. The module [`crate::tables`]
-//! declares the tables' columns.
+//! Collects the rows of the CSV tables of events while a recording is replayed ([`crate::tables`] declares their
+//! columns), with the causes of a person's errors from raters' codes.
 
 use crate::analysis::offer_summary::TimedOffer;
 use crate::column::{CsvRow, CsvTable};

@@ -1,6 +1,15 @@
-//! Signals that communication concepts would have sent in an unassisted trial, for all values of the concepts'
-//! parameters in one replay. The planner runs once per decision; all costs of communication are then applied to the
-//! same benefits. A benefit has to be known only where it can exceed a cost at which its signal may be sent.
+//! What signals would do, and did, in simulated trials: those that concepts would have sent in an unassisted trial, and
+//! the usefulness of those that were sent.
+//!
+//! All values of the concepts' parameters are swept in one replay. The planner runs once per decision; all costs of
+//! communication are then applied to the same benefits. A benefit has to be known only where it can exceed a cost at
+//! which its signal may be sent.
+//!
+//! The usefulness of a signal is judged by a twin: the trial is run again from its recording; at every signal the run
+//! is copied, and the copy continues with the same random streams and without this or any later signal, until the false
+//! beliefs that the signal is about have ended. The signal is useful if the twin has more errors from these beliefs
+//! than the trial had until the beliefs ended there. A proposal of k presses is useful if the twin has more errors in
+//! its next k presses, whatever their cause, so that a prevented slip counts, too.
 
 use std::collections::VecDeque;
 use std::path::Path;

@@ -1,9 +1,11 @@
-//! Section of the study report on the effect of assistance.
+//! Sections of the study report on the effect of assistance, and on the comparison of arms.
 
 use maud::{Markup, Render, html};
 
-use crate::arm_analysis::{ArmAnalysis, ArmDeviation, StudyConditionSummary};
-use crate::arm_comparison::{GroupOrder, NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts};
+use crate::arm_comparison::{
+    ArmAnalysis, ArmDeviation, GroupOrder, NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts,
+    StudyConditionSummary,
+};
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;

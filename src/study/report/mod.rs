@@ -77,8 +77,8 @@ const GENERATOR: &str = "generator";
 const PARTICIPANTS: &str = "participants";
 const PROGRAM: &str = "tomcom ";
 
-/// Metadata fields of a report about these participants, as pairs (name, content). Codes of participants consist of
-/// letters, digits, - and _, as in tables.
+/// Metadata in the HTML head of a report, as pairs (name, content): program version and participants' codes, by which
+/// `tomcom forget` finds the reports about a participant. Codes consist of letters, digits, - and _, as in tables.
 fn head_fields<'a>(participants: impl Iterator<Item = &'a str>) -> [(&'static str, String); 2] {
     let participants: Vec<&str> = participants.collect::<BTreeSet<&str>>().into_iter().collect();
     [(GENERATOR, format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION"))), (PARTICIPANTS, participants.join(" "))]

@@ -1,4 +1,4 @@
-//! Section of the study report that shows the results beside those of the paper.
+//! Sections of the study report: results beside those of the paper, the wizard, the robot, people, situation awareness.
 
 use maud::{Markup, Render, html};
 

@@ -1,4 +1,5 @@
-//! Table of communications that were sent, and of those that a concept would have sent.
+//! Tables of what happens in a trial beside presses: communications that were sent or that a concept would have sent,
+//! offers, gaze, beliefs; and of the errors that concepts would have prevented.
 
 use crate::analysis::offer_summary::TimedOffer;
 use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};

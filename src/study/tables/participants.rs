@@ -1,4 +1,5 @@
-//! Table of participants, with the measures that are compared between their trials.
+//! Tables of participants (with the measures that are compared between their trials), of answers to questionnaires, and
+//! of answers to the questions of tutorials.
 
 use serde::{Deserialize, Serialize};
 

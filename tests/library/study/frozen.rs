@@ -106,8 +106,10 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
     let trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     let page = |recordings: &[RecordedPlan]| {
         let found = PreregistrationCheck::new("abc123".to_string(), &plan, recordings);
-        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0)
-            .with_preregistration(Some(found));
+        let summary = StudySummary {
+            preregistration: Some(found),
+            ..StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0)
+        };
         report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL)
     };
     let all = recordings(&plan);

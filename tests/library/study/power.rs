@@ -18,9 +18,9 @@ use tomcom_study::effect::{effect, pairs};
 use tomcom_study::files::pool_file::{check_table, write_table};
 use tomcom_study::files::pool_file::{read_pool, write_pool};
 use tomcom_study::pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
+use tomcom_study::power::{PowerRequest, measure};
 use tomcom_study::power::{PowerSummary, describe};
 use tomcom_study::power::{RejectionCount, RejectionShare, least_ratio, ratios};
-use tomcom_study::power_measurement::{PowerRequest, measure};
 use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::TrialStatistics;
 

@@ -1,9 +1,14 @@
-//! Maximises a noisy log likelihood within bounds ([`super::surface_search`]), with standard errors and intervals.
-//! Surfaces from scores lead to the maximum; the curvature of a response surface there and the scores give the standard
-//! errors.
+//! Search for the maximum of a noisy log likelihood within bounds, with standard errors and intervals. Each step leads
+//! to the maximum of a quadratic surface. Single comparisons of values are unreliable under noise; a surface averages
+//! the noise over its points and estimates the size of the noise.
 //!
-//! A variable whose maximum lies at a bound is held there. Such a variable gets one end of a profile likelihood interval
-//! instead of a standard error (Venzon and Moolgavkar 1988).
+//! Surfaces are of two kinds. Those from the scores of single presses ([`super::score_surface`], the method of scoring) take
+//! few points and lead to the maximum quickly, but noise that neighbouring points share counts as curvature. Those from
+//! the values alone ([`super::response_surface`]; Box and Wilson 1951) take many points, and their curvature is right in the
+//! mean: the search ends with them. The curvature of the last one and the scores give the standard errors.
+//!
+//! A variable whose maximum lies at a bound is held there. Such a variable gets one end of a profile likelihood
+//! interval instead of a standard error (Venzon and Moolgavkar 1988).
 
 use nalgebra::{DMatrix, DVector};
 

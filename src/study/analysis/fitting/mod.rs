@@ -3,7 +3,7 @@
 //! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if freeze probes are
 //! used, over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale
 //! and searched within bounds. The belief filter's random numbers make the log likelihood noisy by some nats, so the
-//! search uses a sequence of quadratic surfaces ([`surface_search`]): first from the scores of presses ([`score_surface`]),
+//! search uses a sequence of quadratic surfaces ([`ascent`]): first from the scores of presses ([`score_surface`]),
 //! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface and
 //! the outer products of the scores (the "sandwich" of Huber 1967 and White 1982). A parameter whose maximum lies at a
 //! bound, or whose interval reaches one, is not identified; the interval of such a parameter is one-sided.
@@ -396,8 +396,8 @@ fn describe_answers(answers: &ProbeAnswerFit) -> String {
     text
 }
 
-/// The human model whose `parameters` have the values of a point on the scale of the fit; other parameters as in
-/// `base`.
+/// The human model whose `parameters` have the values of a point on the unbounded scale of the fit; other parameters as
+/// in `base`.
 fn model_at(base: &HumanModel, parameters: &[HumanModelParameter], at: &[f64]) -> HumanModel {
     let mut model = base.clone();
     parameters.iter().zip(at).for_each(|(parameter, &scaled)| parameter.set(&mut model, parameter.from_scale(scaled)));

@@ -20,7 +20,7 @@ use tomcom_study::pass::describe_arms;
 use tomcom_study::pool::SimulationPool;
 use tomcom_study::pool::{self, PoolRequest};
 use tomcom_study::power::{self, PowerRequest};
-use tomcom_study::{arm_table, charts, power};
+use tomcom_study::{arm_table, charts};
 
 /// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";

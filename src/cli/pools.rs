@@ -15,12 +15,12 @@ use tomcom_session::files::file_error::FileError;
 use tomcom_session::headless::SimulationShard;
 use tomcom_session::settings::ArmKind;
 use tomcom_study::drawn_study::DrawnEffect;
-use tomcom_study::files::{pool_file, power_files};
+use tomcom_study::files::pool_file;
 use tomcom_study::pass::describe_arms;
+use tomcom_study::pool::SimulationPool;
 use tomcom_study::pool::{self, PoolRequest};
-use tomcom_study::power_measurement::{self, PowerRequest};
-use tomcom_study::simulation_pool::SimulationPool;
-use tomcom_study::{arm_table, power_answer, power_chart};
+use tomcom_study::power::{self, PowerRequest};
+use tomcom_study::{arm_table, charts};
 
 /// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
@@ -179,7 +179,7 @@ impl PoolArgs {
 
 /// Runs the command `tomcom power PLAN`.
 pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
-    args.csv.as_deref().map_or(Ok(()), power_files::check_table)?;
+    args.csv.as_deref().map_or(Ok(()), pool_file::check_table)?;
     args.picture.as_deref().map_or(Ok(()), |file| check_picture(file, "a picture of power"))?;
     let Some(pool) = args.pool.pool(!args.null, true)? else { return Ok(()) };
     let ratio = if args.null { Some(1.0) } else { args.effect };
@@ -188,16 +188,16 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     sizes.sort_unstable();
     sizes.dedup();
     let request = PowerRequest { sizes, studies: args.studies, effect };
-    let bar = progress(power_measurement::blocks(&request, &pool), "blocks of drawn studies");
-    let found = power_measurement::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
+    let bar = progress(power::blocks(&request, &pool), "blocks of drawn studies");
+    let found = power::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
     bar.finish_and_clear();
     if let Some(file) = &args.csv {
-        power_files::write_table(file, &found)?;
+        pool_file::write_table(file, &found)?;
     }
     if let Some(file) = &args.picture {
-        write_picture(file, &power_chart::power(&found))?;
+        write_picture(file, &charts::power(&found))?;
     }
-    print(args.pool.format, &found, || power_answer::describe(&found))
+    print(args.pool.format, &found, || power::describe(&found))
 }
 
 /// Runs the command `tomcom arms PLAN`.

@@ -27,10 +27,10 @@ use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{Event, Session, TimestampedEvent};
 use tomcom_study::analysis::likelihood::PressLogLikelihood;
-use tomcom_study::analysis::probe_collector::ProbeCollector;
-use tomcom_study::analysis::probe_figures::ProbeSummary;
-use tomcom_study::analysis::probe_lines;
-use tomcom_study::analysis::probe_record::ProbedTrial;
+
+use tomcom_study::analysis::probe_figures::{self, ProbeSummary};
+
+use tomcom_study::analysis::probe_record::{ProbeCollector, ProbedTrial};
 use tomcom_study::analysis::seen_contents::LastSeenContents;
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::parallel;
@@ -330,7 +330,7 @@ pub fn describe(check: &BeliefCheck) -> String {
     for aspect in &found.aspects {
         text.push_str(&format!("{:<32}{:>8}{:>8.3}\n", aspect.aspect, number(aspect.auc), aspect.wrong));
     }
-    text += &check.probes.as_ref().map_or(String::new(), probe_lines::describe);
+    text += &check.probes.as_ref().map_or(String::new(), probe_figures::describe);
     text + &legend(check)
 }
 

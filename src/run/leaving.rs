@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::options::SessionStart;
 use tomcom_core::base::text::count;
 use tomcom_session::Session;
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// How the wizard left a recording.

@@ -14,7 +14,7 @@ use crate::console::view::recordings_page::recording_targets;
 use crate::console::view::theme::Theme;
 use crate::edge::terminal::TerminalScreen;
 use tomcom_session::settings::ConsoleSpec;
-use tomcom_study::analysis::recording_table::RecordingList;
+use tomcom_study::analysis::recording_summary::RecordingList;
 
 /// Period of redrawing the list of recordings, in case the terminal's size changed.
 const REDRAW: Duration = Duration::from_millis(100);

@@ -12,7 +12,7 @@ use tomcom_core::base::text::count;
 use tomcom_session::files::KitchenWithSources;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
-use tomcom_study::files::frozen_file;
+use tomcom_study::files::pool_file;
 use tomcom_study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
@@ -97,7 +97,7 @@ pub fn freeze(
     let steps = progress.participants.iter().flat_map(|one| &one.steps);
     let recordings_before = steps.map(|step| step.recordings.len() as u64).sum();
     let frozen = FrozenPlan::new(study, [&kitchen.layout.text, &kitchen.recipes.text], recordings_before);
-    let digest = frozen_file::freeze(file, &frozen)?;
+    let digest = pool_file::freeze(file, &frozen)?;
     Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf().into() })
 }
 

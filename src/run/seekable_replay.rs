@@ -15,7 +15,7 @@ use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::standing::exclusion_status;
 
 /// Largest number of events in a chunk.

@@ -17,7 +17,7 @@ use tomcom_session::files::WallTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::wizard_log::false_belief_periods;
-use tomcom_study::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
+use tomcom_study::analysis::lesson_report::{WatchedRecording, WizardTrainingRecord};
 use tomcom_study::files::training;
 
 /// Request of `tomcom train`.

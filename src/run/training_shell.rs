@@ -27,9 +27,7 @@ use tomcom_session::event::SignalEndReason;
 use tomcom_session::history::wording;
 use tomcom_session::{Event, TimestampedEvent, apply};
 use tomcom_study::analysis::lesson_report;
-use tomcom_study::analysis::training_record::{
-    HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord,
-};
+use tomcom_study::analysis::lesson_report::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 
 /// The training console for one recording.
 pub(super) struct TrainingShell {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::trial_statistics::{QuestionnaireAnswer, TrialStatistics, mean};
+use crate::statistics::{mean, sample_sd};
+use crate::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::study_arm::StudyArm;
 
@@ -26,20 +27,13 @@ pub struct Acceptance {
     pub mean: Option<f64>,
 }
 
-/// Answers to one questionnaire item in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ItemSummary {
-    /// Name of the questionnaire to which the item belongs.
     pub questionnaire: String,
-    /// Identifier of the questionnaire item.
     pub item: String,
-    /// Statement of the questionnaire item, as participants read it.
     pub text: String,
-    /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
-    /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
-    /// Kind of answer that the item takes.
     pub kind: QuestionnaireItemKind,
     /// Condition of the trial after which the item was asked; `None` for items asked before the trials.
     pub condition: Option<StudyArm>,
@@ -47,9 +41,7 @@ pub struct ItemSummary {
     pub points: Option<u8>,
     /// Number of answers at each scale point, from 1, or with each option, in the order of the item's options.
     pub counts: Vec<u64>,
-    /// Texts of the item's answer options, in their order.
     pub options: Vec<String>,
-    /// Number of answers to the item.
     pub answers: u64,
     /// Number of participants' questionnaires in which the item was left without an answer.
     pub left_out: u64,
@@ -57,17 +49,13 @@ pub struct ItemSummary {
     pub mean: Option<f64>,
 }
 
-/// Scores of one questionnaire after trials of one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScoreSummary {
-    /// Name of the questionnaire that was scored.
     pub questionnaire: String,
     /// Condition of the trial after which the questionnaire was asked; `None` if the questionnaire was asked before the
     /// trials.
     pub condition: Option<StudyArm>,
-    /// Scores of the occasions on which a participant answered every item of the questionnaire.
     pub scores: Vec<f64>,
-    /// Mean of the questionnaire's scores.
     pub mean: Option<f64>,
     /// Standard deviation of the questionnaire's scores.
     pub sd: Option<f64>,
@@ -108,13 +96,6 @@ pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
         one.sd = sample_sd(&one.scores);
     }
     found
-}
-
-/// Standard deviation of a sample of values; `None` with fewer than two values.
-fn sample_sd(values: &[f64]) -> Option<f64> {
-    let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
-    let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
-    Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
 /// Answers to the items of all questionnaires by condition, in the order in which items and conditions occur.

@@ -6,28 +6,31 @@
 //! presses as offset is reported beside it. A mixed Poisson model would assume that errors are independent, but errors
 //! come in runs. Contrasts are ratios of rates; their p values are corrected together (Holm 1979). With three or more
 //! arms, a model with the effect of the previous arm (carry-over) is a sensitivity analysis.
+//!
+//! Each trial counts in the arm to which the plan assigned it, as randomised. A trial that was carried out otherwise is
+//! a deviation; the same comparison by the arms as carried out stands beside.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::arm_design::{ArmComparisonDesign, StudyArmTrial, pairs};
-use super::effect::{LEVEL, LeftOutParticipant};
-use super::group_orders::{GroupOrder, group_orders};
-use super::linear_mixed_model::{LinearMixedModel, MixedModelContrast};
-use super::negative_binomial_model::WaldContrast;
-use super::trial_statistics::TrialStatistics;
+use crate::effect::{AssistanceEffect, LEVEL, LeftOutParticipant, StudyMeasure, effect, pairs};
+use crate::linear_mixed_model::{LinearMixedModel, MixedModelContrast, MixedModelMeasurement};
+use crate::negative_binomial_model::{CountObservation, NegativeBinomialModel, WaldContrast};
+use crate::statistics::mean;
+use crate::tables::probe_table::PROBES_WRONG;
+use crate::tables::trials::measures;
+use crate::trial_statistics::{TrialStatistics, TrialTotals};
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
+use tomcom_session::settings::WizardVisibility;
 use tomcom_session::study_arm::StudyArm;
 
-/// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmComparison {
     /// Primary outcome: the event whose rate is compared between study arms.
     pub outcome: PrimaryOutcome,
-    /// Number of participants in the comparison of arms.
     pub participants: usize,
-    /// Number of trials in the comparison of arms.
     pub trials: usize,
-    /// Participants with recordings whom the comparison leaves out.
     pub left_out: Vec<LeftOutParticipant>,
     /// Numbers of trials, events and presses of each arm, in the order of tables.
     pub arms: Vec<StudyArmCounts>,
@@ -40,22 +43,15 @@ pub struct StudyArmComparison {
     pub with_carry_over: Vec<StudyArmContrast>,
     /// Comparison by the mixed negative binomial model; null where the model cannot be estimated.
     pub negative_binomial: Option<NegativeBinomialComparison>,
-    /// Non-inferiority of the assistant's arms to the wizard's.
     pub non_inferiority: Vec<NonInferiority>,
-    /// Starting groups with their orders of conditions.
     pub groups: Vec<GroupOrder>,
 }
 
-/// Counts of trials, events and presses of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmCounts {
-    /// Study arm of the counts.
     pub arm: StudyArm,
-    /// Number of trials in this study arm.
     pub trials: usize,
-    /// Number of events of the primary outcome in this study arm.
     pub events: u64,
-    /// Number of the human's presses in this study arm.
     pub presses: u64,
 }
 
@@ -66,25 +62,18 @@ impl StudyArmCounts {
     }
 }
 
-/// Comparison of one study arm with another in the primary model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmContrast {
-    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Study arm with which `arm` is compared.
     pub against: StudyArm,
-    /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
     /// 95 % confidence interval of the ratio of rates.
     pub interval: [f64; 2],
-    /// p value after Holm's correction over all contrasts.
     pub p_holm: f64,
-    /// Contrast (difference) of the log rates, with its t test.
     #[serde(flatten)]
     pub contrast: MixedModelContrast,
 }
 
-/// Comparison of study arms by the mixed negative binomial model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NegativeBinomialComparison {
     /// Standard deviation of log rates between participants.
@@ -96,18 +85,12 @@ pub struct NegativeBinomialComparison {
     pub contrasts: Vec<NegativeBinomialContrast>,
 }
 
-/// Comparison of one study arm with another in the negative binomial model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NegativeBinomialContrast {
-    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Study arm with which `arm` is compared.
     pub against: StudyArm,
-    /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
-    /// p value after Holm's correction over all contrasts of the negative binomial model.
     pub p_holm: f64,
-    /// Contrast (difference) of the log rates, with its Wald test.
     #[serde(flatten)]
     pub contrast: WaldContrast,
 }
@@ -115,11 +98,8 @@ pub struct NegativeBinomialContrast {
 /// Test whether an arm of the assistant is not worse than the wizard (non-inferiority).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NonInferiority {
-    /// Study arm of the assistant.
     pub arm: StudyArm,
-    /// Study arm of the wizard, with which the assistant's arm is compared.
     pub against: StudyArm,
-    /// Largest ratio of rates that is acceptable (non-inferiority margin).
     pub margin: f64,
     /// Ratio of the assistant's rate of the primary outcome to the wizard's.
     pub ratio: f64,
@@ -178,7 +158,6 @@ fn counted(trials: &[TrialStatistics], outcome: PrimaryOutcome) -> (Vec<StudyArm
     (rows, left_out)
 }
 
-/// Contrasts of the primary model, with Holm's correction.
 fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<StudyArmContrast> {
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
@@ -186,7 +165,7 @@ fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<Stud
         let interval = contrast.interval(LEVEL).map(f64::exp);
         Some(StudyArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
     };
-    let mut all: Vec<StudyArmContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let mut all: Vec<StudyArmContrast> = arm_pairs(&design.arms).into_iter().filter_map(contrast).collect();
     let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
     all.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
     all
@@ -199,7 +178,8 @@ fn count_comparison(design: &ArmComparisonDesign) -> Option<NegativeBinomialComp
         let (arm, against) = pair;
         Some(NegativeBinomialContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
     };
-    let mut contrasts: Vec<NegativeBinomialContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let mut contrasts: Vec<NegativeBinomialContrast> =
+        arm_pairs(&design.arms).into_iter().filter_map(contrast).collect();
     let corrected = holm(&contrasts.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
     contrasts.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
     let size = Some(model.size).filter(|size| size.is_finite());
@@ -221,7 +201,7 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
 
 /// Contrasts of the primary model alone, for trials ordered by participant and period; empty where the model cannot be
 /// estimated.
-pub fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
+pub(crate) fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
     let design = ArmComparisonDesign::new(trials);
     let model = if design.is_within() { design.linear(false) } else { None };
     model.map_or_else(Vec::new, |model| contrasts(&design, &model))
@@ -239,14 +219,14 @@ pub fn compare_arms(trials: &[TrialStatistics]) -> Option<StudyArmComparison> {
 
 /// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups, and
 /// leaves nobody out.
-pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
+pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
     let design = ArmComparisonDesign::new(trials);
     if !design.is_within() {
         return None;
     }
     let model = design.linear(false)?;
     let found = contrasts(&design, &model);
-    let with_carry_over = match design.arms().len() {
+    let with_carry_over = match design.arms.len() {
         0..=2 => Vec::new(),
         _ => design.linear(true).map_or_else(Vec::new, |model| contrasts(&design, &model)),
     };
@@ -262,7 +242,7 @@ pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<Stu
         holds: one.interval[1] < aims.margin,
     });
     let outcome_of = |arm: StudyArm| {
-        let own = || design.trials().iter().filter(|trial| trial.arm == arm);
+        let own = || design.trials.iter().filter(|trial| trial.arm == arm);
         StudyArmCounts {
             arm,
             trials: own().count(),
@@ -272,10 +252,10 @@ pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<Stu
     };
     Some(StudyArmComparison {
         outcome: aims.outcome,
-        participants: design.trials().last().map_or(0, |trial| trial.participant + 1),
-        trials: design.trials().len(),
+        participants: design.trials.last().map_or(0, |trial| trial.participant + 1),
+        trials: design.trials.len(),
         left_out: Vec::new(),
-        arms: design.arms().iter().copied().map(outcome_of).collect(),
+        arms: design.arms.iter().copied().map(outcome_of).collect(),
         standard_deviations: [model.between.sqrt(), model.within.sqrt()],
         non_inferiority: non_inferiority.collect(),
         contrasts: found,
@@ -283,4 +263,242 @@ pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<Stu
         negative_binomial: count_comparison(&design),
         groups: Vec::new(),
     })
+}
+
+/// A trial in the comparison of arms: participant, period, arm, and counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StudyArmTrial {
+    pub participant: usize,
+    /// Number of the trial in the participant's series, from 1.
+    pub period: u32,
+    pub arm: StudyArm,
+    pub events: u64,
+    /// Number of the human's presses in the trial; above 0.
+    pub presses: u64,
+}
+
+impl StudyArmTrial {
+    /// Dependent variable of the primary model: log((events + 0.5) / presses).
+    fn log_rate(&self) -> f64 {
+        ((self.events as f64 + 0.5) / self.presses as f64).ln()
+    }
+}
+
+/// Design of a comparison of arms: one row of effects per trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmComparisonDesign {
+    trials: Vec<StudyArmTrial>,
+    arms: Vec<StudyArm>,
+    periods: Vec<u32>,
+}
+
+/// The pairs of study arms that are compared: every arm with the one without signals, and every other one with the
+/// wizard's. If neither exists, all others are compared with the first arm.
+pub(crate) fn arm_pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
+    let mut pairs = Vec::new();
+    for against in [StudyArm::None, StudyArm::Wizard] {
+        let others = arms.iter().copied().filter(|arm| *arm != against && *arm != StudyArm::None);
+        pairs.extend(others.filter(|_| arms.contains(&against)).map(|arm| (arm, against)));
+    }
+    if pairs.is_empty() {
+        pairs.extend(arms.iter().skip(1).map(|arm| (*arm, arms[0])));
+    }
+    pairs
+}
+
+impl ArmComparisonDesign {
+    /// The design for these trials, which must be ordered by participant and period.
+    pub fn new(trials: Vec<StudyArmTrial>) -> ArmComparisonDesign {
+        let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
+        let arms = StudyArm::ALL.into_iter().filter(has).collect();
+        let mut periods: Vec<u32> = trials.iter().map(|trial| trial.period).collect();
+        periods.sort_unstable();
+        periods.dedup();
+        ArmComparisonDesign { trials, arms, periods }
+    }
+
+    fn is_within(&self) -> bool {
+        self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
+    }
+
+    /// The study arm of the participant's trial before the one with this index.
+    fn before(&self, index: usize) -> Option<StudyArm> {
+        let before = self.trials.get(index.checked_sub(1)?)?;
+        (before.participant == self.trials[index].participant).then_some(before.arm)
+    }
+
+    /// Row of fixed effects of a trial in the design matrix: intercept, arms without the first, periods without the
+    /// first and, with `carry_over`, previous arms without the first.
+    fn effects(&self, index: usize, carry_over: bool) -> Vec<f64> {
+        let (trial, before) = (&self.trials[index], self.before(index));
+        let is = |holds: bool| f64::from(u8::from(holds));
+        let arms = self.arms.iter().skip(1).map(|arm| is(trial.arm == *arm));
+        let periods = self.periods.iter().skip(1).map(|period| is(trial.period == *period));
+        let carried = self.arms.iter().skip(1).filter(|_| carry_over).map(|arm| is(before == Some(*arm)));
+        std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
+    }
+
+    /// The primary (linear mixed) model, with `carry_over` including the effect of the previous arm; `None` where the
+    /// model cannot be estimated.
+    pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
+        let measurement = |(index, trial): (usize, &StudyArmTrial)| MixedModelMeasurement {
+            participant: trial.participant,
+            effects: self.effects(index, carry_over),
+            value: trial.log_rate(),
+        };
+        LinearMixedModel::fit(&self.trials.iter().enumerate().map(measurement).collect::<Vec<_>>())
+    }
+
+    /// The negative binomial model of counts; `None` where the model cannot be estimated.
+    pub fn counts(&self) -> Option<NegativeBinomialModel> {
+        let count = |(index, trial): (usize, &StudyArmTrial)| CountObservation {
+            participant: trial.participant,
+            effects: self.effects(index, false),
+            count: trial.events,
+            exposure: trial.presses as f64,
+        };
+        NegativeBinomialModel::fit(&self.trials.iter().enumerate().map(count).collect::<Vec<_>>())
+    }
+
+    /// Weights of the fixed effects for the difference between two arms, in a model with `size` effects.
+    pub fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
+        let mut weights = vec![0.0; size];
+        for (place, other) in self.arms.iter().enumerate().skip(1) {
+            weights[place] = f64::from(i8::from(*other == arm) - i8::from(*other == against));
+        }
+        weights
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct GroupOrder {
+    /// Name of the starting group, with a letter for each trial: "BAC".
+    pub group: String,
+    /// Planned condition of each trial of the group; `None` for a missing trial.
+    pub order: Vec<Option<StudyArm>>,
+    pub participants: usize,
+}
+
+/// The starting groups of the trials that the analysis includes, sorted by name.
+fn group_orders(trials: &[TrialStatistics]) -> Vec<GroupOrder> {
+    let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
+    for trial in trials.iter().filter(|trial| trial.counts()) {
+        let (Some(group), Some(period)) = (&trial.group, trial.period) else { continue };
+        let (order, participants) = groups.entry(group).or_default();
+        order.insert(period, trial.planned_arm);
+        participants.insert(&trial.participant);
+    }
+    let one = |(group, (order, participants)): (&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>))| GroupOrder {
+        group: group.to_string(),
+        order: (1..=group.chars().count() as u32).map(|period| order.get(&period).copied()).collect(),
+        participants: participants.len(),
+    };
+    groups.into_iter().map(one).collect()
+}
+
+impl GroupOrder {
+    /// The starting group as text: "BAC: wizard, unassisted, ToM-Com (2)".
+    pub fn describe(&self) -> String {
+        let order: Vec<&str> = self.order.iter().map(|arm| arm.map_or("?", StudyArm::title)).collect();
+        format!("{}: {} ({})", self.group, order.join(", "), self.participants)
+    }
+}
+
+/// A trial that was carried out in another arm than the one to which the plan assigned it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ArmDeviation {
+    pub recording: String,
+    pub participant: String,
+    pub planned: StudyArm,
+    pub carried_out: StudyArm,
+    /// Whether the wizard was shown during the trial what the assistants would send.
+    pub unblinded: bool,
+}
+
+impl ArmDeviation {
+    /// The deviation of a trial; `None` if the trial was carried out as planned.
+    pub fn from_trial(trial: &TrialStatistics) -> Option<ArmDeviation> {
+        let (planned, carried_out) = (trial.planned_arm, trial.study_arm);
+        (planned != carried_out).then(|| ArmDeviation {
+            recording: trial.recording.clone(),
+            participant: trial.participant.clone(),
+            planned,
+            carried_out,
+            unblinded: carried_out == StudyArm::WizardWithAdvice
+                && trial.wizard_sees != WizardVisibility::Recommendation,
+        })
+    }
+
+    /// The deviation in words.
+    pub fn describe(&self) -> String {
+        let why = if self.unblinded { ", since the wizard was shown what the assistants would send" } else { "" };
+        format!("{}: planned {}, carried out {}{why}", self.recording, self.planned.title(), self.carried_out.title())
+    }
+}
+
+/// Comparison of the conditions of a study: rates by condition, the effect of assistance, and the comparison of arms.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmAnalysis {
+    pub conditions: Vec<StudyConditionSummary>,
+    pub effects: Vec<AssistanceEffect>,
+    /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
+    /// arms.
+    pub arms: Option<StudyArmComparison>,
+}
+
+impl ArmAnalysis {
+    /// The comparison by planned arms; `trials` must be ordered by participant and period. `seed` seeds the random
+    /// permutations.
+    pub fn from_trials(trials: &[TrialStatistics], seed: u64) -> ArmAnalysis {
+        let effects = compared(trials).map(|measure| effect(measure, pairs(trials, measure), seed)).collect();
+        ArmAnalysis { conditions: conditions(trials), effects, arms: compare_arms(trials) }
+    }
+
+    pub fn as_carried_out(trials: &[TrialStatistics], seed: u64) -> ArmAnalysis {
+        let moved = trials.iter().map(|trial| TrialStatistics { planned_arm: trial.study_arm, ..trial.clone() });
+        ArmAnalysis::from_trials(&moved.collect::<Vec<_>>(), seed)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudyConditionSummary {
+    /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
+    pub condition: StudyArm,
+    pub trials: u64,
+    #[serde(flatten)]
+    pub totals: TrialTotals,
+    pub mean_errors: Option<f64>,
+    pub mean_order_s: Option<f64>,
+    /// Mean over trials of the summed regret of both agents per served order.
+    pub mean_additional_presses_per_order: Option<f64>,
+    pub mean_press_s: Option<f64>,
+    /// Number of error sequences by their length: sequences with 1, 2, 3, … errors.
+    pub sequence_lengths: Vec<u64>,
+}
+
+/// The measures that are compared in these trials; those of freeze probes only if there are probes.
+fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
+    let has_probes = trials.iter().any(|trial| trial.probes.is_some());
+    measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
+}
+
+fn conditions(trials: &[TrialStatistics]) -> Vec<StudyConditionSummary> {
+    let of = |condition: StudyArm| {
+        let is_own = |trial: &&TrialStatistics| trial.counts() && trial.planned_arm == condition;
+        let trials: Vec<&TrialStatistics> = trials.iter().filter(is_own).collect();
+        let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
+        let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
+        lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
+        (!trials.is_empty()).then(|| StudyConditionSummary {
+            condition,
+            trials: trials.len() as u64,
+            totals: TrialTotals::from_trials(&trials),
+            mean_errors: mean(trials.iter().map(|trial| trial.errors as f64)),
+            mean_order_s: mean(trials.iter().filter_map(|trial| trial.order_s)),
+            mean_additional_presses_per_order: mean(trials.iter().filter_map(|one| one.additional_presses_per_order)),
+            mean_press_s: mean(trials.iter().filter_map(|trial| trial.press_s)),
+            sequence_lengths,
+        })
+    };
+    StudyArm::ALL.into_iter().filter_map(of).collect()
 }

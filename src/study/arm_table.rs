@@ -3,10 +3,9 @@
 
 use serde::Serialize;
 
-use super::arm_comparison::{StudyArmComparison, compare_counts};
-use super::arm_design::StudyArmTrial;
-use super::simulation_pool::{PoolTrialCounts, SimulationPool};
 use crate::analysis::trial_bootstrap::interval_where_known;
+use crate::arm_comparison::{StudyArmComparison, StudyArmTrial, compare_counts};
+use crate::pool::{PoolTrialCounts, SimulationPool};
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
 use tomcom_session::study_arm::StudyArm;
 
@@ -25,9 +24,7 @@ pub struct StudyArmStatistic {
 /// Row of the table of study arms: rates of one arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmRow {
-    /// Study arm of the row.
     pub arm: StudyArm,
-    /// Number of trials of the study arm.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: StudyArmStatistic,
@@ -35,26 +32,19 @@ pub struct StudyArmRow {
     pub related_per_100: StudyArmStatistic,
     /// Mean number of errors in a sequence that follows from the same false belief.
     pub sequence_length: StudyArmStatistic,
-    /// Orders served per minute of the arm's trials.
     pub orders_per_minute: StudyArmStatistic,
     /// Signals per 100 presses of the human.
     pub signals_per_100: StudyArmStatistic,
-    /// Share of the arm's trial time with a signal on the display.
     pub signal_time: StudyArmStatistic,
 }
 
 /// Comparison of all study arms in simulated trials: the output of `tomcom arms`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmTable {
-    /// Name of the study plan.
     pub plan: String,
-    /// Checksum of the study plan and settings with this seed.
     pub digest: String,
-    /// Version of the program that simulated the trials.
     pub program: String,
-    /// Seed of all random numbers of the simulation.
     pub seed: u64,
-    /// Number of simulated participants.
     pub participants: u32,
     /// One row per study arm, in the order of tables.
     pub arms: Vec<StudyArmRow>,
@@ -101,7 +91,6 @@ fn per_100(trials: &[&PoolTrialCounts], number: fn(&PoolTrialCounts) -> u64) -> 
 }
 
 impl StudyArmTable {
-    /// The table for a pool whose trials were simulated in the arms of its plan.
     pub fn from_pool(pool: &SimulationPool) -> StudyArmTable {
         let header = &pool.header;
         let row = |arm: StudyArm| {
@@ -123,7 +112,6 @@ impl StudyArmTable {
     }
 }
 
-/// The pool's trials in their study arms, with counts of the primary outcome, for the comparison of arms.
 fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<StudyArmTrial> {
     let persons = pool.persons.iter().enumerate();
     let trials = persons.flat_map(|(participant, person)| {
@@ -136,7 +124,6 @@ fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<StudyArmTrial>
     trials.collect()
 }
 
-/// The table of arms as text, in Markdown.
 pub fn describe(table: &StudyArmTable) -> String {
     let mut text = format!(
         "plan {} ({}), seed {}: {} simulated participants, each with a trial in every condition\n\n",

@@ -5,15 +5,20 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::gathered::GatheredRecordings;
-use super::kept_cost::KeptCost;
-use super::{consents, standing};
-use crate::analysis::bids::{
-    BidsFile, BidsLabelMap, BidsParticipant, BidsRowCounts, BidsSessionRow, LongTable, LongTableFacts, PressOutcome,
-    QuestionnairePhenotypes, RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
+use crate::analysis::bids::dataset::{
+    BidsLabelMap, BidsParticipant, BidsSession, QuestionnairePhenotypes, dataset_files, letters_and_digits,
+    session_label, sessions_files,
 };
+use crate::analysis::bids::recording_tables::{BidsRowCounts, PressOutcome, RecordingTables};
+use crate::analysis::bids::sample_rows::{LongTable, LongTableFacts};
+use crate::analysis::bids::tsv::BidsFile;
 use crate::files::bids_tree::BidsTree;
+use crate::gathered::GatheredRecordings;
+use crate::kept_cost::KeptCost;
+use crate::pass::reading;
 use crate::planned_trial::{RecordingCopy, copies_in_words};
+use crate::standing;
+use crate::trial_statistics::kind_name;
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
 use tomcom_core::kitchen::KitchenChange;
@@ -22,34 +27,24 @@ use tomcom_session::event::Event;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogEnding, LogReader};
 use tomcom_session::protocol::ProtocolEvent;
-use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{LogHeader, apply};
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
-    /// Folder of the BIDS data set.
     pub folder: PathText,
-    /// Participants' codes that are no valid BIDS labels, each with the label that replaces the code.
     pub changed_codes: Vec<(String, String)>,
-    /// Recordings that are copies of others, and are not exported.
     pub copies: Vec<RecordingCopy>,
-    /// The exported recordings with their places in the data set.
     pub recordings: Vec<BidsRecording>,
-    /// Number of exported tables with answers to questionnaires.
     pub questionnaires: usize,
-    /// Whether text that somebody typed was exported.
     pub words: bool,
 }
 
-/// An exported recording with its place in the data set.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsRecording {
-    /// Folder of the recording.
     pub recording: PathText,
     /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
-    /// Numbers of rows in the recording's BIDS tables.
     pub rows: BidsRowCounts,
 }
 
@@ -74,7 +69,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
     let (mut cost, mut phenotypes) = (KeptCost::default(), QuestionnairePhenotypes::default());
-    let mut sessions: BTreeMap<String, Vec<BidsSessionRow>> = BTreeMap::new();
+    let mut sessions: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut told = Vec::new();
     for one in &planned {
         let (row, recording) = read(one, with_words, &mut cost, &mut phenotypes, &tree)?;
@@ -127,14 +122,13 @@ fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabelMap) -> Vec<Plan
     all.into_iter().map(place).collect()
 }
 
-/// Reads a recording and writes its files. Returns its row of the table of sessions.
 fn read(
     one: &Planned,
     with_words: bool,
     cost: &mut KeptCost,
     phenotypes: &mut QuestionnairePhenotypes,
     tree: &BidsTree,
-) -> FileResult<(BidsSessionRow, BidsRecording)> {
+) -> FileResult<(String, BidsRecording)> {
     let mut log = LogReader::open(&one.recording)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
@@ -171,8 +165,16 @@ fn read(
     let counts = standing::exclusion_status(&session, &log)?.counts();
     let is_complete = log.ending() == LogEnding::Closed;
     let name = one.recording.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let labels = (one.session.as_str(), name.as_str());
-    let row = BidsSessionRow::new(labels, &one.header, &session, tables.ended(), [is_complete, counts]);
+    let row = BidsSession {
+        label: &one.session,
+        recording: &name,
+        header: &one.header,
+        session: &session,
+        ended: tables.ended,
+        is_complete,
+        counts,
+    };
+    let row = row.line();
     let mut facts = [LongTableFacts::default(); 3];
     for (facts, (_, file)) in facts.iter_mut().zip(long) {
         *facts = file.finish()?;
@@ -188,7 +190,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
     let mut rows: Vec<BidsParticipant> = Vec::new();
     for one in planned {
         let spec = &one.header.session;
-        let consent = consents::read(&one.recording)?;
+        let consent = reading::consent(&one.recording)?;
         let consent = consent.map(|given| [Some(given.place().to_string()), given.started, Some(given.digest)]);
         match rows.iter_mut().find(|row| row.label == one.label) {
             Some(row) => {
@@ -201,12 +203,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
             None => rows.push(BidsParticipant {
                 label: one.label.clone(),
                 code: spec.participant.code.clone(),
-                kind: match spec.participant.kind {
-                    ParticipantKind::Simulated => "simulated",
-                    ParticipantKind::Keyboard => "keyboard",
-                    ParticipantKind::Display => "display",
-                }
-                .to_string(),
+                kind: kind_name(spec.participant.kind).to_string(),
                 group: spec.step.as_ref().map(|step| step.group.clone()),
                 recordings: 1,
                 consent: consent.unwrap_or_default(),
@@ -216,7 +213,6 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
     Ok(rows)
 }
 
-/// Summary of the BIDS export as text for the terminal.
 pub fn describe(summary: &BidsSummary) -> String {
     let rows = |of: fn(&BidsRowCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
     let line = |one: &BidsRecording| format!("  {} from {}\n", one.place, one.recording.display());

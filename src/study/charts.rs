@@ -1,22 +1,26 @@
-//! Charts of the study report, modelled on the figures of the paper.
+//! Charts of the study report, modelled on the figures of the paper; of the ratios between arms, and of power.
 
 use maud::Markup;
 
-use super::arm_analysis::StudyConditionSummary;
-use super::effect::{TrialPair, pairs};
-use super::figures::StudySummary;
-use super::roc::{ConceptRocCurve, RocPoint};
-use super::svg::{PlotAxis, SvgChart, minus};
-use super::tables::trials::HEADLINE;
-use super::trial_statistics::{TrialStatistics, mean};
 use crate::analysis::probe_figures::ProbeSummary;
+use crate::arm_comparison::{StudyArmContrast, StudyConditionSummary};
+use crate::drawn_study::{SignificanceTestMethod, reference};
+use crate::effect::{TrialPair, pairs};
+use crate::figures::StudySummary;
+use crate::power::{ALPHA, PowerSummary, WANTED};
+use crate::report::STYLE;
+use crate::roc::{ConceptRocCurve, RocPoint};
+use crate::statistics::mean;
+use crate::svg::{PlotAxis, SvgChart, document, minus};
+use crate::tables::trials::HEADLINE;
+use crate::trial_statistics::TrialStatistics;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::detection::CalibrationBin;
 use tomcom_session::study_arm::StudyArm;
 
 /// Chart of errors by condition and participant (after the paper's figure, top left); lines join the two trials of a
 /// participant, means are black.
-pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
+pub(crate) fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE).pairs;
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
     if pairs.is_empty() {
@@ -46,7 +50,7 @@ pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
 
 /// Chart of improvements from the first to the second trial by starting group (after the paper's figure, top right);
 /// the difference of the groups' means is twice the effect of assistance.
-pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
+pub(crate) fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE).pairs;
     if pairs.is_empty() {
         return None;
@@ -73,7 +77,7 @@ pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
 
 /// Chart of the time between presses of the human, in seconds, by trial and condition (after the paper's figure,
 /// bottom); this time indicates experience.
-pub fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
+pub(crate) fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
     let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
     let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
         let is_it = |trial: &&TrialStatistics| {
@@ -108,8 +112,7 @@ pub fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
 /// Length of the longest error sequences that have a bar of their own; longer sequences share the last bar.
 const LONGEST_BAR: usize = 12;
 
-/// Chart of the number of error sequences per trial by length and condition.
-pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> {
+pub(crate) fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> {
     let assisted = |one: &&StudyConditionSummary| one.condition != StudyArm::None;
     let per_trial = |is: &dyn Fn(&&StudyConditionSummary) -> bool| -> Vec<f64> {
         let found: Vec<&StudyConditionSummary> = conditions.iter().filter(is).collect();
@@ -159,10 +162,10 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
 }
 
 /// Upper end of the axis for signals per 100 human presses; points beyond this end are not drawn.
-pub const MOST_SIGNALS: f64 = 25.0;
+pub(crate) const MOST_SIGNALS: f64 = 25.0;
 
 /// Chart of prevented errors against signals per 100 human presses.
-pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
+pub(crate) fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     figures.roc.iter().flat_map(|roc| &roc.points).next()?;
     let x = PlotAxis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
     let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
@@ -173,7 +176,6 @@ pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     Some(chart.finish("Errors prevented by number of signals"))
 }
 
-/// Draws the points of a concept's curve with x up to `to`, and the line through these points.
 fn curve(chart: &mut SvgChart, roc: &ConceptRocCurve, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
     let class = class_of(roc.concept);
     let is_drawn = |point: &&RocPoint| of(point).0 <= to;
@@ -189,7 +191,7 @@ fn curve(chart: &mut SvgChart, roc: &ConceptRocCurve, to: f64, of: fn(&RocPoint)
 
 /// Calibration chart of the belief estimate, by answers to freeze probes; `None` if no predicted probability is in the
 /// calibrated range.
-pub fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
+pub(crate) fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
     let filled: Vec<&CalibrationBin> = found.detection.calibration.bins.iter().filter(|bin| bin.n > 0).collect();
     filled.first()?;
     let x = PlotAxis::between("predicted probability of a false belief", 0.0, 1.0);
@@ -205,8 +207,7 @@ pub fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
     Some(chart.finish("Calibration of the estimate by answers to probes"))
 }
 
-/// CSS class with the colour of the communication concept.
-pub fn class_of(concept: ConceptName) -> &'static str {
+fn class_of(concept: ConceptName) -> &'static str {
     match concept {
         ConceptName::TomCom => "tom-com",
         ConceptName::Tom => "tom",
@@ -226,4 +227,103 @@ fn percent(rate: f64) -> f64 {
 /// Horizontal offset of the point with this index, so that points of equal height do not cover each other.
 fn aside(index: usize) -> f64 {
     [0.0, -0.06, 0.06, -0.12, 0.12, -0.18, 0.18][index % 7]
+}
+
+/// Largest ratio that is drawn to scale; longer intervals end at the border of the chart.
+const LARGEST: f64 = 4.0;
+
+/// Chart of ratios of rates with their confidence intervals; a line marks equal rates.
+pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
+    if contrasts.is_empty() {
+        return None;
+    }
+    let names: Vec<String> =
+        contrasts.iter().map(|one| format!("{}\nto {}", one.arm.title(), one.against.title())).collect();
+    let ends = contrasts.iter().flat_map(|one| one.interval).map(|end| end.min(LARGEST));
+    let width = 160.0 + 110.0 * contrasts.len() as f64;
+    let mut chart =
+        SvgChart::new(width, 320.0, PlotAxis::named(&names), PlotAxis::over("ratio of rates", ends.chain([1.0])));
+    chart.line("thin", &[(-0.5, 1.0), (contrasts.len() as f64 - 0.5, 1.0)]);
+    for (x, one) in contrasts.iter().enumerate() {
+        let x = x as f64;
+        let [low, high] = one.interval.map(|end| end.min(LARGEST));
+        chart.line("mean", &[(x, low), (x, high)]);
+        let title = format!("{} to {}: {:.2}", one.arm.title(), one.against.title(), one.ratio);
+        chart.point("assisted", x, one.ratio.min(LARGEST), &title);
+        chart.words("strong", x + 0.06, one.ratio.min(LARGEST), true, &format!("{:.2}", one.ratio));
+    }
+    Some(chart.finish("Ratio of rates between conditions, with intervals of 95 %"))
+}
+
+/// Size of the chart, in pixels.
+const SIZE: [f64; 2] = [720.0, 420.0];
+/// Least distance between the names of lines at the chart's border, as a share of the chart's height.
+const APART: f64 = 0.05;
+
+/// The chart of power: a line with a confidence band for each test against the reference arm.
+pub fn power(found: &PowerSummary) -> String {
+    let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
+    let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
+    let mut names: Vec<(f64, &str)> = Vec::new();
+    let has_anova = found.needed.iter().any(|needed| needed.test.method == SignificanceTestMethod::MixedAnova);
+    let (title, label, line, most) = match found.is_null() {
+        true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
+        false => ("Power by number of participants", "power", WANTED, 1.0),
+    };
+    let x = PlotAxis::between("participants", 0.0, 1.4 * last);
+    let mut chart = SvgChart::new(SIZE[0], SIZE[1], x, PlotAxis::between(label, 0.0, most));
+    chart.line("thin ideal", &[(first, line), (last, line)]);
+    for (index, needed) in found.needed.iter().enumerate() {
+        let test = needed.test;
+        if test.against != reference(&found.conditions) {
+            continue;
+        }
+        let class = class(test.arm, test.method);
+        let shares: Vec<[f64; 3]> = found
+            .sizes
+            .iter()
+            .map(|size| size.tests[index].found)
+            .map(|one| [one.share, one.interval[0], one.interval[1]].map(|share| share.min(most)))
+            .collect();
+        let points: Vec<(f64, f64)> = sizes.iter().copied().zip(shares.iter().map(|share| share[0])).collect();
+        let band: Vec<[f64; 3]> = sizes.iter().zip(&shares).map(|(x, share)| [*x, share[1], share[2]]).collect();
+        chart.band(class, &band);
+        chart.line(class, &points);
+        for (x, share) in &points {
+            chart.point(class, *x, *share, &format!("{}, {x} participants: {share:.3}", test.title()));
+        }
+        let name = match (test.method, has_anova) {
+            (SignificanceTestMethod::MixedAnova, _) => "paper's test",
+            (_, true) => "mixed model",
+            (_, false) => test.arm.name(),
+        };
+        names.extend(points.last().map(|(_, share)| (*share, name)));
+    }
+    for (y, name) in apart(names, APART * most, most) {
+        chart.words("strong", last, y, true, name);
+    }
+    document(&chart.finish(title), STYLE)
+}
+
+/// Heights of the names at the ends of lines, moved at least `gap` apart and at most `most` high.
+fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
+    names.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut highest = most;
+    for (y, _) in &mut names {
+        *y = y.min(highest);
+        highest = *y - gap;
+    }
+    names
+}
+
+/// CSS class that gives a test its colour; the paper's test and the mixed model have different colours, and so have
+/// arms.
+fn class(arm: StudyArm, method: SignificanceTestMethod) -> &'static str {
+    match (method, arm) {
+        (SignificanceTestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",
+        (_, StudyArm::None | StudyArm::Wizard) => "second",
+        (_, StudyArm::TomCom) => "tom-com",
+        (_, StudyArm::Tom) => "tom",
+        (_, StudyArm::Dev) => "dev",
+    }
 }

@@ -12,7 +12,6 @@ use tomcom_session::log::rater_codes::{self, RaterCodeRow};
 use tomcom_session::log::{RecordingLock, RecordingWriteError, consensus_file};
 use tomcom_session::person_code;
 
-/// Advice in error messages on how the table names a rater.
 const RATER: &str = "a rater's code of a letter and up to 15 letters, digits, - and _, never a name; or two codes such as \
                      R1+R2, for the consensus of these raters";
 
@@ -35,7 +34,6 @@ impl RowAuthor {
         }
     }
 
-    /// Takes the right to code as this author the recording in a folder.
     fn lock(&self, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
         match self {
             RowAuthor::Rater(rater) => RecordingLock::take_for_codes(folder, &[rater]),
@@ -44,7 +42,6 @@ impl RowAuthor {
     }
 }
 
-/// Codes in a table that can be imported into recordings.
 #[derive(Debug)]
 pub struct ImportableCodes {
     file: PathBuf,
@@ -56,7 +53,6 @@ pub struct ImportableCodes {
     pub new_raters: Vec<String>,
     /// Number of codes of these recordings that the table changes, by rater, or by consensus such as `R1+R2`.
     pub changed: BTreeMap<String, u64>,
-    /// Raters of whom the recordings have codes.
     pub known_raters: Vec<String>,
 }
 
@@ -141,7 +137,6 @@ impl ImportableCodes {
 }
 
 impl CodedRecording {
-    /// The code that an author has given to a press so far, with the author's name in tables.
     fn code_by(&self, author: &RowAuthor, press: u64) -> Option<(String, &ErrorCauseCode)> {
         match author {
             RowAuthor::Rater(rater) => Some((rater.clone(), self.codes.get(rater)?.0.get(&press)?)),
@@ -196,9 +191,6 @@ impl CodedRecording {
 }
 
 /// Writes all codes of the recordings into a file: codes of raters, and below them the consensus codes that still hold.
-///
-/// # Errors
-/// The file cannot be written.
 pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RecordingError> {
     let mut rows = Vec::new();
     for one in recordings {

@@ -17,20 +17,15 @@ use tomcom_session::log::{consensus_file, rater_codes};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::ParticipantKind;
 
-/// A recording with raters' codes of its errors.
 #[derive(Clone, Debug)]
 pub struct CodedRecording {
-    /// Folder of the recording.
     pub folder: PathBuf,
     /// The errors of the recording that can be coded, and the false beliefs that can be named as causes.
     pub codable: CodableErrors,
     /// Errors of the recording, with times and presses.
     pub errors: Vec<ListedError>,
-    /// Raters' codes of the recording's errors, by the rater's identifier.
     pub codes: BTreeMap<String, RaterCodes>,
-    /// Consensus of two raters about their codes of the recording's errors.
     pub consensus: Option<RaterConsensus>,
-    /// True causes of the errors, if the participant was simulated.
     pub known: Option<RaterCodes>,
 }
 
@@ -70,7 +65,6 @@ impl CodedRecording {
         Ok(())
     }
 
-    /// Name of the recording's folder.
     pub fn name(&self) -> String {
         let resolved = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
         resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
@@ -112,7 +106,6 @@ impl CodedRecording {
         Some(ConsensusSummary { of, with, agreed, settled, open: errors - settled, missing, stale: stale.collect() })
     }
 
-    /// The errors to which two raters gave different codes.
     fn disagreements(&self, of: (&String, &RaterCodes), with: (&String, &RaterCodes)) -> Vec<RaterDisagreement> {
         let differ = unsettled(&self.codable.errors, [of.1, with.1]);
         let is_pairs =
@@ -148,24 +141,18 @@ impl CodedRecording {
 /// Raters' codes, agreement and disagreements: the output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InterRaterSummary {
-    /// The coded recordings, with the number of errors that each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
     /// Agreement of each pair of raters who coded common errors. A consensus does not count as a rater.
     pub agreements: Vec<RaterPairSummary>,
-    /// Agreement of each rater with the true causes of simulated participants.
     pub known: Vec<RaterPairSummary>,
     /// The errors to which two raters gave different codes, for each pair of raters.
     pub disagreements: Vec<RaterDisagreement>,
 }
 
-/// Progress of the raters in coding one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodedRecordingSummary {
-    /// The name of the recording's folder.
     pub recording: String,
-    /// Number of errors of the human in the recording.
     pub errors: u64,
-    /// Number of errors coded by each rater, by the rater's identifier.
     pub coded: BTreeMap<String, u64>,
     /// Consensus of two raters; null without one.
     pub consensus: Option<ConsensusSummary>,
@@ -174,12 +161,9 @@ pub struct CodedRecordingSummary {
     pub identical: Vec<IdenticalCodes>,
 }
 
-/// Consensus of two raters about a recording's errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConsensusSummary {
-    /// Identifier of the first rater of the consensus.
     pub of: String,
-    /// Identifier of the second rater of the consensus.
     pub with: String,
     /// Number of errors to which both raters gave the same code.
     pub agreed: u64,
@@ -189,38 +173,27 @@ pub struct ConsensusSummary {
     pub open: u64,
     /// The rater of whom there are no codes any more; null if there are codes of both.
     pub missing: Option<String>,
-    /// Codes that a rater changed after the raters had settled the error.
     pub stale: Vec<ChangedRaterCode>,
 }
 
-/// A rater's code that changed after two raters had settled it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ChangedRaterCode {
     /// Number of the error in the recording, from 1.
     pub error: u64,
-    /// Sequence number of the press in the log.
     pub press: u64,
-    /// The rater who changed the code.
     pub rater: String,
 }
 
-/// An error that two raters coded differently.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterDisagreement {
-    /// The name of the recording's folder.
     pub recording: String,
-    /// The error to which the raters gave different codes.
     #[serde(flatten)]
     pub error: ListedError,
-    /// Identifier of the first of the two raters.
     pub of: String,
-    /// Identifier of the second of the two raters.
     pub with: String,
-    /// Cause of the error according to the first rater.
     pub of_cause: String,
     /// State aspect that the participant believed wrong according to the first rater; null for other causes.
     pub of_aspect: Option<String>,
-    /// Cause of the error according to the second rater.
     pub with_cause: String,
     /// State aspect that the participant believed wrong according to the second rater; null for other causes.
     pub with_aspect: Option<String>,
@@ -228,10 +201,8 @@ pub struct RaterDisagreement {
     pub settled_cause: Option<String>,
     /// State aspect that the participant believed wrong by the consensus code; null for other causes.
     pub settled_aspect: Option<String>,
-    /// Codes that the two raters gave to the error, in words.
     #[serde(skip)]
     pub words: [String; 2],
-    /// Consensus code of the error in words.
     #[serde(skip)]
     pub settled_words: Option<String>,
 }
@@ -239,17 +210,14 @@ pub struct RaterDisagreement {
 /// Agreement between two raters, or between a rater and the true causes of a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterPairSummary {
-    /// Identifier of the first rater of the pair.
     pub of: String,
     /// Identifier of the second rater of the pair, or "simulation" for the true causes of a simulated participant.
     pub with: String,
-    /// Agreement of the two raters, over all recordings together.
     #[serde(flatten)]
     pub agreement: RaterAgreement,
 }
 
 impl InterRaterSummary {
-    /// Summary of raters' codes, agreement and disagreements in these recordings.
     pub fn from_recordings(recordings: &[CodedRecording]) -> InterRaterSummary {
         let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<RaterDisagreement>)> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
@@ -291,7 +259,6 @@ impl InterRaterSummary {
     }
 }
 
-/// The summary of raters' codes as text for the terminal.
 pub fn describe(figures: &InterRaterSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {

@@ -6,37 +6,30 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-/// Tables that the analysis of a study writes as CSV files.
+use crate::tables::actions::ActionRow;
+use crate::tables::communications::{BeliefRow, CommunicationRow, ConceptRow, GazeRow, OfferRow};
+use crate::tables::participants::{AnswerRow, ParticipantRow, TutorialQuestionRow};
+use crate::tables::probe_table::ProbeRow;
+use crate::trial_statistics::TrialStatistics;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CsvTable {
-    /// Table with a row for each participant.
     Participants,
-    /// Table with a row for each trial.
     Trials,
-    /// Table with a row for each answer to a questionnaire's item.
     Questionnaires,
-    /// Table with a row for each question of a tutorial.
     Tutorial,
-    /// Table with a row for each unassisted trial, concept and value of the concept's parameter.
     Concepts,
-    /// Table with a row for each press of the human or the robot.
     Actions,
-    /// Table with a row for each signal that was sent, or that a concept would have sent.
     Communications,
-    /// Table with a row for each offer that a wizard could see.
     Offers,
-    /// Table with a row for each press of the human and each state aspect.
     Beliefs,
-    /// Table with a row for each run of gaze samples on one location.
     Gaze,
-    /// Table with a row for each question of a freeze probe.
     Probes,
     /// Table with a row for each column of every table: the column's unit and meaning.
     Dictionary,
 }
 
 impl CsvTable {
-    /// All CSV tables of a study.
     pub const ALL: [CsvTable; 12] = [
         CsvTable::Participants,
         CsvTable::Trials,
@@ -51,7 +44,6 @@ impl CsvTable {
         CsvTable::Probes,
         CsvTable::Dictionary,
     ];
-    /// CSV tables whose rows are events of a trial.
     pub const OF_EVENTS: [CsvTable; 5] =
         [CsvTable::Actions, CsvTable::Communications, CsvTable::Offers, CsvTable::Beliefs, CsvTable::Gaze];
 
@@ -74,9 +66,7 @@ impl CsvTable {
     }
 }
 
-/// Type of a table's row, from which the row's cells are made.
 pub trait CsvRow: Sized {
-    /// Table to which a row of this type belongs.
     const TABLE: CsvTable;
 
     /// Columns of the table, in the order of the file.
@@ -92,49 +82,37 @@ pub trait CsvRow: Sized {
         CsvColumn { name: name.into(), unit, meaning: meaning.into(), value: Box::new(value) }
     }
 
-    /// Cells of this row of the table, one per column.
     fn cells(&self) -> Vec<CsvCell<'_>> {
         Self::columns().iter().map(|column| column.cell(self)).collect()
     }
 }
 
-/// Declaration of a table's column; `Row` is the type from which rows are made.
 pub struct CsvColumn<Row> {
-    /// Name of the column.
     pub name: Cow<'static, str>,
     /// Unit of the column's values; empty if they have none.
     pub unit: &'static str,
-    /// Meaning of the column, for the data dictionary.
     pub meaning: Cow<'static, str>,
     value: Box<dyn Fn(&Row) -> CsvCell<'_>>,
 }
 
 impl<Row> CsvColumn<Row> {
-    /// Value of the column in a row of the table.
     pub fn cell<'a>(&self, row: &'a Row) -> CsvCell<'a> {
         (self.value)(row)
     }
 }
 
-/// Value of one column of a table in one row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum CsvCell<'a> {
     /// Unknown or missing value, written as an empty field.
     Unknown,
-    /// A truth value in a table's cell.
     Flag(bool),
-    /// A count of events or items in a table's cell.
     Count(u64),
-    /// A signed integer in a table's cell.
     Whole(i64),
-    /// A number with decimals in a table's cell.
     Number(f64),
-    /// Text in a table's cell.
     Text(Cow<'a, str>),
 }
 
-/// Conversions of numbers and truth values into cells.
 macro_rules! cell_from {
     ($($from:ty => $kind:ident),*) => {
         $(impl From<$from> for CsvCell<'_> {
@@ -169,4 +147,58 @@ impl<'a, T: Into<CsvCell<'a>>> From<Option<T>> for CsvCell<'a> {
     fn from(value: Option<T>) -> Self {
         value.map_or(CsvCell::Unknown, Into::into)
     }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct DataDictionaryRow {
+    pub table: CsvTable,
+    pub column: Cow<'static, str>,
+    /// Unit of the column's values; empty if they have none.
+    pub unit: &'static str,
+    pub meaning: Cow<'static, str>,
+}
+
+impl CsvRow for DataDictionaryRow {
+    const TABLE: CsvTable = CsvTable::Dictionary;
+
+    fn columns() -> Vec<CsvColumn<Self>> {
+        vec![
+            Self::column("table", "", "name of the table's file without .csv", |row| row.table.name().into()),
+            Self::column("column", "", "", |row| row.column.as_ref().into()),
+            Self::column("unit", "", "empty: none", |row| row.unit.into()),
+            Self::column("meaning", "", "", |row| row.meaning.as_ref().into()),
+        ]
+    }
+}
+
+/// Data dictionary entries of a table, in the order of its columns.
+pub fn columns(table: CsvTable) -> Vec<DataDictionaryRow> {
+    match table {
+        CsvTable::Participants => declared::<ParticipantRow>(),
+        CsvTable::Trials => declared::<TrialStatistics>(),
+        CsvTable::Questionnaires => declared::<AnswerRow>(),
+        CsvTable::Tutorial => declared::<TutorialQuestionRow>(),
+        CsvTable::Concepts => declared::<ConceptRow>(),
+        CsvTable::Actions => declared::<ActionRow>(),
+        CsvTable::Communications => declared::<CommunicationRow>(),
+        CsvTable::Offers => declared::<OfferRow>(),
+        CsvTable::Beliefs => declared::<BeliefRow>(),
+        CsvTable::Gaze => declared::<GazeRow>(),
+        CsvTable::Probes => declared::<ProbeRow>(),
+        CsvTable::Dictionary => declared::<DataDictionaryRow>(),
+    }
+}
+
+fn declared<Row: CsvRow>() -> Vec<DataDictionaryRow> {
+    let row = |CsvColumn { name, unit, meaning, .. }: CsvColumn<Row>| DataDictionaryRow {
+        table: Row::TABLE,
+        column: name,
+        unit,
+        meaning,
+    };
+    Row::columns().into_iter().map(row).collect()
+}
+
+pub fn dictionary() -> impl Iterator<Item = DataDictionaryRow> {
+    CsvTable::ALL.into_iter().flat_map(columns)
 }

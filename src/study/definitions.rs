@@ -2,8 +2,7 @@
 
 use super::rater_episodes::RULE;
 
-/// Terms of the report with their definitions.
-pub const DEFINITIONS: &[(&str, &str)] = &[
+pub(crate) const DEFINITIONS: &[(&str, &str)] = &[
     (
         "Regret, error",
         "Regret of a press: r(a) = 1 + C(s') - C(s), with the true state and recipes; C is the least number of presses of both \

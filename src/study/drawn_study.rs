@@ -13,10 +13,9 @@
 use rand::RngExt;
 use serde::Serialize;
 
-use super::arm_comparison::primary_contrasts;
-use super::arm_design::{StudyArmTrial, pairs};
-use super::simulation_pool::SimulationPool;
-use super::statistics::mixed_anova;
+use crate::arm_comparison::{StudyArmTrial, arm_pairs, primary_contrasts};
+use crate::pool::SimulationPool;
+use crate::statistics::mixed_anova;
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_session::plan::orders;
 use tomcom_session::study_arm::StudyArm;
@@ -25,17 +24,14 @@ use tomcom_session::study_arm::StudyArm;
 /// participants.
 const FEWEST: usize = 2;
 
-/// Effect of the arms in the studies that are drawn from a pool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnEffect {
-    /// The arms of drawn studies have the effect that they had in the simulation.
     AsSimulated,
     /// The arms of drawn studies get this ratio of the rate of events (in every arm but the reference) to the
     /// unassisted rate: above 0, at most 1.
     Ratio(f64),
 }
 
-/// Statistical method of a test in a power analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SignificanceTestMethod {
@@ -48,18 +44,13 @@ pub enum SignificanceTestMethod {
 /// A statistical test of one study arm against another, whose power is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PowerTest {
-    /// Statistical method that computes the test.
     pub method: SignificanceTestMethod,
-    /// Study arm that is tested.
     pub arm: StudyArm,
-    /// Study arm against which `arm` is tested.
     pub against: StudyArm,
 }
 
-/// Result of one test in one drawn study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignificanceTestResult {
-    /// Two-sided p value, corrected for the number of contrasts in the study.
     pub p: f64,
     /// Two-sided p value without the correction for several contrasts.
     pub p_uncorrected: f64,
@@ -77,7 +68,7 @@ pub fn tests(conditions: &[StudyArm]) -> Vec<PowerTest> {
     let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
     let test =
         |method: SignificanceTestMethod| move |(arm, against): (StudyArm, StudyArm)| PowerTest { method, arm, against };
-    let both = pairs(&arms);
+    let both = arm_pairs(&arms);
     let papers = both.iter().copied().filter(|_| matches!(arms[..], [StudyArm::None, _]));
     papers
         .map(test(SignificanceTestMethod::MixedAnova))
@@ -101,7 +92,6 @@ pub fn results(tests: &[PowerTest], study: &[StudyArmTrial]) -> Vec<Option<Signi
     tests.iter().map(result).map(|found| found.filter(|one| one.p.is_finite())).collect()
 }
 
-/// p value of the paper's test, in which each participant has two trials, one of them unassisted.
 fn papers_p(study: &[StudyArmTrial]) -> Option<f64> {
     let rate = |trial: &StudyArmTrial| trial.events as f64 / trial.presses as f64;
     let row = |trials: &[StudyArmTrial]| match trials {
@@ -112,13 +102,10 @@ fn papers_p(study: &[StudyArmTrial]) -> Option<f64> {
     mixed_anova(&rows?).interaction.map(|test| test.p)
 }
 
-/// Draws studies from a pool of simulated participants.
 #[derive(Clone, Debug)]
 pub struct StudySampler<'a> {
     pool: &'a SimulationPool,
-    /// Orders in which the plan's design assigns the arms.
     orders: Vec<Vec<StudyArm>>,
-    /// Indices of the pool's participants, for each order of arms.
     by_order: Vec<Vec<usize>>,
     /// Number of the bootstrap resample of the pool; 0 is the pool itself.
     number: u64,
@@ -201,7 +188,6 @@ impl<'a> StudySampler<'a> {
     }
 }
 
-/// Draws one of these simulated participants at random.
 fn drawn(persons: &[usize], random: &mut Stream) -> usize {
     persons[random.random_range(0..persons.len())]
 }

@@ -13,15 +13,11 @@ use super::statistics::{
 use super::trial_statistics::TrialStatistics;
 use tomcom_session::study_arm::StudyArm;
 
-/// Confidence level of the report's intervals.
-pub const LEVEL: f64 = 0.95;
+pub(crate) const LEVEL: f64 = 0.95;
 
-/// The two trials of a participant, one assisted and one unassisted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialPair {
-    /// The participant's code.
     pub participant: String,
-    /// Whether the second trial is the assisted one.
     pub assisted_second: bool,
     /// Values of the measure in the participant's first and second trial; lower is better.
     pub values: [f64; 2],
@@ -29,20 +25,17 @@ pub struct TrialPair {
 
 impl TrialPair {
     /// Improvement of the participant from the first to the second trial: first value minus second value.
-    pub fn improvement(&self) -> f64 {
+    pub(crate) fn improvement(&self) -> f64 {
         self.values[0] - self.values[1]
     }
 
-    /// Values of the measure in the unassisted and in the assisted trial, in this order.
     pub fn by_condition(&self) -> [f64; 2] {
         if self.assisted_second { self.values } else { [self.values[1], self.values[0]] }
     }
 }
 
-/// A participant with recordings who is left out of a test, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOutParticipant {
-    /// The participant's code.
     pub participant: String,
     /// Why the test cannot use the participant, in words.
     pub reason: String,
@@ -62,7 +55,6 @@ pub fn left_out_in_words(left_out: &[LeftOutParticipant]) -> Option<String> {
     (!words.is_empty()).then(|| words.join("; "))
 }
 
-/// The participants of a study with a measure of both their trials, and those without.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PairedTrials {
     /// The pairs of trials, in the order of participant codes.
@@ -78,15 +70,12 @@ pub struct StudyMeasure {
     /// Name of the measure: its column in the table of trials, and its key in the summary; the table of participants
     /// adds the suffixes `_1` and `_2`.
     pub name: &'static str,
-    /// Unit of the columns with the measure.
     pub unit: &'static str,
     /// Definition of the measure for the data dictionary; empty if the unit says enough.
     pub meaning: &'static str,
     /// Meaning of the columns `_1` and `_2` in the table of participants; `{}` stands for "first" or "second".
     pub meaning_in: &'static str,
-    /// Title of the measure in the report.
     pub title: &'static str,
-    /// Number of decimals of the measure in the report.
     pub digits: usize,
     /// Value of the measure for a trial; `None` if the trial has no such value.
     pub value: fn(&TrialStatistics) -> Option<f64>,
@@ -105,16 +94,12 @@ impl Serialize for StudyMeasure {
     }
 }
 
-/// Estimates and tests of the effect of assistance on one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssistanceEffect {
-    /// Measure on which assisted and unassisted trials are compared.
     pub measure: StudyMeasure,
-    /// Number of participants whose second trial was assisted, and number of participants whose first trial was.
     pub groups: [usize; 2],
     /// Participants with recordings whom the tests leave out; empty where nothing is tested, since there are no pairs.
     pub left_out: Vec<LeftOutParticipant>,
-    /// Mean improvement of each starting group from the first to the second trial.
     pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance with period within and starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
@@ -166,7 +151,6 @@ pub fn pairs(trials: &[TrialStatistics], measure: StudyMeasure) -> PairedTrials 
     paired
 }
 
-/// The pair of trials of the participant with this code, or why there is none.
 fn pair(code: &str, trials: &[TrialStatistics], measure: StudyMeasure) -> Result<TrialPair, String> {
     let own: Vec<&TrialStatistics> = trials.iter().filter(|trial| trial.participant == code).collect();
     let of_period = |period: u32| {
@@ -206,7 +190,7 @@ pub fn effect(measure: StudyMeasure, paired: PairedTrials, seed: u64) -> Assista
         high: interval.high / 2.0,
         ..interval
     };
-    let mean = |values: &[f64]| super::trial_statistics::mean(values.iter().copied());
+    let mean = |values: &[f64]| crate::statistics::mean(values.iter().copied());
     AssistanceEffect {
         measure,
         groups: [with.len(), without.len()],

@@ -17,7 +17,6 @@ pub struct RecordingFacts {
 }
 
 impl RecordingFacts {
-    /// Settings and circumstances of a replayed recording.
     pub fn from_session(header: &LogHeader, session: &Session) -> RecordingFacts {
         let spec = &header.session;
         let mut facts = RecordingFacts::default();
@@ -71,7 +70,6 @@ impl RecordingFacts {
         facts
     }
 
-    /// Adds the settings and circumstances of another recording.
     pub fn add(&mut self, other: RecordingFacts) {
         for (key, values) in other.found {
             self.found.entry(key).or_default().extend(values);
@@ -88,13 +86,11 @@ impl RecordingFacts {
         })
     }
 
-    /// Whether a setting or circumstance has a value.
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
     }
 }
 
-/// Parameters of a setting as text, by their names in session files.
 fn parameters(of: &impl Serialize) -> String {
     let mut all = Vec::new();
     // Parameters are numbers, and lists and tables of numbers, which can always be serialised.
@@ -118,7 +114,6 @@ fn flatten(name: &str, value: &Value, all: &mut Vec<String>) {
     }
 }
 
-/// Distribution of the durations of the robot's presses, as text.
 fn presses_of(robot: &RobotSpec) -> String {
     match robot.arm {
         ArmKind::Timed => format!("{} s in the median (spread {})", robot.press_s, robot.press_spread),

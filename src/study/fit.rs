@@ -4,31 +4,26 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::gathered::GatheredRecordings;
-use super::parallel::WorkerPool;
-use crate::analysis::fitting::fitted_answers::IntervalNarrowing;
-use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings, OtherModel, in_words};
+use crate::analysis::fitting::{
+    self, FitSettings, FitSummary, FittedRecordings, IntervalNarrowing, OtherModel, in_words,
+};
+use crate::gathered::GatheredRecordings;
+use crate::parallel::WorkerPool;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::Observation;
-use tomcom_session::Event;
 use tomcom_session::files::file_error::{FileError, FileResult};
-use tomcom_session::probe_sampling;
 use tomcom_session::probes::{ProbeEvent, ProbeQuestion};
 use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
+use tomcom_session::{Event, probe_sampling};
 
-/// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]
 pub struct FitTrials {
-    /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
-    /// Human model in the header of the first recording of the fit.
     pub model: HumanModel,
-    /// The recordings of the fit that were made with other human models than the first one.
     pub others: Vec<OtherModel>,
-    /// Observations of the belief filter in each trial, to which the human model is fitted.
     pub observations: Vec<FitObservations>,
 }
 

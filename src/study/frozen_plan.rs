@@ -1,17 +1,20 @@
 //! The frozen plan of a study (preregistration): study plan, definitions of the measures, and analysis, as written down
-//! before the study begins.
+//! before the study begins; and the comparison of a study with it.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::arm_design::pairs;
-use super::definitions::DEFINITIONS;
-use super::effect::LEVEL;
+use crate::arm_comparison::arm_pairs;
+use crate::definitions::DEFINITIONS;
+use crate::effect::LEVEL;
+use tomcom_core::base::text::count;
+use tomcom_session::LogHeader;
 use tomcom_session::plan::{PrimaryOutcome, Study};
 use tomcom_session::study_arm::StudyArm;
 
-/// Version of the frozen plan's file format.
-pub const FROZEN_FORMAT: u32 = 1;
+pub(crate) const FROZEN_FORMAT: u32 = 1;
 
 /// Reasons for excluding a trial from the analysis, in the words of the frozen plan.
 const EXCLUSIONS: [&str; 5] = [
@@ -35,33 +38,24 @@ const METHODS: [&str; 6] = [
     "Non-inferiority of an assistant to the wizard: the upper end of the one-sided interval of 97.5 % of the ratio of rates is below the margin.",
 ];
 
-/// A term of the report with its definition, as the frozen plan has it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenDefinition {
-    /// The term that the report defines.
     pub term: String,
-    /// Definition of the term, as the report prints it.
     pub meaning: String,
 }
 
-/// The analysis of a study as its frozen plan states it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenAnalysis {
-    /// Version of the program that will do the analysis.
     pub program: String,
-    /// Primary outcome of the study.
     pub outcome: PrimaryOutcome,
     /// Contrasts that the analysis computes: each an arm, and the arm with which it is compared.
     pub contrasts: Vec<[StudyArm; 2]>,
     /// Margin of non-inferiority, as a ratio of rates (assistant to wizard).
     pub margin: f64,
-    /// Confidence level of the intervals in the analysis.
     pub level: f64,
-    /// Statistical methods that compare the conditions.
     pub methods: Vec<String>,
-    /// Reasons for which trials are excluded.
     pub exclusions: Vec<String>,
 }
 
@@ -69,37 +63,27 @@ pub struct FrozenAnalysis {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenPlan {
-    /// Version of the file format of frozen plans.
     pub frozen_plan: u32,
-    /// Name of the study plan.
     pub plan: String,
-    /// Checksum of study plan and settings, which every recording of the plan contains.
     pub plan_digest: String,
-    /// Seed from which starting groups and trials follow.
     pub seed: u64,
-    /// Pseudonymous codes of the participants.
     pub participants: Vec<String>,
     /// Starting group of each participant, in the order of `participants`.
     pub groups: Vec<String>,
-    /// Number of recordings of the plan that existed when the plan was frozen.
     pub recordings_before: u64,
-    /// The analysis of the study, as frozen before the study.
     pub analysis: FrozenAnalysis,
-    /// Definitions of the report's terms, as frozen before the study.
     pub definitions: Vec<FrozenDefinition>,
-    /// The table `[plan]`, the settings of the plan's trials, and the questionnaires, tutorial and kitchen files.
     pub settings: Value,
 }
 
 impl FrozenAnalysis {
-    /// The analysis that this version of the program does for a study.
     pub fn from_study(study: &Study) -> FrozenAnalysis {
         let conditions = &study.plan.conditions;
         let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
         FrozenAnalysis {
             program: env!("CARGO_PKG_VERSION").to_string(),
             outcome: study.plan.aims.outcome,
-            contrasts: pairs(&arms).into_iter().map(|(arm, against)| [arm, against]).collect(),
+            contrasts: arm_pairs(&arms).into_iter().map(|(arm, against)| [arm, against]).collect(),
             margin: study.plan.aims.margin,
             level: LEVEL,
             methods: METHODS.map(str::to_string).to_vec(),
@@ -134,8 +118,7 @@ impl FrozenPlan {
         }
     }
 
-    /// Definitions and methods in which this version of the program differs from the frozen plan, in words.
-    pub fn differs_from_program(&self) -> Vec<String> {
+    fn differs_from_program(&self) -> Vec<String> {
         let mut found = Vec::new();
         let (own, program) = (&self.analysis, env!("CARGO_PKG_VERSION"));
         if own.program != program {
@@ -169,4 +152,99 @@ fn current_definitions() -> Vec<FrozenDefinition> {
     let one =
         |(term, meaning): &(&str, &str)| FrozenDefinition { term: term.to_string(), meaning: meaning.to_string() };
     DEFINITIONS.iter().map(one).collect()
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RecordedPlan {
+    pub participant: String,
+    /// Name and digest of the recording's study plan; `None` for a recording without a plan.
+    pub plan: Option<(String, String)>,
+    /// Place of the recording in its plan; `None` for a recording without a plan.
+    pub place: Option<PlaceInPlan>,
+}
+
+impl RecordedPlan {
+    pub(crate) fn from_header(header: &LogHeader) -> RecordedPlan {
+        let spec = &header.session;
+        let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
+        let place = spec.step.as_ref().map(|step| PlaceInPlan {
+            participant: header.correction.is_none().then_some(step.participant),
+            period: step.period,
+            periods: step.periods,
+        });
+        RecordedPlan { participant: spec.participant.code.clone(), plan, place }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceInPlan {
+    /// Index of the participant in the plan, from 0; `None` if the participant's code was corrected, since the log has
+    /// the index of another one.
+    pub participant: Option<u32>,
+    /// Number of the trial, from 1; `None` for practice.
+    pub period: Option<u32>,
+    /// Number of counted trials per participant; 0 for a recording of the tutorial alone.
+    pub periods: u32,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct PreregistrationCheck {
+    /// SHA-256 digest of the frozen plan, in hexadecimal.
+    pub digest: String,
+    pub plan: String,
+    pub recordings_before: u64,
+    /// Differences between study and frozen plan, in words; empty if there are none.
+    pub differences: Vec<String>,
+}
+
+impl PreregistrationCheck {
+    /// Compares the recordings of an analysis, and the definitions of this version of the program, with the frozen plan
+    /// that has this digest.
+    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> PreregistrationCheck {
+        let mut differences = frozen.differs_from_program();
+        let mut others: BTreeMap<String, u64> = BTreeMap::new();
+        for recording in recordings {
+            let what = match &recording.plan {
+                None => "of no plan".to_string(),
+                Some((plan, _)) if *plan != frozen.plan => format!("of the plan \"{plan}\""),
+                Some((_, digest)) if *digest != frozen.plan_digest => {
+                    format!("of another version of the plan ({digest}, frozen: {})", frozen.plan_digest)
+                }
+                Some(_) => continue,
+            };
+            *others.entry(what).or_default() += 1;
+        }
+        differences.extend(
+            others.iter().map(|(what, number)| format!("{} {what}", count(*number, "recording is", "recordings are"))),
+        );
+        let there: BTreeSet<&str> = recordings.iter().map(|recording| recording.participant.as_str()).collect();
+        let is_planned = |code: &&&str| frozen.participants.iter().any(|planned| planned == **code);
+        let strangers: Vec<&str> = there.iter().filter(|code| !is_planned(code)).copied().collect();
+        let missing = frozen.participants.iter().map(String::as_str).filter(|code| !there.contains(code));
+        for (who, codes) in [("without a recording", missing.collect()), ("not in the frozen plan", strangers)] {
+            differences.extend(named(who, &codes));
+        }
+        let (plan, recordings_before) = (frozen.plan.clone(), frozen.recordings_before);
+        PreregistrationCheck { digest, plan, recordings_before, differences }
+    }
+
+    /// The result of the comparison in words: that the study is preregistered, or what differs.
+    pub fn words(&self) -> String {
+        let before = match self.recordings_before {
+            0 => "when no recording of it was there".to_string(),
+            number => format!("when {} of it there", count(number, "recording was", "recordings were")),
+        };
+        let frozen = format!("the plan \"{}\" was frozen {before}, SHA-256 {}", self.plan, self.digest);
+        match &self.differences[..] {
+            [] => format!("Preregistered: {frozen}; plan, definitions and analysis are those."),
+            several => format!("Not as preregistered: {frozen}; differences: {}.", several.join("; ")),
+        }
+    }
+}
+
+/// List of participants in words; `None` if the list is empty.
+fn named(who: &str, codes: &[&str]) -> Option<String> {
+    let number = count(codes.len() as u64, "participant is", "participants are");
+    (!codes.is_empty()).then(|| format!("{number} {who}: {}", codes.join(", ")))
 }

@@ -8,10 +8,10 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::{parallel, standing};
 use crate::files::recordings;
+use crate::frozen_plan::RecordedPlan;
 use crate::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
-use crate::preregistration::RecordedPlan;
+use crate::{parallel, standing};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
 use tomcom_session::{LogHeader, person_code};
@@ -28,12 +28,9 @@ pub struct GatheredRecordings {
 /// A log of a recording: its path without symbolic links, and the digest of its header.
 type LogPlace = (PathBuf, String);
 
-/// What is known about a recording before its events are read.
 struct FoundRecording {
     path: PathBuf,
-    /// Logs of the recording's parts, the last part last.
     logs: Vec<LogPlace>,
-    /// The participant's code.
     code: String,
     /// Whether the folder has the name that the program gave it, as far as that can be seen: it names the participant.
     is_named: bool,
@@ -175,12 +172,10 @@ impl FoundRecording {
         Ok(FoundRecording { path: path.to_path_buf(), logs, code, is_named, trial })
     }
 
-    /// The log of the recording's last part.
     fn log(&self) -> &PathBuf {
         &self.logs[self.logs.len() - 1].0
     }
 
-    /// The logs of the parts before the last one.
     fn earlier(&self) -> &[LogPlace] {
         &self.logs[..self.logs.len() - 1]
     }
@@ -205,7 +200,6 @@ impl FoundRecording {
     }
 }
 
-/// Name of the folder of the recording with this log.
 fn folder_name(log: &Path) -> Cow<'_, str> {
     folder(log).file_name().unwrap_or_default().to_string_lossy()
 }
@@ -214,8 +208,7 @@ fn folder(log: &Path) -> &Path {
     log.parent().unwrap_or(Path::new("."))
 }
 
-/// The trial of a plan of which a log with this header is a recording.
-pub(super) fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
+fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
     let seed = header.started.is_none().then_some(header.session.seed);
     PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
 }

@@ -12,7 +12,6 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 pub struct KeptCost(Option<(Arc<Kitchen>, CostToGo)>);
 
 impl KeptCost {
-    /// The cost to go for a recording of this kitchen.
     pub fn for_kitchen(&mut self, kitchen: &Arc<Kitchen>) -> &mut CostToGo {
         let cost = self.take(kitchen);
         let (_, cost) = self.0.insert((kitchen.clone(), cost));
@@ -25,7 +24,6 @@ impl KeptCost {
         kept.map_or_else(|| CostToGo::new(kitchen.clone()), |(_, cost)| cost)
     }
 
-    /// Keeps the cost to go of a trial in this kitchen for the next trial.
     pub fn keep(&mut self, kitchen: &Arc<Kitchen>, cost: CostToGo) {
         self.0 = Some((kitchen.clone(), cost));
     }

@@ -21,28 +21,19 @@ const PRECISION: f64 = 1e-11;
 /// One measurement for the mixed model: participant, fixed effects, and value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MixedModelMeasurement {
-    /// Index of the participant.
     pub participant: usize,
-    /// Row of fixed effects in the design matrix.
     pub effects: Vec<f64>,
-    /// The measured value of the dependent variable.
     pub value: f64,
 }
 
-/// A fitted linear mixed model with a random intercept per participant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearMixedModel {
-    /// Estimates of the model's fixed effects.
     pub estimates: DVector<f64>,
-    /// Covariance of the estimates of the fixed effects.
     pub covariance: DMatrix<f64>,
-    /// Variance of the random intercept between participants.
     pub between: f64,
-    /// Variance of the residuals within participants.
     pub within: f64,
     /// The product V^-1 X, with one row per measurement.
     weighted: DMatrix<f64>,
-    /// Index of the participant, for each measurement.
     participants: Vec<usize>,
     /// Covariance of the estimates of the two variances; `None` where the variance between participants is zero.
     variances: Option<[[f64; 2]; 2]>,
@@ -51,15 +42,12 @@ pub struct LinearMixedModel {
 /// A linear combination of fixed effects, with its t test against zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MixedModelContrast {
-    /// Estimate of the linear combination.
     pub estimate: f64,
-    /// Standard error of the estimate.
     pub standard_error: f64,
     /// Satterthwaite's degrees of freedom of the t test.
     pub df: f64,
     /// t statistic: the estimate divided by its standard error.
     pub t: f64,
-    /// Two-sided p value of the t test.
     pub p: f64,
 }
 
@@ -71,8 +59,7 @@ impl MixedModelContrast {
         [self.estimate - half, self.estimate + half]
     }
 
-    /// One-sided p value for the hypothesis that the estimate is below `bound`.
-    pub fn p_below(&self, bound: f64) -> f64 {
+    pub(crate) fn p_below(&self, bound: f64) -> f64 {
         let t = (self.estimate - bound) / self.standard_error;
         StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |distribution| distribution.cdf(t))
     }
@@ -80,7 +67,6 @@ impl MixedModelContrast {
 
 /// Sums over the measurements, from which the REML criterion follows for every ratio of variances.
 struct Sums {
-    /// Number of measurements, as a float.
     n: f64,
     xx: DMatrix<f64>,
     xy: DVector<f64>,
@@ -94,9 +80,7 @@ struct Solution {
     estimates: DVector<f64>,
     /// Unscaled covariance of the fixed effects: (X' W^-1 X)^-1, with W = V / v.
     inverse: DMatrix<f64>,
-    /// Variance of the residuals within participants.
     within: f64,
-    /// REML criterion (deviance), up to a constant.
     deviance: f64,
 }
 
@@ -275,27 +259,21 @@ fn sums_by_participant(values: &DVector<f64>, participants: &[usize]) -> DVector
 /// each measurement, so it is not stored: V^-1 is the same within a participant's block, and the rest has low rank.
 struct ResidualProjection<'a> {
     sums: &'a Sums,
-    /// Index of the participant, for each measurement.
     participants: &'a [usize],
-    /// Ratio of the variance between participants to that of the residuals.
     ratio: f64,
-    /// Variance of the residuals within participants.
     within: f64,
     /// The product V^-1 X, with one row per measurement.
     weighted: &'a DMatrix<f64>,
-    /// Covariance of the estimates of the fixed effects.
     covariance: &'a DMatrix<f64>,
 }
 
 impl ResidualProjection<'_> {
-    /// P y.
     fn times(&self, y: &DVector<f64>) -> DVector<f64> {
         let column = DMatrix::from_column_slice(y.len(), 1, y.as_slice());
         let weighed = weigh(&column, self.participants, self.sums, self.ratio) / self.within;
         weighed.column(0) - self.weighted * (self.covariance * (self.weighted.transpose() * y))
     }
 
-    /// tr(P ZZ' P ZZ'), tr(P ZZ' P) and tr(P P).
     fn traces(&self) -> [f64; 3] {
         let (effects, v) = (self.covariance.nrows(), self.within);
         let mut by_participant = DMatrix::<f64>::zeros(self.sums.groups.len(), effects);

@@ -10,18 +10,14 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use super::acting_arm::SignalSenderWithParameter;
-use super::roc::ConceptRocCurve;
-use super::trial_statistics::{TrialStatistics, mean_length};
+use crate::roc::ConceptRocCurve;
+use crate::trial_statistics::{SignalSenderWithParameter, TrialStatistics, mean_length};
 use tomcom_session::settings::ParticipantKind;
 
-/// Results of one sender of signals over the simulated trials that all compared arms have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalSenderResults {
-    /// Sender of the signals, with the parameter of the sender's concept.
     #[serde(flatten)]
     pub arm: SignalSenderWithParameter,
-    /// Number of trials that are compared.
     pub trials: u64,
     /// Errors that follow from false beliefs, per 100 presses of the human.
     pub belief_related_per_100: Option<f64>,
@@ -29,9 +25,7 @@ pub struct SignalSenderResults {
     pub sequences_per_100: Option<f64>,
     /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
-    /// Number of orders served in the trials.
     pub orders: u64,
-    /// Orders served per minute of the trials.
     pub orders_per_minute: Option<f64>,
     /// Interruptions by signals per 100 presses of the human; a proposal of several presses is one interruption.
     pub interruptions_per_100: Option<f64>,

@@ -18,28 +18,20 @@ const LOG_SIZE: [f64; 2] = [-5.0, 12.0];
 const STEP: f64 = 1e-4;
 /// Gain of a step, in nats, below which Newton's method ends.
 const GAIN: f64 = 1e-10;
-/// Largest number of steps of Newton's method.
 const MOST_STEPS: usize = 200;
 
-/// The count of events in one trial, for the negative binomial model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CountObservation {
-    /// Index of the participant.
     pub participant: usize,
-    /// Row of fixed effects in the design matrix.
     pub effects: Vec<f64>,
-    /// Number of counted events in the trial.
     pub count: u64,
     /// Exposure: the amount over which events are counted, such as presses; above 0.
     pub exposure: f64,
 }
 
-/// A fitted mixed negative binomial model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NegativeBinomialModel {
-    /// Estimates of the fixed effects, on the log scale.
     pub estimates: Vec<f64>,
-    /// Covariance of the estimates of the fixed effects.
     pub covariance: DMatrix<f64>,
     /// Standard deviation between participants, on the log scale; 0 where participants do not differ.
     pub between_sd: f64,
@@ -53,13 +45,10 @@ pub struct NegativeBinomialModel {
 /// A linear combination of fixed effects, with Wald's z test against zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WaldContrast {
-    /// Estimate of the linear combination, on the log scale.
     pub estimate: f64,
-    /// Standard error of the estimate.
     pub standard_error: f64,
     /// z statistic: the estimate divided by its standard error.
     pub z: f64,
-    /// Two-sided p value of Wald's test.
     pub p: f64,
 }
 
@@ -149,7 +138,6 @@ fn log_likelihood(groups: &[Vec<&CountObservation>], effects: usize, at: &[f64])
     groups.iter().map(of_participant).sum()
 }
 
-/// Logarithm of the negative binomial probability of the count `y` with mean exp(`log_mu`).
 fn log_pmf(y: f64, log_mu: f64, size: f64) -> f64 {
     let mu = log_mu.exp();
     let log_share = log_mu - (size + mu).ln();

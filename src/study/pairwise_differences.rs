@@ -1,16 +1,13 @@
 //! The differences between all values of two samples in their order, without storing them: two samples of 700 have
 //! 490,000 differences.
 
-/// All differences a - b between the values of two samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairwiseDifferences {
-    /// The values of both samples in ascending order.
     a: Vec<f64>,
     b: Vec<f64>,
 }
 
 impl PairwiseDifferences {
-    /// The differences between the values of `a` and those of `b`.
     pub fn new(a: &[f64], b: &[f64]) -> PairwiseDifferences {
         let [a, b] = [a, b].map(|values| {
             let mut values = values.to_vec();
@@ -20,7 +17,6 @@ impl PairwiseDifferences {
         PairwiseDifferences { a, b }
     }
 
-    /// Number of differences.
     pub fn number(&self) -> usize {
         self.a.len() * self.b.len()
     }
@@ -46,7 +42,6 @@ impl PairwiseDifferences {
         }
     }
 
-    /// Number of differences that are at most `limit`.
     fn number_up_to(&self, limit: f64) -> usize {
         // The larger a is, the larger must b be, since rounding keeps the order of differences.
         let mut below = 0;

@@ -23,7 +23,6 @@ pub fn each_with<T: Sync, R: Send, W: Send>(
 /// results.
 pub struct WorkerPool<W, F: Fn() -> W> {
     own: F,
-    /// Worker states that no thread is using.
     idle: Mutex<Vec<W>>,
 }
 

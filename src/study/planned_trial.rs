@@ -1,15 +1,16 @@
-//! Trials of a study plan, for each of which one recording counts; and copies of recordings, which do not count.
+//! Trials of a study plan, for each of which one recording counts; copies of recordings, which do not count; and trials
+//! without a recording.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::preregistration::RecordedPlan;
+use crate::frozen_plan::RecordedPlan;
 use tomcom_core::base::text::count;
 
-/// A counted trial of a participant in a study plan.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PlannedTrialKey {
     plan: String,
-    /// The participant's code, with the seed in front if the participant is simulated.
     participant: String,
     /// Number of the trial, from 1.
     period: u32,
@@ -28,7 +29,7 @@ impl PlannedTrialKey {
 
     /// What is wrong about a second recording that counts for this trial, where `first` is the other recording; and
     /// what would be right.
-    pub fn counted_twice(&self, first: &str) -> (String, String) {
+    pub(crate) fn counted_twice(&self, first: &str) -> (String, String) {
         let PlannedTrialKey { plan, participant, period } = self;
         let found = format!(
             "a second recording of trial {period} of {participant} in the plan \"{plan}\", which {first} is a recording of, too"
@@ -45,7 +46,6 @@ impl PlannedTrialKey {
 pub struct RecordingCopy {
     /// The recording that does not count.
     pub recording: String,
-    /// The recording that counts.
     pub copy_of: String,
     /// Why the copy would be left out anyway, in words; null if it would count.
     pub left_out: Option<String>,
@@ -64,7 +64,7 @@ pub fn copies_in_words(copies: &[RecordingCopy]) -> Option<String> {
 
 /// What is wrong about a copy of `first` beside whose log codes of raters stand that `first` has not, in the file `codes`,
 /// or has in another version (`is_there`); and what would be right.
-pub fn copy_with_codes(copy: &str, first: &str, (codes, is_there): (String, bool)) -> (String, String) {
+pub(crate) fn copy_with_codes(copy: &str, first: &str, (codes, is_there): (String, bool)) -> (String, String) {
     let found = match is_there {
         true => format!("a copy of {first} with another {codes}"),
         false => format!("a copy of {first} with {codes}, which is not in {first}"),
@@ -81,9 +81,93 @@ pub fn copy_with_codes(copy: &str, first: &str, (codes, is_there): (String, bool
 }
 
 /// What is wrong about a copy of `first` of which another analysis found something else; and what would be right.
-pub fn differing_copy(first: &str) -> (String, String) {
+pub(crate) fn differing_copy(first: &str) -> (String, String) {
     let found = format!("a copy of {first} that differs: in codes of raters, a correction, or the end of its log");
     let remedy = "both in one analysis without --shard, which says what differs; or leave the copy out (tomcom exclude \
                   RECORDING --reason …), and analyse its part again";
     (found, remedy.to_string())
+}
+
+const NAMED: usize = 8;
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MissingTrials {
+    pub plan: String,
+    /// Number of the participant in the plan, from 1; null if only recordings whose code was corrected are there.
+    pub participant: Option<u32>,
+    /// Code of the participant; `None` if there is no recording of the participant.
+    pub code: Option<String>,
+    /// Numbers of the participant's trials without a recording, from 1.
+    pub trials: Vec<u32>,
+}
+
+#[derive(Default)]
+struct PlanRecordings<'a> {
+    periods: u32,
+    /// By the code of a participant: index in the plan, as far as it is known, and the numbers of the trials with a
+    /// recording.
+    participants: BTreeMap<&'a str, (Option<u32>, BTreeSet<u32>)>,
+}
+
+/// The trials without a recording, by plan and participant. Recordings know their place in the plan, but not the
+/// number of its participants: participants after the last with a recording are not found.
+pub fn missing_trials(recordings: &[RecordedPlan]) -> Vec<MissingTrials> {
+    let mut plans: BTreeMap<&str, PlanRecordings> = BTreeMap::new();
+    for recording in recordings {
+        let (Some((plan, _)), Some(place)) = (&recording.plan, recording.place) else { continue };
+        let found = plans.entry(plan).or_default();
+        found.periods = found.periods.max(place.periods);
+        let (index, trials) = found.participants.entry(&recording.participant).or_default();
+        *index = index.or(place.participant);
+        trials.extend(place.period);
+    }
+    plans.into_iter().flat_map(|(plan, found)| found.missing(plan)).collect()
+}
+
+impl PlanRecordings<'_> {
+    fn missing(&self, plan: &str) -> Vec<MissingTrials> {
+        let none = BTreeSet::new();
+        let missing = |index: Option<u32>, code: Option<&str>, there: &BTreeSet<u32>| MissingTrials {
+            plan: plan.to_string(),
+            participant: index.map(|index| index + 1),
+            code: code.map(str::to_string),
+            trials: (1..=self.periods).filter(|trial| !there.contains(trial)).collect(),
+        };
+        let known: BTreeMap<u32, (&str, &BTreeSet<u32>)> =
+            self.participants.iter().filter_map(|(code, (index, trials))| Some(((*index)?, (*code, trials)))).collect();
+        let after_last = known.keys().last().map_or(0, |last| last + 1);
+        let in_order = (0..after_last).map(|index| match known.get(&index) {
+            Some((code, trials)) => missing(Some(index), Some(code), trials),
+            None => missing(Some(index), None, &none),
+        });
+        let others = self.participants.iter().filter(|(_, (index, _))| index.is_none());
+        let others = others.map(|(code, (_, trials))| missing(None, Some(code), trials));
+        in_order.chain(others).filter(|missing| !missing.trials.is_empty()).collect()
+    }
+}
+
+/// The trials without a recording in words; `None` if there are none.
+pub fn in_words(missing: &[MissingTrials]) -> Option<String> {
+    let number: u64 = missing.iter().map(|one| one.trials.len() as u64).sum();
+    let named: Vec<String> = missing.iter().take(NAMED).map(MissingTrials::describe).collect();
+    let others = missing.len().saturating_sub(NAMED) as u64;
+    let others = match others {
+        0 => String::new(),
+        _ => format!("; and of {}", count(others, "more participant", "more participants")),
+    };
+    let what = if number == 1 { "trial of the plan has" } else { "trials of the plan have" };
+    (number > 0).then(|| format!("{number} {what} no recording: {}{others}", named.join("; ")))
+}
+
+impl MissingTrials {
+    /// The participant with the trials: "P03 trial 2".
+    fn describe(&self) -> String {
+        let number = || self.participant.map_or(String::new(), |number| format!("participant {number}"));
+        let who = self.code.clone().unwrap_or_else(number);
+        let trials: Vec<String> = self.trials.iter().map(u32::to_string).collect();
+        match &trials[..] {
+            [one] => format!("{who} trial {one}"),
+            several => format!("{who} trials {}", several.join(", ")),
+        }
+    }
 }

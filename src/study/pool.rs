@@ -1,42 +1,44 @@
-//! Simulates the participants of a pool in memory ([`crate::simulation_pool`]): every trial of the plan, and its
-//! unassisted twin (the same trial without signals). The commands `tomcom power` and `tomcom arms` use the pool.
+//! A pool of simulated participants, from which studies are drawn ([`super::drawn_study`]), for `tomcom power` and
+//! `tomcom arms`. Of every trial it contains only the counts that an analysis needs.
+//!
+//! Each participant has a starting group and one trial in each arm of the plan. Each trial can have an unassisted twin:
+//! the same participant, orders and random streams, without signals. Twins tell how large an effect has to be to be
+//! detected, and how often a test rejects without an effect.
+//!
+//! A pool is a file of JSON Lines: a [`PoolHeader`], then one [`PoolTrial`] per line. Parts of a pool, simulated as
+//! shards, are joined.
 
 use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::kept_cost::KeptCost;
-use super::parallel;
-use crate::analysis::signal_time::SignalTimes;
-use crate::analysis::trial_summary::TrialSummary;
-use crate::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::trial_summary::{SignalTimes, TrialSummary};
+use crate::kept_cost::KeptCost;
+use crate::parallel;
+use crate::study_part::ShardMismatch;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::headless::SimulationShard;
-use tomcom_session::plan::{Participants, Study};
+use tomcom_session::plan::{Participants, PrimaryOutcome, Study, StudyAims};
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{SessionSpec, TimestampedEvent};
 
-/// Request to simulate a pool of participants, from which studies are drawn.
 #[derive(Clone, Debug)]
 pub struct PoolRequest {
-    /// Settings that contain the study plan, with the files that they name.
     pub files: SessionSetup,
-    /// Number of participants in the whole pool, instead of the plan's number.
     pub participants: u32,
-    /// Shard (part) of the pool that is simulated here.
     pub shard: SimulationShard,
-    /// Whether trials are simulated in the study arms that the plan gives to them.
     pub arms: bool,
     /// Whether unassisted twins (the same trials without signals) are simulated.
     pub unassisted: bool,
 }
 
-/// A trial of a pool that has to be simulated.
 #[derive(Clone, Copy, Debug)]
 struct PoolItem {
     participant: u32,
@@ -44,10 +46,8 @@ struct PoolItem {
     is_twin: bool,
 }
 
-/// A request to simulate a pool, with the plan's study made for the pool's participants.
 struct PoolStudy<'a> {
     request: &'a PoolRequest,
-    /// The study with the pool's participants instead of the plan's.
     study: Study,
     header: PoolHeader,
 }
@@ -109,7 +109,6 @@ impl PoolRequest {
         Ok(())
     }
 
-    /// Number of trials that have to be simulated for the pool.
     pub fn trials(&self, path: &Path) -> FileResult<u64> {
         Ok(self.study(path)?.items().len() as u64)
     }
@@ -133,12 +132,10 @@ impl PoolStudy<'_> {
         items.filter(is_asked).collect()
     }
 
-    /// Study arm that the plan gives to a trial of the pool.
     fn planned(&self, item: PoolItem) -> StudyArm {
         self.study.group(item.participant as usize).conditions[item.period as usize - 1]
     }
 
-    /// Settings of a trial of the pool, its study arm as it will be carried out, and the trial's number.
     fn settings(&self, item: PoolItem) -> (SessionSpec, StudyArm, u64) {
         let (mut spec, trial) = self.study.simulated(item.participant as usize, item.period);
         if item.is_twin {
@@ -155,7 +152,6 @@ impl PoolStudy<'_> {
         (spec, done, trial)
     }
 
-    /// Simulates a trial of the pool.
     fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, kept: &mut KeptCost) -> PoolTrial {
         let (spec, arm, trial) = self.settings(item);
         let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, kept.take(kitchen));
@@ -190,9 +186,6 @@ impl PoolStudy<'_> {
 
 /// Simulates the participants of the pool's shard on all processors. `path` is the file of the plan; `done` is called
 /// after each trial.
-///
-/// # Errors
-/// The errors of [`PoolRequest::check`], or a trial ends without a press of the human.
 pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> FileResult<SimulationPool> {
     request.check(path)?;
     let pool = request.study(path)?;
@@ -202,4 +195,202 @@ pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> F
     let header = pool.header.clone();
     SimulationPool::from_trials(header, trials)
         .map_err(|wrong| FileError::from_finding(path, wrong.found, wrong.remedy))
+}
+
+pub const POOL_FORMAT: u32 = 1;
+
+/// First line of a pool's file (header): what the pool's participants have in common.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PoolHeader {
+    pub pool: u32,
+    pub program: String,
+    pub plan: String,
+    /// Checksum of plan and settings, as recordings have it, computed with the pool's seed.
+    pub digest: String,
+    pub seed: u64,
+    pub participants: u32,
+    /// Number of this shard of the pool, from 1.
+    pub shard: u64,
+    pub shards: u64,
+    pub conditions: Vec<StudyArm>,
+    /// Primary outcome and margin of non-inferiority that the plan sets.
+    pub aims: StudyAims,
+    pub arms: bool,
+    /// Whether the unassisted twins (the same trials without signals) were simulated.
+    pub unassisted: bool,
+}
+
+/// A line of a pool's file: one simulated trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PoolTrial {
+    /// Index of the participant in the plan, from 0.
+    pub participant: u32,
+    pub group: String,
+    /// Number of the trial in the participant's series, from 1.
+    pub period: u32,
+    pub planned: StudyArm,
+    /// Study arm of the trial as it was carried out; `none` in an unassisted twin.
+    pub arm: StudyArm,
+    #[serde(flatten)]
+    pub counts: PoolTrialCounts,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PoolTrialCounts {
+    pub human_presses: u64,
+    pub robot_presses: u64,
+    pub errors: u64,
+    pub belief_related_errors: u64,
+    /// Length (number of errors) of each error sequence, whose errors follow from the same false belief.
+    pub lengths: Vec<u32>,
+    pub orders: u64,
+    pub signals: u64,
+    pub signal_s: f64,
+    pub seconds: f64,
+}
+
+impl PoolTrialCounts {
+    pub fn events(&self, outcome: PrimaryOutcome) -> u64 {
+        match outcome {
+            PrimaryOutcome::Errors => self.errors,
+            PrimaryOutcome::BeliefRelatedErrors => self.belief_related_errors,
+            PrimaryOutcome::Sequences => self.lengths.len() as u64,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoolParticipant {
+    /// Index of the participant in the plan, from 0.
+    pub participant: u32,
+    pub group: String,
+    /// Trials of the participant, in the order of periods.
+    pub trials: Vec<PoolTrialPair>,
+}
+
+/// A period of a pool's participant, with its counts in the planned arm and without signals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoolTrialPair {
+    pub arm: StudyArm,
+    /// Counts of the trial in the planned arm; `None` if that trial was not simulated.
+    pub own: Option<PoolTrialCounts>,
+    /// Counts of the trial without signals; `None` if it was not simulated.
+    pub unassisted: Option<PoolTrialCounts>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationPool {
+    pub header: PoolHeader,
+    /// The pool's participants, in the order of the plan.
+    pub persons: Vec<PoolParticipant>,
+}
+
+impl SimulationPool {
+    /// The pool that consists of these trials, which are ordered by participant and period.
+    ///
+    /// # Errors
+    /// A trial is missing, occurs twice, or does not fit the header.
+    pub fn from_trials(header: PoolHeader, trials: Vec<PoolTrial>) -> Result<SimulationPool, ShardMismatch> {
+        let mut persons: Vec<PoolParticipant> = Vec::new();
+        let count = trials.len();
+        for (index, trial) in trials.into_iter().enumerate() {
+            let wrong = |found: String, remedy: &str| Err(ShardMismatch::new(index, found, remedy));
+            if !header.conditions.contains(&trial.planned) || trial.counts.human_presses == 0 {
+                let found = format!("a trial of {} with {} presses", trial.planned.name(), trial.counts.human_presses);
+                return wrong(found, "a trial of the pool's conditions with presses of the human");
+            }
+            let next = persons.last().map_or(0, |person| person.participant + 1);
+            if trial.participant >= next && trial.participant < header.participants {
+                let (participant, group) = (trial.participant, trial.group.clone());
+                persons.push(PoolParticipant { participant, group, trials: Vec::new() });
+            }
+            let Some(person) = persons.last_mut().filter(|person| person.participant == trial.participant) else {
+                let found = format!("participant {} after {}", trial.participant, next.saturating_sub(1));
+                return wrong(found, "participants in order, each once, from 0");
+            };
+            if person.trials.len() + 1 == trial.period as usize {
+                person.trials.push(PoolTrialPair { arm: trial.planned, own: None, unassisted: None });
+            }
+            let is_last = person.trials.len() == trial.period as usize;
+            let Some(slot) = person.trials.last_mut().filter(|slot| is_last && slot.arm == trial.planned) else {
+                let found = format!("trial {} of participant {}", trial.period, trial.participant);
+                return wrong(found, "a participant's trials in order, from 1");
+            };
+            let places =
+                [(trial.arm == trial.planned, &mut slot.own), (trial.arm == StudyArm::None, &mut slot.unassisted)];
+            for (is_it, place) in places {
+                if is_it {
+                    *place = Some(trial.counts.clone());
+                }
+            }
+        }
+        let is_whole = |trial: &PoolTrialPair| {
+            (trial.own.is_some() || !header.arms) && (trial.unassisted.is_some() || !header.unassisted)
+        };
+        let is_complete = |person: &PoolParticipant| {
+            person.trials.len() == header.conditions.len() && person.trials.iter().all(is_whole)
+        };
+        match persons.iter().find(|person| !is_complete(person)) {
+            Some(person) => {
+                let found = format!("participant {} without all trials", person.participant);
+                Err(ShardMismatch::new(count.saturating_sub(1), found, "a pool that was written to its end"))
+            }
+            None => Ok(SimulationPool { header, persons }),
+        }
+    }
+
+    pub fn trials(&self) -> impl Iterator<Item = PoolTrial> + '_ {
+        self.persons.iter().flat_map(|person| {
+            person.trials.iter().zip(1..).flat_map(move |(trial, period)| {
+                let line = |arm: StudyArm, counts: &PoolTrialCounts| PoolTrial {
+                    participant: person.participant,
+                    group: person.group.clone(),
+                    period,
+                    planned: trial.arm,
+                    arm,
+                    counts: counts.clone(),
+                };
+                let own = trial.own.as_ref().map(|counts| line(trial.arm, counts));
+                let twin = trial.unassisted.as_ref().filter(|_| trial.arm != StudyArm::None || own.is_none());
+                own.into_iter().chain(twin.map(|counts| line(StudyArm::None, counts)))
+            })
+        })
+    }
+
+    /// The whole pool, joined from these shards.
+    ///
+    /// # Errors
+    /// Shards are of different pools, occur twice, or are not complete.
+    pub fn joined(parts: Vec<SimulationPool>) -> Result<SimulationPool, ShardMismatch> {
+        let Some(first) = parts.first().map(|part| part.header.clone()) else {
+            return Err(ShardMismatch::new(0, "no part".to_string(), "at least one"));
+        };
+        let whole = PoolHeader { shard: 1, shards: 1, ..first.clone() };
+        let mut persons: Vec<(usize, PoolParticipant)> = Vec::new();
+        for (index, part) in parts.into_iter().enumerate() {
+            if (PoolHeader { shard: 1, shards: 1, ..part.header.clone() }) != whole
+                || part.header.shards != first.shards
+            {
+                let found = "a part of another pool than the first file".to_string();
+                return Err(ShardMismatch::new(
+                    index,
+                    found,
+                    "parts of one plan, seed, number of participants and program",
+                ));
+            }
+            persons.extend(part.persons.into_iter().map(|person| (index, person)));
+        }
+        persons.sort_by_key(|(_, person)| person.participant);
+        if let Some(pair) = persons.windows(2).find(|pair| pair[0].1.participant == pair[1].1.participant) {
+            let found = format!("participant {}, who is in another part, too", pair[1].1.participant);
+            return Err(ShardMismatch::new(pair[1].0, found, "each part once"));
+        }
+        if persons.len() != whole.participants as usize {
+            let found = format!("{} of {} participants", persons.len(), whole.participants);
+            return Err(ShardMismatch::new(0, found, "all parts of the pool, such as 1/4 to 4/4"));
+        }
+        Ok(SimulationPool { header: whole, persons: persons.into_iter().map(|(_, person)| person).collect() })
+    }
 }

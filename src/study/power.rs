@@ -1,32 +1,39 @@
-//! Power of the tests of a study: share of drawn studies in which a test finds an effect, with an interval that
-//! includes the error due to the finite pool.
+//! Command `tomcom power`: draws studies from a pool of simulated participants on all processors, and counts in how
+//! many of them the tests find an effect. The same pool gives the same result on any number of processors.
 //!
-//! The pool's error follows from a bootstrap over its participants: studies are drawn from resampled pools, too. The
-//! variance of the shares between pools, minus the part due to the number of studies of each pool (a one-way analysis
-//! of variance), is added to the binomial variance of the share; the interval is Wilson's, for the number of studies
-//! that would have the total variance.
+//! Power is the share of drawn studies in which a test finds an effect, with an interval that includes the error due to
+//! the finite pool. That error follows from a bootstrap over the pool's participants: studies are drawn from resampled
+//! pools, too. The variance of the shares between pools, minus the part due to the number of studies of each pool (a
+//! one-way analysis of variance), is added to the binomial variance of the share; the interval is Wilson's, for the
+//! number of studies that would have the total variance.
 
 use std::ops::Range;
+use std::path::Path;
 
 use serde::Serialize;
 
-use super::arm_design::StudyArmTrial;
-use super::drawn_study::{
-    DrawnEffect, PowerTest, SignificanceTestMethod, SignificanceTestResult, StudySampler, results,
+use crate::arm_comparison::StudyArmTrial;
+use crate::drawn_study::{
+    DrawnEffect, PowerTest, SignificanceTestMethod, SignificanceTestResult, StudySampler, reference, results, tests,
 };
-use super::effect::LEVEL;
-use super::statistics::wilson;
+use crate::effect::LEVEL;
+use crate::parallel;
+use crate::pool::{PoolHeader, SimulationPool};
+use crate::statistics::wilson;
+use tomcom_core::base::text::count;
+use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::plan::PrimaryOutcome;
+use tomcom_session::study_arm::StudyArm;
 
 /// Significance level of the tests in a power analysis.
-pub const ALPHA: f64 = 0.05;
+pub(crate) const ALPHA: f64 = 0.05;
 /// Power that a study should reach (0.8).
-pub const WANTED: f64 = 0.8;
+pub(crate) const WANTED: f64 = 0.8;
 /// Number of bootstrap resamples of the pool of simulated participants.
-pub const POOLS: u64 = 40;
-/// Number of studies that are drawn from each resampled pool.
-pub const STUDIES_OF_POOL: u64 = 25;
+pub(crate) const POOLS: u64 = 40;
+pub(crate) const STUDIES_OF_POOL: u64 = 25;
 /// Number of studies that are drawn for each ratio of rates in the search for the least detectable effect.
-pub const STUDIES_OF_RATIO: u64 = 400;
+pub(crate) const STUDIES_OF_RATIO: u64 = 400;
 /// Number of ratios of rates that are tried in the search for the least detectable effect.
 const RATIOS: u32 = 17;
 
@@ -38,11 +45,8 @@ pub fn ratios() -> Vec<f64> {
 /// Number of drawn studies in which a test rejects the null hypothesis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RejectionCount {
-    /// Number of drawn studies in which the test can be computed.
     pub studies: u64,
-    /// Number of studies with a corrected p value below the significance level.
     pub rejected: u64,
-    /// Number of studies with an uncorrected p value below the significance level.
     pub uncorrected: u64,
     /// Number of drawn studies in which the test cannot be computed.
     pub unknown: u64,
@@ -59,7 +63,6 @@ impl RejectionCount {
         self.uncorrected += u64::from(result.p_uncorrected < ALPHA);
     }
 
-    /// Sum of two counts of rejections.
     pub fn plus(self, other: RejectionCount) -> RejectionCount {
         RejectionCount {
             studies: self.studies + other.studies,
@@ -78,7 +81,7 @@ impl RejectionCount {
 
 /// Counts of rejections of each test over the studies with these numbers; the last element counts studies in which any
 /// contrast of the mixed model rejects after correction.
-pub fn count(
+pub(crate) fn count_rejections(
     source: &StudySampler,
     tests: &[PowerTest],
     size: usize,
@@ -105,7 +108,6 @@ pub fn count(
 /// Share of drawn studies in which a test finds an effect: the power or, without an effect, the type I error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RejectionShare {
-    /// Number of drawn studies.
     pub studies: u64,
     /// Number of studies that reject the null hypothesis by the p value corrected for the number of contrasts.
     pub rejected: u64,
@@ -122,7 +124,6 @@ pub struct RejectionShare {
 }
 
 impl RejectionShare {
-    /// The share of rejections in studies from the pool; `of_pools` has the counts for studies from resampled pools.
     pub fn new(count: RejectionCount, of_pools: &[RejectionCount]) -> RejectionShare {
         let (share, studies) = (count.share(), count.studies + count.unknown);
         let pool_variance = variance_between(of_pools);
@@ -170,4 +171,355 @@ pub fn least_ratio(shares: &[f64]) -> Option<f64> {
     let Some(weaker) = first.checked_sub(1) else { return Some(ratio) };
     let part = (share - WANTED) / (share - shares[weaker]);
     Some(ratio + part * (ratios[weaker] - ratio))
+}
+
+/// Counts of rejections for one number of participants; each list has an entry per test and a last entry for any of the
+/// contrasts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampleSizeRejections {
+    pub participants: usize,
+    pub counts: Vec<RejectionCount>,
+    pub of_pools: Vec<Vec<RejectionCount>>,
+    /// Counts of rejections over studies with each tried ratio of rates, the weakest effect first; empty if the least
+    /// effect was not searched for.
+    pub of_ratios: Vec<Vec<RejectionCount>>,
+}
+
+/// Power of a study for several numbers of participants: the output of `tomcom power`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PowerSummary {
+    pub plan: String,
+    /// Checksum of study plan and settings with the pool's seed.
+    pub digest: String,
+    pub program: String,
+    pub seed: u64,
+    pub pool: u32,
+    pub outcome: PrimaryOutcome,
+    pub conditions: Vec<StudyArm>,
+    /// Ratio of rates that was imposed on the drawn studies; null if the effect is that of the simulated arms.
+    pub ratio: Option<f64>,
+    pub sizes: Vec<SampleSizePower>,
+    pub needed: Vec<RequiredSampleSize>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SampleSizePower {
+    pub participants: usize,
+    pub tests: Vec<TestPower>,
+    /// Share of studies in which at least one contrast rejects after correction; null if there is only one contrast.
+    pub any: Option<RejectionShare>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TestPower {
+    #[serde(flatten)]
+    pub test: PowerTest,
+    #[serde(flatten)]
+    pub found: RejectionShare,
+    /// Least detectable effect: the ratio of rates closest to 1 that is found with a power of 0.8; null where it was
+    /// not searched for, or no ratio is found with that power.
+    pub least_ratio: Option<f64>,
+}
+
+/// Number of participants that a test needs for a power of 0.8.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RequiredSampleSize {
+    #[serde(flatten)]
+    pub test: PowerTest,
+    /// Least of the tried numbers of participants from which on the power is at least 0.8; null if the power is not
+    /// reached.
+    pub participants: Option<usize>,
+    /// Least of the tried numbers of participants from which on the lower end of the power's interval is at least 0.8;
+    /// null if that is not reached.
+    pub surely: Option<usize>,
+}
+
+impl PowerSummary {
+    pub fn new(header: &PoolHeader, effect: DrawnEffect, sizes: &[SampleSizeRejections]) -> PowerSummary {
+        let tests = tests(&header.conditions);
+        let sizes: Vec<SampleSizePower> =
+            sizes.iter().map(|size| SampleSizePower::new(size, &tests, &header.conditions)).collect();
+        let needed = |(index, test): (usize, &PowerTest)| {
+            let from = |value: fn(&RejectionShare) -> f64| {
+                let holds = sizes.iter().rev().take_while(|size| value(&size.tests[index].found) >= WANTED);
+                holds.last().map(|size| size.participants)
+            };
+            RequiredSampleSize {
+                test: *test,
+                participants: from(|found| found.share),
+                surely: from(|found| found.interval[0]),
+            }
+        };
+        PowerSummary {
+            plan: header.plan.clone(),
+            digest: header.digest.clone(),
+            program: header.program.clone(),
+            seed: header.seed,
+            pool: header.participants,
+            outcome: header.aims.outcome,
+            conditions: header.conditions.clone(),
+            ratio: match effect {
+                DrawnEffect::AsSimulated => None,
+                DrawnEffect::Ratio(ratio) => Some(ratio),
+            },
+            needed: tests.iter().enumerate().map(needed).collect(),
+            sizes,
+        }
+    }
+
+    /// Whether the simulated effect is zero, so that each rejection of the null hypothesis is a type I error.
+    pub fn is_null(&self) -> bool {
+        self.ratio == Some(1.0)
+    }
+}
+
+impl SampleSizePower {
+    fn new(size: &SampleSizeRejections, tests: &[PowerTest], conditions: &[StudyArm]) -> SampleSizePower {
+        let share = |index: usize| {
+            let of_pools: Vec<RejectionCount> = size.of_pools.iter().map(|pool| pool[index]).collect();
+            RejectionShare::new(size.counts[index], &of_pools)
+        };
+        let test_power = |(index, test): (usize, &PowerTest)| {
+            let shares: Vec<f64> = size.of_ratios.iter().map(|counts| counts[index].share()).collect();
+            // The ratio of rates is imposed between each arm and the reference arm, not between other arms.
+            let is_put_in = test.against == reference(conditions) && !shares.is_empty();
+            TestPower {
+                test: *test,
+                found: share(index),
+                least_ratio: is_put_in.then(|| least_ratio(&shares)).flatten(),
+            }
+        };
+        let contrasts = tests.iter().filter(|test| test.method == SignificanceTestMethod::LinearMixedModel).count();
+        SampleSizePower {
+            participants: size.participants,
+            tests: tests.iter().enumerate().map(test_power).collect(),
+            any: (contrasts > 1).then(|| share(tests.len())),
+        }
+    }
+}
+
+impl PowerTest {
+    /// The statistical test as text: "wizard to none, mixed ANOVA (the paper's test)".
+    pub fn title(&self) -> String {
+        let method = match self.method {
+            SignificanceTestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
+            SignificanceTestMethod::LinearMixedModel => "linear mixed model",
+        };
+        format!("{} to {}, {method}", self.arm.name(), self.against.name())
+    }
+}
+
+pub fn describe(found: &PowerSummary) -> String {
+    let effect = match found.ratio {
+        None => "the effect is that of the simulated conditions".to_string(),
+        Some(1.0) => "no effect: all trials are unassisted, and conditions are exchanged within persons".to_string(),
+        Some(ratio) => format!("the effect is put into unassisted trials: rates are {ratio} times as high"),
+    };
+    let studies = found.sizes.first().and_then(|size| size.tests.first()).map_or(0, |one| one.found.studies);
+    let mut text = format!(
+        "plan {} ({}), outcome: {} per press of the participant; {} for each number of participants, drawn from {} (seed \
+         {}); {effect}\n",
+        found.plan,
+        found.digest,
+        found.outcome.title(),
+        count(studies, "study", "studies"),
+        count(found.pool, "simulated participant", "simulated participants"),
+        found.seed,
+    );
+    for (index, needed) in found.needed.iter().enumerate() {
+        text += &describe_test(found, index);
+        text += &if found.is_null() { error_in_words(found, index) } else { power_in_words(found, needed, index) };
+    }
+    if found.sizes.iter().any(|size| size.any.is_some()) {
+        text += "at least one contrast of the linear mixed model, corrected for their number (Holm)\n";
+        for size in &found.sizes {
+            let Some(any) = size.any else { continue };
+            text += &format!("  {:>3} participants {}\n", size.participants, in_numbers(&any));
+        }
+    }
+    text += "Power is that of finding a difference, in either direction; that of showing a concept to be not worse than the wizard is not worked out.\n";
+    text + "Participants are simulated: the answer is about them, and about people as far as they are like them.\n"
+}
+
+fn in_numbers(found: &RejectionShare) -> String {
+    let [low, high] = found.interval;
+    format!("{:.3} ({low:.3} to {high:.3})", found.share)
+}
+
+fn describe_test(found: &PowerSummary, index: usize) -> String {
+    let what = if found.is_null() { "type I error" } else { "power" };
+    let mut text = format!("{}: {what} (interval of 95 % with the pool's error)\n", found.needed[index].test.title());
+    for size in &found.sizes {
+        let one = &size.tests[index];
+        let least = one.least_ratio.map_or(String::new(), |ratio| format!(", least effect: ratio {ratio:.2}"));
+        let unknown = match one.found.unknown {
+            0 => String::new(),
+            unknown => format!(", {} could not be tested", count(unknown, "study", "studies")),
+        };
+        text += &format!("  {:>3} participants {}{least}{unknown}\n", size.participants, in_numbers(&one.found));
+    }
+    text
+}
+
+/// Sentences on how many participants are needed, and on the effect that the middle one of the tried numbers of
+/// participants detects.
+fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usize) -> String {
+    let largest = found.sizes.last().map_or(0, |size| size.participants);
+    let mut text = match (needed.participants, needed.surely) {
+        (Some(enough), Some(surely)) if surely > enough => {
+            format!(
+                "  {enough} participants are needed for a power of {WANTED}; {surely} to be sure of it, as the pool is finite."
+            )
+        }
+        (Some(enough), Some(_)) => format!("  {enough} participants are needed for a power of {WANTED}."),
+        (Some(enough), None) => {
+            format!(
+                "  {enough} participants are needed for a power of {WANTED}; the pool is too small to be sure of it."
+            )
+        }
+        (None, _) if found.sizes.last().is_some_and(|size| size.tests[index].found.interval[1] >= WANTED) => {
+            format!(
+                "  The pool is too small to tell whether {largest} participants are enough for a power of {WANTED}."
+            )
+        }
+        (None, _) => format!("  {largest} participants are not enough for a power of {WANTED}."),
+    };
+    let middle = found.sizes.get(found.sizes.len() / 2);
+    if let Some((size, ratio)) = middle.and_then(|size| Some((size, size.tests[index].least_ratio?))) {
+        text += &format!(
+            " With {} participants, four of five studies find an effect that takes away {:.0} % of the {} or more.",
+            size.participants,
+            100.0 * (1.0 - ratio),
+            found.outcome.title(),
+        );
+    }
+    text + "\n"
+}
+
+fn error_in_words(found: &PowerSummary, index: usize) -> String {
+    let shares = || found.sizes.iter().map(|size| size.tests[index].found.share);
+    let [least, most] = [shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max)];
+    format!("  Without an effect the test finds one in {:.1} to {:.1} % of the studies.\n", 100.0 * least, 100.0 * most)
+}
+
+const BLOCK: u64 = 25;
+
+/// Request of a power analysis: study sizes, number of drawn studies, and effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PowerRequest {
+    pub sizes: Vec<usize>,
+    pub studies: u64,
+    pub effect: DrawnEffect,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Drawn {
+    Pool,
+    /// Studies are drawn from the bootstrap resample of the pool with this number, from 1.
+    Resampled(u64),
+    /// Studies are drawn from the pool, with the ratio of rates at this index.
+    Ratio(usize),
+}
+
+#[derive(Clone, Debug)]
+struct Block {
+    size: usize,
+    drawn: Drawn,
+    numbers: Range<u64>,
+}
+
+/// Number of blocks of studies; [`measure`] calls `done` once for each block.
+pub fn blocks(request: &PowerRequest, pool: &SimulationPool) -> u64 {
+    all_blocks(request, pool).len() as u64
+}
+
+/// All blocks of studies. The least detectable effect is searched for only if the pool has unassisted twins, since only
+/// then an effect of any size can be simulated.
+fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
+    let split =
+        |studies: u64| (0..studies.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(studies));
+    let tried = if pool.header.unassisted && request.effect != DrawnEffect::Ratio(1.0) { ratios().len() } else { 0 };
+    let mut blocks = Vec::new();
+    for &size in &request.sizes {
+        let mut add = |drawn: Drawn, studies: u64| {
+            blocks.extend(split(studies).map(|numbers| Block { size, drawn, numbers }));
+        };
+        add(Drawn::Pool, request.studies);
+        (1..=POOLS).for_each(|number| add(Drawn::Resampled(number), STUDIES_OF_POOL));
+        (0..tried).for_each(|index| add(Drawn::Ratio(index), STUDIES_OF_RATIO.min(request.studies)));
+    }
+    blocks
+}
+
+/// Draws the studies and computes the power. `path`: file of the pool, for messages; `done` is called after each block.
+///
+/// # Errors
+/// The pool has too few participants for an order of the conditions, or lacks the trials that the effect needs.
+pub fn measure(
+    request: &PowerRequest,
+    pool: &SimulationPool,
+    path: &Path,
+    done: impl Fn() + Sync,
+) -> FileResult<PowerSummary> {
+    let header = &pool.header;
+    let wrong = |found: String, remedy: &str| Err(FileError::from_finding(path, found, remedy.to_string()));
+    match request.effect {
+        DrawnEffect::AsSimulated if !header.arms => {
+            return wrong(
+                "a pool that has only unassisted trials".to_string(),
+                "--effect RATIO, or a pool made without --null",
+            );
+        }
+        DrawnEffect::Ratio(_) if !header.unassisted => {
+            return wrong(
+                "a pool without unassisted twins".to_string(),
+                "a pool that tomcom power wrote, not tomcom arms",
+            );
+        }
+        _ => {}
+    }
+    let source = match StudySampler::new(pool) {
+        Ok(source) => source,
+        Err(found) => return wrong(found, "a larger pool: two persons or more in every order of the conditions"),
+    };
+    let (tests, ratios) = (tests(&header.conditions), ratios());
+    let blocks = all_blocks(request, pool);
+    let counted = parallel::each(&blocks, |block| counts(&source, &tests, request.effect, &ratios, block), done);
+    let of_size = |&size: &usize| {
+        let sum = |drawn: Drawn| {
+            let own = blocks.iter().zip(&counted).filter(|(block, _)| block.size == size && block.drawn == drawn);
+            own.fold(vec![RejectionCount::default(); tests.len() + 1], |sum, (_, counts)| {
+                sum.into_iter().zip(counts).map(|(sum, one)| sum.plus(*one)).collect()
+            })
+        };
+        let tried = blocks.iter().filter(|block| block.size == size);
+        let tried = tried.filter_map(|block| match block.drawn {
+            Drawn::Ratio(index) => Some(index + 1),
+            _ => None,
+        });
+        SampleSizeRejections {
+            participants: size,
+            counts: sum(Drawn::Pool),
+            of_pools: (1..=POOLS).map(|number| sum(Drawn::Resampled(number))).collect(),
+            of_ratios: (0..tried.max().unwrap_or(0)).map(|index| sum(Drawn::Ratio(index))).collect(),
+        }
+    };
+    let sizes: Vec<SampleSizeRejections> = request.sizes.iter().map(of_size).collect();
+    Ok(PowerSummary::new(header, request.effect, &sizes))
+}
+
+/// In how many studies of a block each test rejects its null hypothesis.
+fn counts(
+    source: &StudySampler,
+    tests: &[PowerTest],
+    effect: DrawnEffect,
+    ratios: &[f64],
+    block: &Block,
+) -> Vec<RejectionCount> {
+    let numbers = block.numbers.clone();
+    match block.drawn {
+        Drawn::Pool => count_rejections(source, tests, block.size, effect, numbers),
+        Drawn::Resampled(number) => count_rejections(&source.resampled(number), tests, block.size, effect, numbers),
+        Drawn::Ratio(index) => count_rejections(source, tests, block.size, DrawnEffect::Ratio(ratios[index]), numbers),
+    }
 }

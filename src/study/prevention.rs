@@ -12,7 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::known_beliefs::KnownFalseBeliefs;
+use crate::rater_episodes::KnownFalseBeliefs;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
@@ -25,7 +25,6 @@ const NANOS_PER_MS: u64 = 1_000_000;
 /// Errors and false beliefs of a trial, as known from recorded beliefs or from raters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialGroundTruth {
-    /// Presses of the human in the trial, in order, with the ground truth about each press.
     pub presses: Vec<PressGroundTruth>,
     /// Periods in which the participant held a false belief about a state aspect.
     pub false_beliefs: Vec<FalseBeliefGroundTruth>,
@@ -33,12 +32,9 @@ pub struct TrialGroundTruth {
     pub knows_harmless: bool,
 }
 
-/// Whether a press of the human was an error, and which false belief caused it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressGroundTruth {
-    /// Session time of the press.
     pub time: SessionTime,
-    /// Whether the press was an error.
     pub error: bool,
     /// State aspects of the false belief that caused the error; empty for all other presses. An order and the recipe of
     /// the ordered dish are one target with two aspects.
@@ -48,50 +44,36 @@ pub struct PressGroundTruth {
 /// Period in which the participant held a false belief about one state aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FalseBeliefGroundTruth {
-    /// State aspect about which the belief was false.
     pub aspect: AspectId,
-    /// Session time at which the false belief began.
     pub began: SessionTime,
     /// Session time at which the false belief ended; `None` if the false belief lasted until the end of the trial.
     pub ended: Option<SessionTime>,
-    /// Whether the false belief led to an error.
     pub harmful: bool,
 }
 
-/// A signal that a concept would have sent in an unassisted trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HypotheticalSignal {
-    /// Session time at which the concept would have sent the signal.
     pub time: SessionTime,
-    /// Number of human presses before the signal.
     pub press: usize,
-    /// State aspects whose true values the signal tells.
     pub aspects: Vec<AspectId>,
 }
 
 /// Counts of prevented errors and useless signals of a concept, in one or several trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PreventionCounts {
-    /// Number of human presses.
     pub presses: u64,
     /// Number of interruptions: one for each signal or proposal.
     pub signals: u64,
     /// Number of contents that were told: 1 for a signal, the number of proposed presses for a proposal.
     pub contents: u64,
-    /// Number of errors that follow from false beliefs.
     pub related: u64,
-    /// Number of errors from false beliefs that were prevented.
     pub prevented: u64,
-    /// Number of useless signals or proposals.
     pub useless: u64,
     /// Sum over useful signals of the time from the signal to the first error that the signal prevents, in
     /// milliseconds; 0 for proposals.
     pub lead_ms: u64,
-    /// Number of human presses outside of false belief episodes.
     pub outside: u64,
-    /// Number of human presses directly preceded by a useless signal.
     pub false_presses: u64,
-    /// Number of useless signals during a false belief episode.
     pub false_inside: u64,
     /// Number of signals about a false belief that led to no error; these signals count as useless, too. Null where
     /// such beliefs are not known.
@@ -128,7 +110,6 @@ pub struct PreventionRates {
 }
 
 impl PreventionCounts {
-    /// Sum of two prevention counts.
     pub fn plus(self, other: &PreventionCounts) -> PreventionCounts {
         PreventionCounts {
             presses: self.presses + other.presses,

@@ -1,24 +1,31 @@
-//! False belief episodes of people, derived from the causes that raters gave to errors. [`RULE`] states the rule of
-//! this derivation, and the report prints it.
+//! False beliefs of participants: known from the recorded beliefs of simulated participants, or, of people, derived
+//! from the causes that raters gave to errors. [`RULE`] states the rule of this derivation, and the report prints it.
 //!
 //! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate is not
 //! used, so that the estimate can be evaluated against these episodes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::seen_contents::LocationDwells;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::gaze::MIN_CONFIDENCE;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{
-    Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, OrderContent, Press, State,
-    World,
+    Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Kitchen, KitchenChange, LocationId, OrderContent,
+    Press, State, World,
 };
 use tomcom_core::measures::JudgedPress;
-use tomcom_core::measures::attribution::FalseBeliefTarget;
+use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::RaterCodes;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// The rule by which false belief episodes follow from raters' codes, as printed in the report.
-pub const RULE: &str = "Of people, from the codes of two raters: their consensus, else only the false beliefs that both gave to an error \
+pub(crate) const RULE: &str = "Of people, from the codes of two raters: their consensus, else only the false beliefs that both gave to an error \
      alike; what one of them coded alone is counted beside it. The aspect of an error about a place is its content. An error about an order is \
      about what the order shows, if it had changed and not been looked at since, else about the recipe of its dish (without any gaze always \
      about the recipe). The belief is false from the last press, look or signal before the error that shows it right; if the place was changed \
@@ -62,9 +69,7 @@ struct EpisodeRule<'a> {
 /// The participant's belief about one state aspect, followed through a trial.
 struct BeliefCourse {
     aspect: AspectId,
-    /// Session time at which the belief was last shown to be right.
     since: SessionTime,
-    /// The location's value at the time `since`; unused for recipes.
     value: usize,
     /// Session time after `since` at which somebody else first changed the location; `None` if nobody did.
     changed: Option<SessionTime>,
@@ -81,7 +86,6 @@ impl BeliefCourse {
         BeliefCourse { aspect, since, value, changed: None, mended: None, open: None, done }
     }
 
-    /// Notes that the belief is right at this time, and about which value.
     fn right(&mut self, time: SessionTime, value: usize) {
         (self.since, self.value, self.changed, self.mended) = (time, value, None, None);
         self.done.extend(self.open.take().map(|episode| FalseBeliefEpisode { corrected: Some(time), ..episode }));
@@ -143,7 +147,6 @@ fn after(signal: SessionTime) -> SessionTime {
 }
 
 impl EpisodeRule<'_> {
-    /// Coded errors, grouped by the state aspect of the false belief.
     fn by_aspect(&mut self, targets: &BTreeMap<u64, FalseBeliefTarget>) -> BTreeMap<AspectId, BTreeSet<u64>> {
         let (trace, has_looks) = (self.trace, self.trace.has_looks());
         let mut unseen: BTreeSet<LocationId> = BTreeSet::new();
@@ -180,7 +183,6 @@ impl EpisodeRule<'_> {
         errors
     }
 
-    /// The orders for which a press reduces the cost to go.
     fn nearer(&mut self, press: &Press) -> Vec<LocationId> {
         let recipes = self.kitchen.true_recipes();
         let wanted: Vec<LocationId> = self.kitchen.wanted(press.before).map(|(order, _)| order).collect();
@@ -188,7 +190,6 @@ impl EpisodeRule<'_> {
         wanted.into_iter().filter(|&order| costs(press.after, order) < costs(press.before, order)).collect()
     }
 
-    /// Episodes of false belief about one state aspect that caused the errors with these sequence numbers.
     fn episodes(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<FalseBeliefEpisode> {
         let (kitchen, trace, wrong) = (self.kitchen, self.trace, self.confusions(aspect, errors));
         let value = |state: State| kitchen.true_value(state, aspect);
@@ -280,5 +281,167 @@ impl EpisodeRule<'_> {
         next.is_some_and(|next| {
             self.cost.all_orders(next, &world.recipes) < self.cost.all_orders(world.state, &world.recipes)
         })
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownFalseBeliefs {
+    /// Source from which the false beliefs are known: recorded beliefs, or raters.
+    pub basis: BeliefSource,
+    pub targets: BTreeMap<u64, FalseBeliefTarget>,
+    /// False belief episodes of the trial; for people, only episodes that led to errors.
+    pub episodes: Vec<FalseBeliefEpisode>,
+}
+
+/// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes that each gave alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RaterFalseBeliefAgreement {
+    pub same: u64,
+    pub differing: u64,
+    pub of_one: u64,
+}
+
+impl KnownFalseBeliefs {
+    pub fn recorded(judged: &[JudgedPress], episodes: Vec<FalseBeliefEpisode>) -> KnownFalseBeliefs {
+        let target = |press: &JudgedPress| match press.cause {
+            Some(ErrorCause::Belief { target, .. }) => Some((press.seq, target)),
+            _ => None,
+        };
+        let targets = judged.iter().filter_map(target).collect();
+        KnownFalseBeliefs { basis: BeliefSource::Recorded, targets, episodes }
+    }
+
+    /// The false beliefs that follow from codes on which two raters agree (see [`super::rater_episodes::RULE`]).
+    pub fn coded(
+        basis: BeliefSource,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        trace: &BeliefEvidence,
+        judged: &[JudgedPress],
+        codes: &RaterCodes,
+    ) -> KnownFalseBeliefs {
+        let errors = judged.iter().filter(|press| press.verdict.error);
+        let target = |press: &JudgedPress| Some((press.seq, codes.0.get(&press.seq)?.target(kitchen, press.before)?));
+        let targets: Vec<(u64, FalseBeliefTarget)> = errors.filter_map(target).collect();
+        let episodes = rater_episodes(kitchen, cost, trace, judged, &targets);
+        KnownFalseBeliefs { basis, targets: targets.into_iter().collect(), episodes }
+    }
+}
+
+impl KnownFalseBeliefs {
+    pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&FalseBeliefEpisode> {
+        let target = self.targets.get(&press.seq)?;
+        let is_in =
+            |one: &FalseBeliefEpisode| one.began <= press.time && one.corrected.is_none_or(|end| press.time <= end);
+        self.episodes
+            .iter()
+            .find(|one| one.errors > 0 && is_in(one) && target.aspects(kitchen).any(|aspect| aspect == one.aspect))
+    }
+}
+
+impl RaterFalseBeliefAgreement {
+    pub fn count([one, other]: &[RaterCodes; 2]) -> RaterFalseBeliefAgreement {
+        let mut shared = RaterFalseBeliefAgreement::default();
+        for (press, code) in &one.0 {
+            let Some(of_other) = other.0.get(press) else { continue };
+            match (code.aspect(), of_other.aspect()) {
+                (Some(one), Some(other)) if one == other => shared.same += 1,
+                (Some(_), Some(_)) => shared.differing += 1,
+                (Some(_), None) | (None, Some(_)) => shared.of_one += 1,
+                (None, None) => {}
+            }
+        }
+        shared
+    }
+
+    pub fn plus(self, other: RaterFalseBeliefAgreement) -> RaterFalseBeliefAgreement {
+        RaterFalseBeliefAgreement {
+            same: self.same + other.same,
+            differing: self.differing + other.differing,
+            of_one: self.of_one + other.of_one,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum BeliefEvidenceEvent {
+    Started {
+        /// State of the kitchen at the trial's start: empty.
+        state: State,
+    },
+    /// Somebody other than the participant changes the kitchen: the robot, a new order, or the wizard's correction.
+    Changed {
+        before: State,
+        after: State,
+    },
+    /// The gaze has rested on a location long enough to read its present content; noted once for each look and content.
+    Looked {
+        location: LocationId,
+    },
+    Told {
+        aspects: Vec<AspectId>,
+    },
+    Pressed {
+        seq: u64,
+        press: Press,
+    },
+}
+
+/// Everything in a trial that can change or show the participant's beliefs, in order: changes of the kitchen, looks,
+/// signals and the participant's presses. Neither estimates nor recorded beliefs are part of it.
+#[derive(Clone, Debug, Default)]
+pub struct BeliefEvidence {
+    pub events: Vec<(SessionTime, BeliefEvidenceEvent)>,
+    looks: LocationDwells,
+    /// For each location, whether the present look at its present content is already in `events`.
+    is_noted: Vec<bool>,
+}
+
+impl BeliefEvidence {
+    pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, session: &Session) {
+        if !session.is_running() && change.states().is_none() {
+            // Participants do not read the display during a pause, so looks end.
+            self.looks.interrupted();
+            return;
+        }
+        if let Some((before, after)) = change.states() {
+            self.is_noted.resize(session.kitchen.locations.len(), false);
+            for location in session.kitchen.changed(before, after) {
+                self.looks.changed(location);
+                self.is_noted[location.index()] = false;
+            }
+        }
+        let traced = match (*change, &stamped.event) {
+            (KitchenChange::TrialStarted { after, .. }, _) => Some(BeliefEvidenceEvent::Started { state: after }),
+            (KitchenChange::Press { press, .. }, _) if press.agent == Agent::Human => {
+                Some(BeliefEvidenceEvent::Pressed { seq: stamped.seq, press })
+            }
+            (_, Event::SignalShown { signal, .. }) => {
+                Some(BeliefEvidenceEvent::Told { aspects: aspects_told(&session.kitchen, session.state, signal) })
+            }
+            (_, Event::Gaze(sample)) if sample.confidence >= MIN_CONFIDENCE && session.gaze.fault.is_none() => {
+                self.looked(stamped.time, session);
+                None
+            }
+            _ => change.states().map(|(before, after)| BeliefEvidenceEvent::Changed { before, after }),
+        };
+        self.events.extend(traced.map(|event| (stamped.time, event)));
+    }
+
+    fn looked(&mut self, now: SessionTime, session: &Session) {
+        self.is_noted.resize(session.kitchen.locations.len(), false);
+        for (index, is_noted) in self.is_noted.iter_mut().enumerate() {
+            let location = LocationId(index as u8);
+            let is_seen = self.looks.sampled(session, location);
+            if is_seen && !*is_noted {
+                self.events.push((now, BeliefEvidenceEvent::Looked { location }));
+            }
+            *is_noted = is_seen;
+        }
+    }
+
+    /// Whether the trial has any look of the participant; without gaze data it is unknown what the participant saw.
+    fn has_looks(&self) -> bool {
+        self.events.iter().any(|(_, event)| matches!(event, BeliefEvidenceEvent::Looked { .. }))
     }
 }

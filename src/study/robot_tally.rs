@@ -1,10 +1,11 @@
-//! Counts of robot events other than presses, and of the wizard's interventions in the robot, while a trial is
-//! replayed.
+//! Counts of robot events other than presses, and of the wizard's interventions in the robot: in a trial that is
+//! replayed, and summed by kind of arm.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::trial_statistics::TrialStatistics;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::robot::AbortReason;
@@ -13,33 +14,25 @@ use tomcom_session::Event;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::settings::ArmKind;
 
-/// Robot statistics of a trial from its start to its end, pauses included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotEventSummary {
     /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
     pub arm: Option<ArmSafetySummary>,
-    /// Number of emergency stops by the wizard.
     pub emergency_stops: u64,
     /// Number of aborted robot presses by the reason of aborting; reasons that did not occur are absent.
     pub given_up: BTreeMap<AbortReason, u64>,
-    /// Number of times that the wizard held the robot before its next press.
     pub held: u64,
-    /// Number of times that the wizard skipped a press of the robot.
     pub skipped: u64,
-    /// Number of times that the wizard chose the robot's next press.
     pub driven: u64,
-    /// Number of times that the wizard corrected the content of a location.
     pub corrected: u64,
 }
 
-/// Safety and contact statistics of a simulated physical arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSafetySummary {
     /// Number of protective stops: the arm stopped because of a contact force.
     pub protective_stops: u64,
     /// Number of stops because a joint did not follow its commanded motion.
     pub faults: u64,
-    /// Number of times that somebody touched the arm, including the contacts that stopped it.
     pub contacts: u64,
     /// Largest contact force, in newtons; null without contacts.
     pub peak_force_n: Option<f64>,
@@ -63,7 +56,6 @@ impl RobotEventSummary {
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    /// Adds the robot statistics of another trial to these.
     pub fn add(&mut self, other: &RobotEventSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
@@ -85,14 +77,12 @@ impl RobotEventSummary {
     }
 }
 
-/// Counts robot events while a recording is replayed.
 #[derive(Clone, Debug)]
 pub struct RobotEventTally {
     figures: RobotEventSummary,
     /// Reason why the trial ended; `None` before its end.
     pub ended: Option<TrialEndReason>,
     mode: SafetyMode,
-    /// Time on the trial's clock up to which the durations of safety modes have been counted.
     clock: SessionTime,
 }
 
@@ -154,8 +144,29 @@ impl RobotEventTally {
         }
     }
 
-    /// The robot statistics counted so far.
     pub fn into_figures(self) -> RobotEventSummary {
         self.figures
     }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RobotArmTotals {
+    /// Kind of the robot's arm: timed or physical.
+    pub kind: ArmKind,
+    pub trials: u64,
+    #[serde(flatten)]
+    pub robot: RobotEventSummary,
+}
+
+/// Groups trials by kind of robot arm; kinds without trials are left out.
+pub fn by_arm(trials: &[&TrialStatistics]) -> Vec<RobotArmTotals> {
+    let of = |kind: ArmKind| {
+        let mut group = RobotArmTotals { kind, trials: 0, robot: RobotEventSummary::default() };
+        for trial in trials.iter().filter(|trial| trial.arm == kind) {
+            group.trials += 1;
+            group.robot.add(&trial.robot);
+        }
+        (group.trials > 0).then_some(group)
+    };
+    [ArmKind::Timed, ArmKind::Physics].into_iter().filter_map(of).collect()
 }

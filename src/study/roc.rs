@@ -6,18 +6,18 @@
 //! useless signals. Signals are counted as interruptions: a proposal of k presses is one.
 
 use rand::RngExt;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::concept_totals::{ConceptPreventionCounts, ConceptTotals};
-use super::prevention::{PreventionCounts, PreventionRates};
+use crate::analysis::trial_bootstrap::percentiles;
+use crate::prevention::{PreventionCounts, PreventionRates};
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::concept::ConceptName;
 
 /// Smallest cost of communication in the paper, in presses. The planner is less accurate for smaller benefits.
-pub const LEAST_COST: f64 = 0.5;
+pub(crate) const LEAST_COST: f64 = 0.5;
 
 /// Signals per 100 human presses at which concepts are compared.
-pub const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
+pub(crate) const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
 /// Number of bootstrap resamples over participants, for confidence intervals.
 const RESAMPLES: u32 = 1000;
 /// Number of points of a confidence band over the range of false positive rates that all concepts reach.
@@ -43,13 +43,11 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
     }
 }
 
-/// Communication concepts that the analysis compares with each other.
-pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
+pub(crate) const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
 
 /// A point of a concept's receiver operating characteristic (ROC) curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RocPoint {
-    /// Value of the concept's parameter at this point.
     pub parameter: f64,
     /// False positive rate: useless signals per press of the human.
     pub fpr: f64,
@@ -61,7 +59,6 @@ pub struct RocPoint {
     pub useless_per_100_actions: f64,
     /// Share of useless signals among all signals; null without signals.
     pub useless_share: Option<f64>,
-    /// Prevention counts over all trials, from which the rates follow.
     #[serde(flatten)]
     pub count: PreventionCounts,
 }
@@ -77,10 +74,8 @@ pub struct BootstrapInterval {
     pub high: Option<f64>,
 }
 
-/// The receiver operating characteristic (ROC) curve of a concept.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConceptRocCurve {
-    /// Communication concept to which the curve belongs.
     pub concept: ConceptName,
     /// Area under the curve: mean true positive rate over the false positive rates that all concepts reach (partial
     /// area divided by the range's width).
@@ -95,23 +90,18 @@ pub struct ConceptRocCurve {
     pub band: Vec<[f64; 3]>,
     /// True positive rates at the numbers of signals in [`EQUAL_SIGNALS`].
     pub at_equal_signals: Vec<BootstrapInterval>,
-    /// Shares of useless signals at the numbers of signals in [`EQUAL_SIGNALS`].
     pub useless_at_equal_signals: Vec<BootstrapInterval>,
     /// Difference between the first concept's true positive rate and this concept's, at the numbers of signals in
     /// [`EQUAL_SIGNALS`].
     pub behind_first: Vec<BootstrapInterval>,
 }
 
-/// Comparison of communication concepts by their receiver operating characteristics.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ConceptComparison {
-    /// Number of participants with unassisted trials.
     pub participants: u64,
-    /// Number of unassisted trials.
     pub trials: u64,
     /// Largest false positive rate that all compared concepts reach.
     pub common_fpr: Option<f64>,
-    /// The concepts' ROC curves, in the order in which concepts are compared.
     pub concepts: Vec<ConceptRocCurve>,
 }
 
@@ -244,14 +234,13 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
 /// A statistic of the curves with its percentile interval over the bootstrap resamples.
 fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
-    let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
+    let drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
     // If fewer than half of the resamples have a value, an interval from them would be biased.
     if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
         return BootstrapInterval { value, low: None, high: None };
     }
-    drawn.sort_by(f64::total_cmp);
-    let at = |share: f64| drawn[((drawn.len() - 1) as f64 * share).round() as usize];
-    BootstrapInterval { value, low: Some(at((1.0 - COVERED) / 2.0)), high: Some(at((1.0 + COVERED) / 2.0)) }
+    let [low, high] = percentiles(drawn, [(1.0 - COVERED) / 2.0, (1.0 + COVERED) / 2.0]);
+    BootstrapInterval { value, low: Some(low), high: Some(high) }
 }
 
 fn band(curves: &Curves, resampled: &[Curves], concept: usize) -> Vec<[f64; 3]> {
@@ -262,4 +251,111 @@ fn band(curves: &Curves, resampled: &[Curves], concept: usize) -> Vec<[f64; 3]> 
         Some([x, found.low?, found.high?])
     };
     (0..=BAND_STEPS).filter_map(at).collect()
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConceptPreventionCounts {
+    pub concept: ConceptName,
+    pub parameter: f64,
+    /// Errors that the concept would have prevented, and signals that the concept would have sent.
+    pub count: PreventionCounts,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct RateCounts {
+    presses: u32,
+    signals: u32,
+    related: u32,
+    prevented: u32,
+    useless: u32,
+}
+
+impl RateCounts {
+    fn add(&mut self, count: &PreventionCounts) {
+        let counts = [
+            (&mut self.presses, count.presses),
+            (&mut self.signals, count.signals),
+            (&mut self.related, count.related),
+            (&mut self.prevented, count.prevented),
+            (&mut self.useless, count.useless),
+        ];
+        for (sum, one) in counts {
+            *sum = sum.saturating_add(u32::try_from(one).unwrap_or(u32::MAX));
+        }
+    }
+
+    /// The counts of `times` copies of the participant; counts that are not in the rates are 0.
+    fn repeated(&self, times: u32) -> PreventionCounts {
+        let all = |count: u32| u64::from(count) * u64::from(times);
+        PreventionCounts {
+            presses: all(self.presses),
+            signals: all(self.signals),
+            related: all(self.related),
+            prevented: all(self.prevented),
+            useless: all(self.useless),
+            ..PreventionCounts::default()
+        }
+    }
+}
+
+/// Prevention counts of every concept and parameter value, over all unassisted trials and for each participant, as the
+/// bootstrap needs them. Only the counts from which rates follow are kept for each participant, so that a large study
+/// needs little memory.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ConceptTotals {
+    trials: u64,
+    sum: Vec<ConceptPreventionCounts>,
+    /// For each participant, the counts in the order of `sum`.
+    participants: Vec<Vec<RateCounts>>,
+    last: Option<String>,
+}
+
+impl ConceptTotals {
+    /// Adds the counts of an unassisted trial of this participant, for the same concepts and parameter values in every
+    /// trial. The trials of a participant must be added one after another.
+    pub fn add(&mut self, participant: &str, swept: &[ConceptPreventionCounts]) {
+        if self.sum.is_empty() {
+            self.sum = emptied(swept);
+        }
+        if self.last.as_deref() != Some(participant) {
+            self.last = Some(participant.to_string());
+            self.participants.push(vec![RateCounts::default(); self.sum.len()]);
+        }
+        self.trials += 1;
+        for (sum, one) in self.sum.iter_mut().zip(swept) {
+            sum.count = sum.count.plus(&one.count);
+        }
+        let of_one = self.participants.last_mut().into_iter().flatten();
+        of_one.zip(swept).for_each(|(sum, one)| sum.add(&one.count));
+    }
+
+    pub fn trials(&self) -> u64 {
+        self.trials
+    }
+
+    pub fn participants(&self) -> usize {
+        self.participants.len()
+    }
+
+    /// Sum over all trials for every concept and parameter value; empty without trials.
+    pub fn sum(&self) -> &[ConceptPreventionCounts] {
+        &self.sum
+    }
+
+    /// Sum over participants, each of whom counts as often as `times` says; only counts that are in the rates are
+    /// summed.
+    pub fn resampled(&self, times: &[u32]) -> Vec<ConceptPreventionCounts> {
+        let mut sum = emptied(&self.sum);
+        for (participant, &times) in self.participants.iter().zip(times) {
+            for (sum, one) in sum.iter_mut().zip(participant) {
+                sum.count = sum.count.plus(&one.repeated(times));
+            }
+        }
+        sum
+    }
+}
+
+/// The same concepts and parameter values, with counts of 0.
+fn emptied(counts: &[ConceptPreventionCounts]) -> Vec<ConceptPreventionCounts> {
+    counts.iter().map(|one| ConceptPreventionCounts { count: PreventionCounts::default(), ..*one }).collect()
 }

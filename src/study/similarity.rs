@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::gathered::GatheredRecordings;
-use super::parallel;
-use super::standing::exclusion_status;
-use crate::analysis::compared_recording::{RecordingSenderComparison, SenderComparer};
+use crate::analysis::comparison_summary::{RecordingSenderComparison, SenderComparer};
+use crate::gathered::GatheredRecordings;
+use crate::parallel;
+use crate::standing::exclusion_status;
 use tomcom_core::base::text::count;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::LogReader;
@@ -15,9 +15,6 @@ use tomcom_session::watcher::SenderComparisonSettings;
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 
 /// Compares wizard and assistants in recordings, on all processors. `done` is called after each recording.
-///
-/// # Errors
-/// A recording cannot be read or replayed.
 pub fn watch(
     recordings: &GatheredRecordings,
     request: &SenderComparisonSettings,

@@ -3,15 +3,12 @@
 
 use std::path::Path;
 
-use crate::analysis::exclusion_status::ExclusionStatus;
+use crate::analysis::recording_summary::ExclusionStatus;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::log::{ExclusionRecord, LogEnding, LogReader, ruling};
 use tomcom_session::{Event, Session, apply};
 
 /// Reason for which the trial of a recording was aborted; `None` if the trial was not aborted.
-///
-/// # Errors
-/// The errors of reading a log.
 pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
     let mut log = LogReader::open(recording)?;
     while let Some(line) = log.next_line()? {

@@ -9,16 +9,12 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 use super::pairwise_differences::PairwiseDifferences;
 use tomcom_core::base::rng::{shuffle, stream};
 
-/// Result of an F test in an analysis of variance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
-    /// Value of the F statistic.
     pub f: f64,
-    /// Degrees of freedom of the effect and of the residuals.
     pub df: [f64; 2],
     /// p value: probability, without an effect, of an F statistic at least this large.
     pub p: f64,
-    /// Number of participants on whom the test rests.
     pub n: usize,
     /// Partial eta squared: the effect's sum of squares divided by the sum of effect and residual sums of squares.
     pub partial_eta_sq: f64,
@@ -39,18 +35,15 @@ impl FTest {
 /// Mixed analysis of variance with two measurements per person (within) and any number of groups (between).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MixedAnova {
-    /// F test of the factor within participants.
     pub within: Option<FTest>,
-    /// F test of the factor between groups.
     pub between: Option<FTest>,
-    /// F test of the interaction of both factors.
     pub interaction: Option<FTest>,
 }
 
 /// Mixed analysis of variance; each row holds a person's group and the person's two measurements. Sums of squares are of
 /// type III: the factor within is tested at the unweighted mean of the groups, so that groups of unequal size do not mix the
 /// factor between into it.
-pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
+pub(crate) fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
     let sizes: Vec<f64> = (0..groups).map(|group| in_group(group).count() as f64).collect();
@@ -59,11 +52,11 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let difference = |values: [f64; 2]| values[1] - values[0];
     let sum = |values: [f64; 2]| values[1] + values[0];
     let decompose = |of: fn([f64; 2]) -> f64| {
-        let all = mean(rows.iter().map(|(_, values)| of(*values)));
-        let means: Vec<f64> = (0..groups).map(|group| mean(in_group(group).map(of))).collect();
+        let all = mean_or_zero(rows.iter().map(|(_, values)| of(*values)));
+        let means: Vec<f64> = (0..groups).map(|group| mean_or_zero(in_group(group).map(of))).collect();
         let between: f64 = used.iter().map(|&group| sizes[group] * (means[group] - all).powi(2)).sum();
         let residual: f64 = rows.iter().map(|(group, values)| (of(*values) - means[*group]).powi(2)).sum();
-        let unweighted = mean(used.iter().map(|&group| means[group]));
+        let unweighted = mean_or_zero(used.iter().map(|&group| means[group]));
         (unweighted, between / 2.0, residual / 2.0)
     };
     let (mean_difference, interaction, residual_within) = decompose(difference);
@@ -80,14 +73,10 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     }
 }
 
-/// A correlation coefficient with its two-sided p value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
-    /// Pearson's correlation coefficient r.
     pub r: f64,
-    /// Two-sided p value of the correlation.
     pub p: f64,
-    /// Number of pairs of values in the correlation.
     pub n: usize,
 }
 
@@ -97,7 +86,7 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     if n < 3 {
         return None;
     }
-    let (mx, my) = (mean(x[..n].iter().copied()), mean(y[..n].iter().copied()));
+    let (mx, my) = (mean_or_zero(x[..n].iter().copied()), mean_or_zero(y[..n].iter().copied()));
     let pairs = || x[..n].iter().zip(&y[..n]).map(|(x, y)| (x - mx, y - my));
     let (xx, yy, xy) = pairs().fold((0.0, 0.0, 0.0), |(xx, yy, xy), (x, y)| (xx + x * x, yy + y * y, xy + x * y));
     if xx <= 0.0 || yy <= 0.0 {
@@ -112,7 +101,6 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
 
 /// Largest number of permutations that are enumerated; if there are more, permutations are sampled at random.
 const MAX_ENUMERATED: f64 = 200_000.0;
-/// Number of permutations that are sampled at random.
 const SAMPLED_PERMUTATIONS: u32 = 100_000;
 /// Largest number of pairs of values of two samples for which the distribution of U is exact (two samples of 250). Above,
 /// the normal approximation leaves out at most one difference more or less, and rounding would spoil the exact numbers.
@@ -169,14 +157,10 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
     }
 }
 
-/// An estimate with its confidence interval and level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ConfidenceInterval {
-    /// Point estimate, such as a mean or a share.
     pub estimate: f64,
-    /// The lower end of the confidence interval.
     pub low: f64,
-    /// The upper end of the confidence interval.
     pub high: f64,
     /// Actual coverage of the interval; it differs from the requested level where only some levels are possible.
     pub level: f64,
@@ -246,20 +230,20 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
     if a.is_empty() || b.is_empty() || df <= 0.0 {
         return None;
     }
-    let (ma, mb) = (mean(a.iter().copied()), mean(b.iter().copied()));
+    let (ma, mb) = (mean_or_zero(a.iter().copied()), mean_or_zero(b.iter().copied()));
     let squares = |values: &[f64], m: f64| values.iter().map(|value| (value - m).powi(2)).sum::<f64>();
     let pooled = ((squares(a, ma) + squares(b, mb)) / df).sqrt();
     (pooled > 0.0).then(|| (ma - mb) / pooled * (1.0 - 3.0 / (4.0 * (df + 2.0) - 9.0)))
 }
 
 /// Proportion `part` / `whole` with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
-pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
+pub(crate) fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
     wilson(part as f64 / whole as f64, whole as f64, level)
 }
 
 /// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of
 /// independent observations with the same variance. `None` if `n` is 0.
-pub fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
+pub(crate) fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     if n <= 0.0 {
         return None;
     }
@@ -269,8 +253,19 @@ pub fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     Some(ConfidenceInterval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
 }
 
-/// Mean of the values; 0 without values.
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
+/// Mean of the values; `None` without values.
+pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
-    if count == 0 { 0.0 } else { sum / f64::from(count) }
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+fn mean_or_zero(values: impl Iterator<Item = f64>) -> f64 {
+    mean(values).unwrap_or(0.0)
+}
+
+/// Standard deviation of a sample; `None` with fewer than two values.
+pub(crate) fn sample_sd(values: &[f64]) -> Option<f64> {
+    let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
+    let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
+    Some((sum / (values.len() - 1) as f64).sqrt())
 }

@@ -20,39 +20,32 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::facts::RecordingFacts;
-use super::planned_trial::{PlannedTrialKey, RecordingCopy};
-use super::preregistration::RecordedPlan;
-use super::recorded_consent::RecordedConsent;
-use super::tables::tutorial_answers::TutorialQuestionRow;
-use super::trial_details::TrialDetails;
-use super::trial_statistics::TrialStatistics;
+use crate::facts::RecordingFacts;
+use crate::frozen_plan::RecordedPlan;
+use crate::pass::reading::RecordedConsent;
+use crate::planned_trial::{PlannedTrialKey, RecordingCopy};
+use crate::tables::participants::TutorialQuestionRow;
+use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_session::header::CodeCorrection;
 use tomcom_session::header::RecordedFile;
 use tomcom_session::plan::PlanPosition;
 
-/// Version of the file format of a study's parts.
-pub const PART_FORMAT: u32 = 5;
+pub(crate) const PART_FORMAT: u32 = 5;
 
 /// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartHeader {
-    /// Version of the file format of the part.
     pub study_part: u32,
-    /// Version of the program that analysed the recordings.
     pub program: String,
     /// Number of this part of the study; 1 is the first.
     pub shard: u64,
-    /// Number of parts into which the study is divided.
     pub shards: u64,
-    /// Number of analysed recordings in the part.
     pub recordings: u64,
     /// Names of the recordings that were left out, since they belong to other parts.
     pub left_out: BTreeSet<String>,
     /// Recordings that were left out, since they are copies of others.
     pub copies: BTreeSet<RecordingCopy>,
-    /// With which options the recordings were analysed.
     pub analysis: PartAnalysisOptions,
     /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.
     pub plans: BTreeSet<(String, String)>,
@@ -61,33 +54,24 @@ pub struct PartHeader {
 /// The second line of a part's file: layout and recipes of the kitchen; `None` in a part without recordings.
 pub type PartKitchen = Option<[RecordedFile; 2]>;
 
-/// The options of an analysis that change the results of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartAnalysisOptions {
-    /// Whether the signals that communication concepts would have sent are computed.
     pub concepts: bool,
-    /// Whether the rows of the tables of events are computed.
     pub events: bool,
-    /// The two raters whose codes are used, if the user named them.
     pub raters: Option<[String; 2]>,
 }
 
-/// What the analysis of one recording hands to the analysis of the study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnalysedRecording {
-    /// The recording's name in tables.
     pub recording: String,
     /// SHA-256 digest of the header of the recording's log, by which copies are known.
     pub digest: String,
-    /// The study plan to which the recording belongs.
     pub plan: RecordedPlan,
-    /// The correction of the participant's code that holds.
     pub correction: Option<CodeCorrection>,
     /// The consent with which the recording begins; `None` if it begins without.
     pub consent: Option<RecordedConsent>,
-    /// The answers to the questions of the recording's tutorial.
     pub tutorial: Vec<TutorialQuestionRow>,
     /// The recording's trial, with its details and with what the report tells about the recording; `None` for practice.
     pub trial: Option<(TrialStatistics, TrialDetails, RecordingFacts)>,
@@ -95,7 +79,7 @@ pub struct AnalysedRecording {
 
 impl AnalysedRecording {
     /// Whether this is the analysis of a copy: all results are those of the other recording, but for the names.
-    pub fn is_copy_of(&self, other: &AnalysedRecording) -> bool {
+    pub(crate) fn is_copy_of(&self, other: &AnalysedRecording) -> bool {
         let mut same = self.clone();
         same.recording = other.recording.clone();
         same.tutorial.iter_mut().for_each(|row| row.recording = other.recording.clone());
@@ -110,42 +94,38 @@ impl AnalysedRecording {
         self.left_out().is_none()
     }
 
-    /// Why the recording's trial is left out, in words.
     pub fn left_out(&self) -> Option<&String> {
         self.trial.as_ref().and_then(|(trial, ..)| trial.left_out.as_ref())
     }
 
     /// The trial of a plan that the recording counts for; `None` if there is none, or the recording does not count.
-    pub fn counted_trial(&self) -> Option<PlannedTrialKey> {
+    pub(crate) fn counted_trial(&self) -> Option<PlannedTrialKey> {
         let (trial, ..) = self.trial.as_ref().filter(|(trial, ..)| trial.counts())?;
         PlannedTrialKey::new(&self.plan, trial.started.is_none().then_some(trial.seed))
     }
 }
 
-/// Why parts of a study cannot be joined.
+/// Why the parts of a study, or the shards of a pool, cannot be joined, or why lines make no pool.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PartMismatch {
-    /// Index of the part that does not fit.
+pub struct ShardMismatch {
+    /// Index of the part or line that does not fit.
     pub index: usize,
-    /// What was found in that part.
     pub found: String,
-    /// What would be right instead.
     pub remedy: String,
 }
 
-impl PartMismatch {
-    fn new(index: usize, found: String, remedy: &str) -> PartMismatch {
-        PartMismatch { index, found, remedy: remedy.to_string() }
+impl ShardMismatch {
+    pub(crate) fn new(index: usize, found: String, remedy: &str) -> ShardMismatch {
+        ShardMismatch { index, found, remedy: remedy.to_string() }
     }
 }
 
 impl PartHeader {
     /// Whether this and the other part have the same number among as many parts, whatever was analysed.
-    pub fn is_place_of(&self, other: &PartHeader) -> bool {
+    pub(crate) fn is_place_of(&self, other: &PartHeader) -> bool {
         (self.shard, self.shards) == (other.shard, other.shards)
     }
 
-    /// The options of the analysis in words.
     fn options(&self) -> String {
         let PartAnalysisOptions { concepts, events, raters } = &self.analysis;
         let skipped = [(*concepts, "concepts"), (*events, "events")];
@@ -163,16 +143,16 @@ impl PartHeader {
 /// # Errors
 /// A part is of another program, study or number of parts, was analysed with other options, occurs twice, or is
 /// missing.
-pub fn check_parts(parts: &[PartHeader]) -> Result<(), PartMismatch> {
+pub(crate) fn check_parts(parts: &[PartHeader]) -> Result<(), ShardMismatch> {
     let Some(first) = parts.first() else {
-        return Err(PartMismatch::new(0, "no part".to_string(), "all parts of a study"));
+        return Err(ShardMismatch::new(0, "no part".to_string(), "all parts of a study"));
     };
     let version = env!("CARGO_PKG_VERSION");
     // A part without recordings fits any study.
     let study = parts.iter().find(|part| part.recordings > 0).unwrap_or(first);
     let mut places = BTreeMap::new();
     for (index, part) in parts.iter().enumerate() {
-        let wrong = |found: String, remedy: &str| Err(PartMismatch::new(index, found, remedy));
+        let wrong = |found: String, remedy: &str| Err(ShardMismatch::new(index, found, remedy));
         if part.program != version {
             let remedy = format!("parts of version {version}, which joins them; or the program that made them");
             return wrong(format!("a part of version {} of the program", part.program), &remedy);
@@ -201,12 +181,11 @@ pub fn check_parts(parts: &[PartHeader]) -> Result<(), PartMismatch> {
         (1..=first.shards).filter(|shard| !places.contains_key(shard)).map(|one| one.to_string()).collect();
     if !missing.is_empty() {
         let found = format!("{} of {} parts, without {}", parts.len(), first.shards, missing.join(", "));
-        return Err(PartMismatch::new(0, found, "all parts of the study, such as 1/8 to 8/8"));
+        return Err(ShardMismatch::new(0, found, "all parts of the study, such as 1/8 to 8/8"));
     }
     Ok(())
 }
 
-/// The study plans of a part in words.
 fn plans(part: &PartHeader) -> String {
     let named: Vec<String> =
         part.plans.iter().map(|(plan, digest)| format!("the plan \"{plan}\" ({digest})")).collect();
@@ -216,7 +195,7 @@ fn plans(part: &PartHeader) -> String {
 /// Index of a recording's trial, by which the recording belongs to a shard: as `tomcom simulate` counts the trials of a
 /// plan, participant by participant; without a plan the number of the trial. Practice has the index of the
 /// participant's first trial.
-pub fn trial_index(step: Option<&PlanPosition>, trial: u64) -> u64 {
+pub(crate) fn trial_index(step: Option<&PlanPosition>, trial: u64) -> u64 {
     step.map_or(trial, |step| {
         let period = step.period.map_or(0, |period| u64::from(period).saturating_sub(1));
         u64::from(step.participant) * u64::from(step.periods) + period

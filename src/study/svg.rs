@@ -11,11 +11,8 @@ const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 /// Axis of a chart: label, range and ticks.
 #[derive(Clone, Debug)]
 pub struct PlotAxis {
-    /// Quantity that the axis shows, with its unit.
     pub label: &'static str,
-    /// Value at the beginning (left or bottom) of the axis.
     pub from: f64,
-    /// Value at the end (right or top) of the axis.
     pub to: f64,
     /// Ticks of the axis: position and label.
     pub ticks: Vec<(f64, String)>,
@@ -31,7 +28,6 @@ impl PlotAxis {
         PlotAxis::between(label, low, if high > low { high } else { low + 1.0 })
     }
 
-    /// Axis over the range from `low` to `high`, extended to round ticks.
     pub fn between(label: &'static str, low: f64, high: f64) -> PlotAxis {
         let step = round_step((high - low) / 5.0);
         let (first, last) = ((low / step).floor() as i64, (high / step - 1e-9).ceil() as i64);
@@ -63,7 +59,6 @@ fn digits(step: f64) -> usize {
     (0..12).find(is_exact).unwrap_or(12)
 }
 
-/// Builder of an SVG chart.
 #[derive(Clone, Debug)]
 pub struct SvgChart {
     width: f64,
@@ -123,20 +118,18 @@ impl SvgChart {
         self.add(html! { text class="label middle" transform=(turned) { (self.y.label) } });
     }
 
-    /// Adds a point with a tooltip to the chart.
     pub fn point(&mut self, class: &str, x: f64, y: f64, title: &str) {
         let (x, y) = (tenths(self.px(x)), tenths(self.py(y)));
         self.add(html! { circle class=(class) cx=(x) cy=(y) r="4" { title { (title) } } });
     }
 
-    /// Adds a line through points to the chart.
     pub fn line(&mut self, class: &str, points: &[(f64, f64)]) {
         let path = self.path(points);
         self.add(html! { path class={ "line " (class) } d=(path) {} });
     }
 
     /// Adds a band to the chart: each element holds x, lower height and upper height.
-    pub fn band(&mut self, class: &str, band: &[[f64; 3]]) {
+    pub(crate) fn band(&mut self, class: &str, band: &[[f64; 3]]) {
         if band.is_empty() {
             return;
         }
@@ -153,7 +146,6 @@ impl SvgChart {
         self.add(html! { rect class=(class) x=(x) y=(y) width=(width) height=(height) { title { (title) } } });
     }
 
-    /// Adds a label right (`right`) or left of a point of the chart.
     pub fn words(&mut self, class: &str, x: f64, y: f64, right: bool, text: &str) {
         let (x, y) = (self.px(x) + if right { 9.0 } else { -9.0 }, self.py(y) + 4.0);
         let side = if right { "start" } else { "end" };
@@ -168,14 +160,12 @@ impl SvgChart {
         path
     }
 
-    /// The finished chart as SVG; `title` is its description for screen readers.
     pub fn finish(self, title: &str) -> Markup {
         let size = format!("0 0 {:.0} {:.0}", self.width, self.height);
         html! { svg viewBox=(size) role="img" aria-label=(title) { "\n" (PreEscaped(self.body)) } "\n" }
     }
 }
 
-/// A finished chart as the text of a file of its own, with this style sheet.
 pub fn document(chart: &Markup, style: &str) -> String {
     let style = format!("<style>\n{style}svg {{ background: var(--paper); }}\n</style>\n");
     let chart = chart.0.replacen("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ", 1);

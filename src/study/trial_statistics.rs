@@ -1,13 +1,17 @@
-//! Statistics of one trial, which the analysis keeps in memory for every trial of a study. Recordings themselves, and
-//! the details of trials ([`super::trial_details`]), are not kept in memory.
+//! Statistics of trials: those that the analysis keeps in memory for every trial of a study, the details that it keeps
+//! in temporary files and reads trial by trial, and sums over both.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::acting_arm::SignalSenderWithParameter;
-use super::known_beliefs::RaterFalseBeliefAgreement;
-use super::robot_tally::RobotEventSummary;
-use crate::analysis::offer_summary::OfferSummary;
-use crate::analysis::probe_record::ProbedTrialStatistics;
+use crate::analysis::offer_summary::{OfferSummary, OfferTally, TimedOffer};
+use crate::analysis::probe_record::{ProbedTrial, ProbedTrialStatistics};
+use crate::effect::LEVEL;
+use crate::rater_episodes::RaterFalseBeliefAgreement;
+use crate::robot_tally::RobotEventSummary;
+use crate::roc::{ConceptPreventionCounts, ConceptTotals};
+use crate::statistics::{ConfidenceInterval, mean, share_interval};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, Similarity, WINDOW};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::raters::RaterPair;
 use tomcom_core::measures::sequences::BeliefErrorCounts;
@@ -26,27 +30,22 @@ pub struct TrialStatistics {
     pub recording: String,
     /// Participant code, with the seed in front if several seeds have simulated participants with the same codes.
     pub participant: String,
-    /// Seed of the trial's random numbers.
     pub seed: u64,
     /// Kind of participant: a person or a simulation.
     pub kind: ParticipantKind,
     /// Wall clock time at which the recording started; `None` for simulated trials.
     pub started: Option<String>,
-    /// Starting group of the participant, if there is a study plan.
     pub group: Option<String>,
     /// Number of the trial in the participant's series, from 1.
     pub period: Option<u32>,
-    /// Whether the trial belongs to a study plan, which then says which period the trial is.
     pub is_planned: bool,
     /// Condition of the trial: who could send signals.
     pub condition: Condition,
-    /// Study arm of the trial as it was carried out.
     pub study_arm: StudyArm,
     /// Study arm under which the trial counts: assigned by the plan or, without a plan, by the settings.
     pub planned_arm: StudyArm,
     /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
-    /// Information that the wizard was allowed to see on the console.
     pub wizard_sees: WizardVisibility,
     /// Sender of the signals in a trial without a person as wizard.
     pub acting: SignalSenderWithParameter,
@@ -54,37 +53,25 @@ pub struct TrialStatistics {
     pub left_out: Option<String>,
     /// Reason for which the trial ended; `None` if the recording is incomplete.
     pub ended: Option<TrialEndReason>,
-    /// Kind of the robot's arm in the trial.
     pub arm: ArmKind,
-    /// Counts of robot events and of interventions in the robot.
     pub robot: RobotEventSummary,
-    /// Number of the human's presses.
     pub human_presses: u64,
-    /// Number of the robot's presses.
     pub robot_presses: u64,
-    /// Number of the robot's presses that it set out for by its own initiative.
     pub initiative_presses: u64,
     /// The assistant's model of the human: its name, and what differs from the named model.
     pub human_model: String,
     /// Number of the human's errors; races with the robot do not count as errors.
     pub errors: u64,
-    /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
-    /// Number of human presses whose judgement rests on a cost to go that is not proven.
     pub unproven: u64,
     /// Statistics of errors from false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<FalseBeliefErrors>,
-    /// Number of orders served in the trial.
     pub orders: u64,
-    /// Median time from the appearance of an order to its serving, in seconds.
     pub order_s: Option<f64>,
-    /// Median number of presses of both agents per served order.
     pub presses_per_order: Option<f64>,
     /// Summed regret of both agents' presses per served order; `None` if no order was served.
     pub additional_presses_per_order: Option<f64>,
-    /// Median time between successive presses of the human, in seconds.
     pub press_s: Option<f64>,
-    /// Number of signals shown to the participant.
     pub signals: u64,
     /// Number of contents told by signals: 1 for a signal, k for a proposal of k presses.
     pub signal_contents: u64,
@@ -92,19 +79,15 @@ pub struct TrialStatistics {
     pub useful_signals: Option<u64>,
     /// How the participant's display showed the robot; `None` without a display.
     pub display_arm: Option<RobotDepiction>,
-    /// Summary of the offers that a wizard could see.
     pub offers: OfferSummary,
     /// Duration of the trial without pauses, in seconds.
     pub seconds: f64,
-    /// Answers to the questionnaires after the trial.
     pub answers: Vec<QuestionnaireAnswer>,
     /// Measures of the wizard's performance; `None` in trials without a wizard.
     pub wizard: Option<WizardMeasures>,
-    /// Whether the wizard saw the assistant's recommendations, by the settings or from some time of the trial on.
     pub wizard_saw_advice: bool,
     /// The two raters with their codes, if these codes or the raters' consensus determine the causes of errors.
     pub raters: Option<RaterPair>,
-    /// Agreement of the two raters about false beliefs.
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// The two raters whose consensus determines the causes of errors.
     pub settled_by: Option<[String; 2]>,
@@ -119,15 +102,11 @@ pub struct TrialStatistics {
 pub struct FalseBeliefErrors {
     /// Source of what the human believed: recorded beliefs, raters' codes or the belief estimate.
     pub basis: BeliefSource,
-    /// Number of errors that follow from false beliefs.
     pub errors: u64,
-    /// Number of errors that only two false beliefs together explain.
     pub of_two: u64,
     /// Errors from false beliefs, counted by kind of state aspect.
     pub causes: BeliefErrorCounts,
-    /// Length (number of errors) of each error sequence whose errors follow from the same false belief.
     pub lengths: Vec<u32>,
-    /// Length (number of errors) of each error sequence, whichever false beliefs its errors follow from.
     pub lengths_any_aspect: Vec<u32>,
     /// For each error sequence that has ended, the time from its first error to the first correct press after its last
     /// error, in seconds.
@@ -136,20 +115,14 @@ pub struct FalseBeliefErrors {
     pub episodes: Option<u64>,
 }
 
-/// An answer to a questionnaire item.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct QuestionnaireAnswer {
-    /// Name of the questionnaire to which the item belongs.
     pub questionnaire: String,
-    /// Identifier of the questionnaire item.
     pub item: String,
-    /// Statement of the questionnaire item, as the participant read it.
     pub text: String,
-    /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
     /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
-    /// Kind of answer that the item takes.
     pub kind: QuestionnaireItemKind,
     /// The participant's answer; `None` if the participant skipped the item.
     pub answer: Option<AnswerValue>,
@@ -166,21 +139,14 @@ pub struct QuestionnaireAnswer {
 }
 
 impl TrialStatistics {
-    /// Whether the analysis includes the trial.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()
     }
 
-    /// Name of the kind of participant (person or simulation) in tables.
-    pub fn kind_name(&self) -> &'static str {
-        match self.kind {
-            ParticipantKind::Simulated => "simulated",
-            ParticipantKind::Keyboard => "keyboard",
-            ParticipantKind::Display => "display",
-        }
+    pub(crate) fn kind_name(&self) -> &'static str {
+        kind_name(self.kind)
     }
 
-    /// Number of presses of both agents in the trial together.
     pub fn presses(&self) -> u64 {
         self.human_presses + self.robot_presses
     }
@@ -205,21 +171,14 @@ impl TrialStatistics {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
 
-    /// Whether the trial was planned with signals.
     pub fn is_assisted(&self) -> bool {
         self.planned_arm != StudyArm::None
     }
 }
 
 /// Mean of the lengths of error sequences; `None` without sequences.
-pub fn mean_length(lengths: &[u32]) -> Option<f64> {
+pub(crate) fn mean_length(lengths: &[u32]) -> Option<f64> {
     mean(lengths.iter().map(|&length| f64::from(length)))
-}
-
-/// Mean of the values; `None` without values.
-pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
-    (count > 0).then(|| sum / f64::from(count))
 }
 
 /// Sets participant names, and periods where no study plan defines them, and sorts the trials by participant and
@@ -251,4 +210,226 @@ pub fn arrange(trials: &mut [TrialStatistics]) {
 /// The fully simulated trials among these, in which every seed uses the same participant codes.
 fn simulated(trials: &[TrialStatistics]) -> impl Iterator<Item = &TrialStatistics> {
     trials.iter().filter(|trial| trial.started.is_none())
+}
+
+/// Name of the sender of a simulated trial's signals: a study arm's name, or a concept's.
+pub type SignalSenderName = &'static str;
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SignalSenderWithParameter {
+    /// Name of the sender: `none`, `wizard` or `wizard+advice` (scripted wizard), or a concept.
+    #[serde(deserialize_with = "actor")]
+    pub concept: SignalSenderName,
+    /// Parameter of the concept: cost of communication in presses (ToM-Com), threshold (ToM), or number of proposed
+    /// presses (DEV); null for senders that are no concept.
+    pub parameter: Option<f64>,
+}
+
+impl SignalSenderWithParameter {
+    pub fn from_settings(arm: StudyArm, parameter: f64) -> SignalSenderWithParameter {
+        let concept = arm.concept();
+        SignalSenderWithParameter {
+            concept: concept.map_or(arm.name(), ConceptName::name),
+            parameter: concept.map(|_| parameter),
+        }
+    }
+
+    /// Sort key of senders in tables: nobody first, then the wizard, then the concepts by parameter.
+    pub(super) fn rank(&self) -> (usize, f64) {
+        let rank = StudyArm::ALL.iter().position(|arm| arm.name() == self.concept).unwrap_or(StudyArm::ALL.len());
+        (rank, self.parameter.unwrap_or(0.0))
+    }
+}
+
+fn actor<'de, D: Deserializer<'de>>(input: D) -> Result<SignalSenderName, D::Error> {
+    let name = String::deserialize(input)?;
+    let arms = StudyArm::ALL.into_iter().map(StudyArm::name);
+    let mut known = arms.chain(ConceptName::ALL.into_iter().map(ConceptName::name));
+    known.find(|known| *known == name).ok_or_else(|| de::Error::custom(format!("the unknown sender \"{name}\"")))
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrialDetails {
+    /// Offers that a wizard could see; empty in recordings without offers.
+    pub offers: Vec<TimedOffer>,
+    /// In wizard trials: the communications that were sent, and those that the assistant would have sent.
+    pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
+    /// In unassisted trials with known beliefs: what each concept would have prevented, for each value of its
+    /// parameter.
+    pub swept: Vec<ConceptPreventionCounts>,
+    /// Freeze probes of the trial with their questions and answers; `None` without probes.
+    pub probes: Option<ProbedTrial>,
+}
+
+/// Sums and rates over trials of a study: presses, errors, sequences, signals, orders.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TrialTotals {
+    pub actions: u64,
+    pub human_actions: u64,
+    pub robot_actions: u64,
+    pub errors: u64,
+    /// Number of the human's presses that the robot may have overtaken (races), which do not count as errors.
+    pub races: u64,
+    /// Number of the human's presses whose judgement rests on a cost to go that is not proven to be the least.
+    pub unproven: u64,
+    /// Errors of the human per press of both agents.
+    pub error_rate: Option<f64>,
+    /// Errors per press of the human.
+    pub error_rate_human: Option<f64>,
+    /// Source of the participants' beliefs; null if beliefs are unknown in any trial.
+    pub beliefs_from: Option<BeliefSource>,
+    pub belief_related_errors: Option<u64>,
+    /// Errors from false beliefs, counted by kind of state aspect.
+    pub belief_related_by_kind: Option<BeliefErrorCounts>,
+    /// Share of the errors that follow from false beliefs, from 0 to 1.
+    pub belief_related_share: Option<f64>,
+    /// 95 % interval of the share `belief_related_share`.
+    pub belief_related_interval: Option<ConfidenceInterval>,
+    /// Number of error sequences whose errors follow from the same false belief.
+    pub sequences: Option<u64>,
+    /// Mean number of errors in a sequence of errors from the same false belief.
+    pub mean_sequence_length: Option<f64>,
+    /// Sequences of errors from the same false belief, per 100 presses of the human.
+    pub sequences_per_100: Option<f64>,
+    /// Errors that follow from false beliefs, per 100 presses of the human.
+    pub belief_related_per_100: Option<f64>,
+    /// Number of error sequences, whichever false beliefs they follow from.
+    pub sequences_any_aspect: Option<u64>,
+    /// Mean number of errors in an error sequence, whichever false beliefs it follows from.
+    pub mean_sequence_length_any_aspect: Option<f64>,
+    /// Mean time from the first error of a sequence to the first correct press after its last error, in seconds.
+    pub mean_recovery_s: Option<f64>,
+    pub false_belief_episodes: Option<u64>,
+    pub signals: u64,
+    pub orders_served: u64,
+}
+
+impl TrialTotals {
+    pub(super) fn from_trials(trials: &[&TrialStatistics]) -> TrialTotals {
+        let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
+        let (actions, human_actions, errors) =
+            (sum(TrialStatistics::presses), sum(|trial| trial.human_presses), sum(|t| t.errors));
+        let rate = |presses: u64| (presses > 0).then(|| errors as f64 / presses as f64);
+        let totals = TrialTotals {
+            actions,
+            human_actions,
+            robot_actions: sum(|trial| trial.robot_presses),
+            errors,
+            races: sum(|trial| trial.races),
+            unproven: sum(|trial| trial.unproven),
+            error_rate: rate(actions),
+            error_rate_human: rate(human_actions),
+            signals: sum(|trial| trial.signals),
+            orders_served: sum(|trial| trial.orders),
+            ..TrialTotals::default()
+        };
+        let beliefs: Option<Vec<&FalseBeliefErrors>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
+        let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
+        let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
+        let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
+        let any_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_any_aspect.iter().copied()).collect();
+        let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
+        let interval = share_interval(related, errors, LEVEL);
+        TrialTotals {
+            beliefs_from: source(trials),
+            belief_related_errors: Some(related),
+            belief_related_by_kind: Some(
+                beliefs.iter().fold(BeliefErrorCounts::default(), |sum, one| sum.plus(one.causes)),
+            ),
+            belief_related_share: interval.map(|interval| interval.estimate),
+            belief_related_interval: interval,
+            sequences: Some(lengths.len() as u64),
+            sequences_per_100: per_100(lengths.len() as u64),
+            belief_related_per_100: per_100(related),
+            mean_sequence_length: mean_length(&lengths),
+            sequences_any_aspect: Some(any_aspect.len() as u64),
+            mean_sequence_length_any_aspect: mean_length(&any_aspect),
+            mean_recovery_s: mean(beliefs.iter().flat_map(|one| one.recovery_s.iter().copied())),
+            false_belief_episodes: beliefs.iter().map(|one| one.episodes).sum(),
+            ..totals
+        }
+    }
+}
+
+/// The source of beliefs of these trials; the least reliable source if they differ. Trials without errors count only
+/// if all are: there was nothing to find out.
+fn source(trials: &[&TrialStatistics]) -> Option<BeliefSource> {
+    let of = |trial: &&&TrialStatistics| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
+    let with_errors = trials.iter().filter(|trial| trial.errors > 0).filter_map(|trial| of(&trial)).max();
+    with_errors.or_else(|| trials.iter().filter_map(|trial| of(&trial)).max())
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WizardAssistantSimilarity {
+    pub recording: String,
+    pub wizard_saw_advice: bool,
+    pub of_n: u64,
+    pub with_n: u64,
+    /// Number of communications of both senders with the same signal and target (matches).
+    pub matched: u64,
+    pub recall: Option<f64>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct DetailTotals {
+    pub concepts: ConceptTotals,
+    /// Source of what participants believed in the trials for the comparison of concepts; of several sources, the least
+    /// reliable one.
+    pub concepts_beliefs_from: Option<BeliefSource>,
+    /// Matches of the wizard's signals with those of the assistant, in trials in which the wizard saw no
+    /// recommendations; `None` without such trials.
+    pub without_advice: Option<MatchCounts>,
+    pub with_advice: Option<MatchCounts>,
+    pub similarity_by_trial: Vec<WizardAssistantSimilarity>,
+    pub offers: OfferTally,
+    pub probes: Vec<(String, ProbedTrial)>,
+}
+
+impl DetailTotals {
+    /// Adds the details of a trial. Trials must be added in the order of [`super::trial_statistics::arrange`]; a trial
+    /// that the analysis does not count changes nothing.
+    pub fn add(&mut self, trial: &TrialStatistics, details: TrialDetails) {
+        if !trial.counts() {
+            return;
+        }
+        let TrialDetails { offers, lanes, swept, probes } = details;
+        if !swept.is_empty() {
+            self.concepts.add(&trial.participant, &swept);
+            let basis = trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
+            self.concepts_beliefs_from = self.concepts_beliefs_from.max(basis);
+        }
+        if let Some([of, with]) = &lanes {
+            let all = if trial.wizard_saw_advice { &mut self.with_advice } else { &mut self.without_advice };
+            let mut own = MatchCounts::default();
+            for counts in [all.get_or_insert_default(), &mut own] {
+                counts.add(of, with, trial.human_presses as u32, WINDOW);
+            }
+            self.similarity_by_trial.push(of_trial(trial, &own.similarity()));
+        }
+        if trial.condition == Condition::Wizard {
+            offers.iter().for_each(|offer| self.offers.add(offer));
+        }
+        self.probes.extend(probes.map(|probes| (trial.participant.clone(), probes)));
+    }
+}
+
+fn of_trial(trial: &TrialStatistics, similarity: &Similarity) -> WizardAssistantSimilarity {
+    WizardAssistantSimilarity {
+        recording: trial.recording.clone(),
+        wizard_saw_advice: trial.wizard_saw_advice,
+        of_n: similarity.of_n,
+        with_n: similarity.with_n,
+        matched: similarity.matched,
+        recall: similarity.signal.recall,
+    }
+}
+
+/// Name of the kind of participant in tables.
+pub(crate) fn kind_name(kind: ParticipantKind) -> &'static str {
+    match kind {
+        ParticipantKind::Simulated => "simulated",
+        ParticipantKind::Keyboard => "keyboard",
+        ParticipantKind::Display => "display",
+    }
 }

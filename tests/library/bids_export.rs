@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use tomcom_study::analysis::bids::{BidsLabelMap, LEVELS, session_label};
+use tomcom_study::analysis::bids::dataset::{BidsLabelMap, session_label};
+use tomcom_study::analysis::bids::events::LEVELS;
 use tomcom_study::bids_export::{BidsSummary, describe, export};
 
 fn folder(name: &str) -> PathBuf {

@@ -28,9 +28,9 @@ use tomcom_session::log::{
     CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
     is_damaged_log,
 };
-use tomcom_study::analysis::training_record::WizardTrainingRecord;
+use tomcom_study::analysis::lesson_report::WizardTrainingRecord;
 use tomcom_study::files::bids_tree;
-use tomcom_study::report::page_head;
+use tomcom_study::report;
 
 /// Largest size of a report or a training record that is read, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
@@ -308,7 +308,7 @@ impl ForgetSearch {
     fn look_at_page(&mut self, path: &Path) -> io::Result<bool> {
         let Some(bytes) = read_small(path)? else { return Ok(false) };
         let page = String::from_utf8_lossy(&bytes);
-        let Some(participants) = page_head::participants(&page) else { return Ok(false) };
+        let Some(participants) = report::participants_of_page(&page) else { return Ok(false) };
         if participants.iter().any(|name| self.subject.is_participant(name)) {
             self.found.files.push(path.to_path_buf());
         }

@@ -13,7 +13,7 @@ use super::subject::{AMBIGUOUS, ForgetSubject, NamedPerson, file_name};
 use tomcom_session::files::replace_file::replaced_name;
 use tomcom_session::log::rater_codes::EXPORT_COLUMNS;
 use tomcom_study::column::CsvTable;
-use tomcom_study::files::written_tables::{ListedTables, reader, records, table_named};
+use tomcom_study::files::export::{ListedTables, reader, records, table_named};
 
 /// Advice for a damaged table.
 const REMEDY: &str = "make the table again with tomcom study or tomcom codes --export, or delete it";

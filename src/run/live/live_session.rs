@@ -34,7 +34,7 @@ use tomcom_session::settings::GazeSource;
 use tomcom_session::tracker::{TrackerEvent, TrackerRecording};
 use tomcom_session::watcher::SenderComparisonFollower;
 use tomcom_session::{Event, LogHeader, Session};
-use tomcom_study::analysis::exclusion_status::ExclusionStatus;
+use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// Period of redrawing clocks and ages on the console while the trial is running.

@@ -1,24 +1,26 @@
-//! Summary over recordings of how far wizard and assistants agree, and where they differ.
+//! Comparison of wizard and assistants over recordings: how far they agree, and where they differ.
 
 use serde::Serialize;
 
-use super::compared_recording::RecordingSenderComparison;
-use super::exclusion_status::ExclusionStatus;
-use super::lesson_report::WizardTrainingSummary;
-use super::offer_summary::OfferSummary;
+use crate::analysis::lesson_report::WizardTrainingSummary;
+use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
+use crate::analysis::recording_summary::ExclusionStatus;
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
-use tomcom_core::kitchen::AspectId;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::{AspectId, Kitchen};
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
+use tomcom_session::apply::ApplyError;
 use tomcom_session::event::WizardScreenContent;
 use tomcom_session::history::belief_track::AspectBeliefSnapshot;
-use tomcom_session::history::comparison::{Communication, UnmatchedCommunication};
-use tomcom_session::watcher::SenderComparisonSettings;
-use tomcom_session::wizard_log::{self, WizardSummary};
+use tomcom_session::history::comparison::{Communication, SenderComparison, UnmatchedCommunication};
+use tomcom_session::settings::Condition;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
+use tomcom_session::wizard_log::{self, WizardLog, WizardSummary};
+use tomcom_session::{Session, TimestampedEvent};
 
-/// Largest number of unmatched communications of each kind that are listed as text.
 const LISTED: usize = 20;
 
 /// Agreement of wizard and assistants in recordings: the output of `tomcom compare`.
@@ -27,13 +29,10 @@ pub struct ComparisonSummary {
     /// Agreement between the communications of each two senders (the sent signals, and each assistant's hypothetical
     /// ones), over all recordings that count in the analysis.
     pub pairs: Vec<SenderPairSummary>,
-    /// Comparison of wizard and assistants in each recording.
     pub recordings: Vec<RecordingComparison>,
-    /// Training of the wizard who was named on the command line.
     pub training: Option<WizardTrainingSummary>,
 }
 
-/// Agreement between two senders' communications over recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SenderPairSummary {
     /// Name of the first compared sender: who sent the signals ("wizard", "assistant" or "nobody"), or an assistant's
@@ -49,27 +48,20 @@ pub struct SenderPairSummary {
     pub similarity: Similarity,
 }
 
-/// Comparison of wizard and assistants in one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingComparison {
-    /// Path of the recording's folder.
     pub recording: String,
-    /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
-    /// Number of the human's presses in the trial.
     pub human_actions: u64,
-    /// Communications of the wizard and of each assistant in the recording.
     pub lanes: Vec<SenderCommunicationList>,
     /// Summary of the wizard's signals; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     /// Statistics of the offers that a wizard could see; null in recordings without offers.
     pub offers: OfferSummary,
-    /// Communications of one sender that the other sender did not match.
     pub differences: Vec<UnmatchedCommunicationSummary>,
 }
 
-/// Communications of one sender in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SenderCommunicationList {
     /// Name of the sender: "wizard", or an assistant's concept as "tom-com".
@@ -78,14 +70,10 @@ pub struct SenderCommunicationList {
     pub communications: Vec<ListedCommunication>,
 }
 
-/// One communication (a signal or a proposal), as `tomcom compare` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedCommunication {
-    /// Number of the human's presses before the communication.
     pub press: u32,
-    /// Time of the communication on the trial's clock, in seconds.
     pub clock_s: f64,
-    /// What the communication tells the participant, in words.
     pub says: String,
 }
 
@@ -94,18 +82,14 @@ pub struct ListedCommunication {
 pub struct UnmatchedCommunicationSummary {
     /// Number of the difference, from 1, as the option `--open` takes it.
     pub number: usize,
-    /// The unmatched communication in one line of text.
     pub headline: String,
-    /// Name of the sender of the communication.
     pub by: String,
     /// Name of the sender without a matching communication.
     pub not_by: String,
-    /// Index of the compared assistant, and whether the communication is one that the participant saw.
     #[serde(skip)]
     pair: usize,
     #[serde(skip)]
     by_sender: bool,
-    /// The communication that has no match.
     #[serde(flatten)]
     pub spoken: ListedCommunication,
     /// Context of the communication; null if the assistants had not been asked for advice before the communication.
@@ -118,7 +102,6 @@ pub struct CommunicationContextSummary {
     /// Estimated belief about every state aspect before the communication, as if the signals sent shortly before (within
     /// the window in which communications of different senders match) had not been sent.
     pub beliefs: Vec<ListedEstimatedBelief>,
-    /// The assistant's recommendation at the time of the communication.
     pub advice: Option<Recommendation>,
     /// Content of the wizard's screen then; null before the screen was first drawn, and without a wizard.
     pub screen: Option<WizardScreenContent>,
@@ -127,13 +110,9 @@ pub struct CommunicationContextSummary {
 /// Estimated belief about one state aspect, beside the aspect's true value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedEstimatedBelief {
-    /// Name of the state aspect.
     pub aspect: String,
-    /// True value of the aspect.
     pub truth: String,
-    /// The value of the aspect that the participant most probably believes.
     pub believes: String,
-    /// Expected probability that the participant gives to the aspect's true value.
     pub p_truth: f64,
 }
 
@@ -256,7 +235,6 @@ impl UnmatchedCommunicationSummary {
     }
 }
 
-/// The comparison as text for the terminal, with the request that led to it.
 pub fn describe(figures: &ComparisonSummary, request: &SenderComparisonSettings) -> String {
     let mut text = format!(
         "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
@@ -349,4 +327,56 @@ fn describe_pair(pair: &SenderPairSummary) -> String {
         line("  the same kind", "", found.kind),
         line("  the same time", "", found.any)
     )
+}
+
+pub struct SenderComparer {
+    follower: SenderComparisonFollower,
+    wizard: WizardLog,
+}
+
+impl SenderComparer {
+    pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparer {
+        let cost = CostToGo::new(session.kitchen.clone());
+        SenderComparer { follower: SenderComparisonFollower::new(session, cost, request), wizard: WizardLog::default() }
+    }
+
+    /// Applies the next event of the recording to the session and to the comparison.
+    ///
+    /// # Errors
+    /// The event is not possible in the session's present state.
+    pub fn add(&mut self, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
+        self.follower.apply(stamped)?;
+        self.wizard.note(stamped, &self.follower.follower.session);
+        Ok(())
+    }
+
+    pub fn session(&self) -> &Session {
+        &self.follower.follower.session
+    }
+
+    /// The result of the comparison, once the last event was added. `recording`: name of the recording.
+    pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> RecordingSenderComparison {
+        self.follower.finish();
+        let comparison = self.follower.comparison(true);
+        let is_wizards = self.session().spec.trial.condition == Condition::Wizard;
+        let wizard = is_wizards.then(|| self.wizard.figures(&self.follower.follower));
+        let offers = OfferSummary::from_offers(&TimedOffer::visible(self.session()));
+        RecordingSenderComparison { recording, follower: self.follower, standing, comparison, wizard, offers }
+    }
+}
+
+pub struct RecordingSenderComparison {
+    pub recording: String,
+    pub follower: SenderComparisonFollower,
+    pub standing: ExclusionStatus,
+    pub comparison: SenderComparison,
+    /// Summary of the wizard's signals; `None` where nobody could send signals.
+    pub wizard: Option<WizardSummary>,
+    pub offers: OfferSummary,
+}
+
+impl RecordingSenderComparison {
+    pub fn kitchen(&self) -> &Kitchen {
+        &self.follower.follower.session.kitchen
+    }
 }

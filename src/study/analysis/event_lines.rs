@@ -13,12 +13,12 @@ use tomcom_core::robot::SafetyMode;
 use tomcom_session::event::WizardScreenContent;
 use tomcom_session::event::{SignalEndReason, TrialEndReason};
 use tomcom_session::follower::SessionFollower;
+
 use tomcom_session::history::wording::{self, location as said};
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use tomcom_session::wall_display::DisplayEvent;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
-/// Heading above the text lines of events.
 pub const HEADING: &str = " trial time  what happened";
 
 /// The text line for an event that was just applied, with the time on the trial's clock; `None` for events without a

@@ -12,37 +12,29 @@ use tomcom_core::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, Location
 /// Summary of a kitchen: size, shortest plans and display tags.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KitchenSummary {
-    /// The kitchen's identifier.
     pub name: String,
     /// Number of possible combinations of all state aspects' values, as a decimal text, since the number is too large
     /// for JSON readers.
     pub states: String,
-    /// The state aspects with the number of values that each can have.
     pub aspects: Vec<AspectValueCount>,
-    /// A shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
     /// Tags in the corners of the wall display for eye trackers; null if there is no room for tags.
     pub tags: Option<DisplayTagLayout>,
 }
 
-/// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayTagLayout {
-    /// Name of the family of tags to which the tags belong.
     pub family: &'static str,
     /// Length of the edges of the tags' black squares, in metres.
     pub edge_m: f64,
-    /// The tags, one in each corner of the display.
     pub tags: Vec<DisplayTagGeometry>,
     /// Corners of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
 }
 
-/// A tag in a corner of the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayTagGeometry {
-    /// Number of the tag in its family.
     pub id: u16,
     /// Position and size (x, y, w, h) of the tag with its white border, in fractions of the display.
     pub area: [f64; 4],
@@ -70,28 +62,22 @@ impl DisplayTagLayout {
     }
 }
 
-/// A state aspect with the number of its possible values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectValueCount {
-    /// Name of the state aspect.
     pub name: String,
-    /// Number of the aspect's possible values.
     pub values: usize,
 }
 
 /// A shortest plan for a dish from an empty kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShortestPlanSummary {
-    /// The dish's name.
     pub recipe: String,
-    /// Length of the plan, as the number of presses of both agents together.
     pub actions: u32,
     /// The presses of the shortest plan, in order: "human: take rice".
     pub presses: Vec<String>,
 }
 
 impl KitchenSummary {
-    /// Computes the summary of a kitchen.
     pub fn from_kitchen(kitchen: &Arc<Kitchen>) -> KitchenSummary {
         let mut cost = CostToGo::new(kitchen.clone());
         let aspects = kitchen.aspects.iter();
@@ -144,7 +130,6 @@ fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSum
     ShortestPlanSummary { recipe: kitchen.dish(dish).name.clone(), actions, presses }
 }
 
-/// The summary of a kitchen as text for the terminal.
 pub fn describe(kitchen: &Kitchen, figures: &KitchenSummary) -> String {
     let mut text = format!("{} ({})\n", kitchen.title, kitchen.name);
     let written = write_locations(&mut text, kitchen)

@@ -1,12 +1,12 @@
-//! Report of a wizard's training, as text: the criterion, every false belief that led to errors with the signal that
-//! would have corrected it, and the score.
+//! A wizard's training: the record of a session, as the program saves it, and its report as text: the criterion, every
+//! false belief that led to errors with the signal that would have corrected it, and the score.
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 use tomcom_core::base::text::count;
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::{aspects_told, phrase};
 use tomcom_core::communication::{Signal, signals, unavailable};
 use tomcom_core::kitchen::{AspectId, Kitchen};
@@ -20,14 +20,10 @@ use tomcom_session::history::wording;
 /// known to within 30 %.
 const TELLING: u64 = 10;
 
-/// Summary of a wizard's training so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WizardTrainingSummary {
-    /// The wizard's code.
     pub wizard: String,
-    /// Folder in which the records of the wizard's training were looked for.
     pub folder: String,
-    /// Number of recorded training sessions.
     pub times: u64,
     /// Duration of all training sessions together, in minutes.
     pub minutes: f64,
@@ -38,7 +34,6 @@ pub struct WizardTrainingSummary {
 }
 
 impl WizardTrainingSummary {
-    /// Summary of a wizard's training from the records found in this folder.
     pub fn from_records(folder: &Path, wizard: &str, records: &[WizardTrainingRecord]) -> WizardTrainingSummary {
         let last = records.last();
         WizardTrainingSummary {
@@ -52,7 +47,6 @@ impl WizardTrainingSummary {
         }
     }
 
-    /// The wizard's training so far, as text.
     pub fn describe(&self) -> String {
         let Some(met) = self.met else {
             return format!("\nno training of {} in {}; see --training\n", self.wizard, self.folder);
@@ -106,14 +100,12 @@ pub fn about(belief: &HarmfulFalseBelief) -> String {
     if belief.words.is_empty() { what } else { format!("{what}: {}", belief.words) }
 }
 
-/// The signal that would have corrected a false belief, in words.
 pub fn right(belief: &HarmfulFalseBelief) -> String {
     belief.signal.as_ref().map_or("no signal could tell it".to_string(), |signal| {
         format!("right would have been: {}", wording::signal(signal))
     })
 }
 
-/// The wizard's task in the training, and which signals count, as lines of text.
 pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
     vec![
         "Press . to start.".to_string(),
@@ -185,7 +177,6 @@ fn told(belief: &HarmfulFalseBelief, signals: &[JudgedSignal]) -> [String; 2] {
     [head, format!("    missed; {}; sent meanwhile: {sent}", right(belief))]
 }
 
-/// Result of a training session as text.
 pub fn describe(record: &WizardTrainingRecord, path: &Path) -> String {
     let mut text = String::new();
     for one in &record.recordings {
@@ -224,4 +215,67 @@ pub fn with_oneself(kitchen: &Kitchen, one: &WatchedRecording, other: &WatchedRe
     let mut tally = MatchCounts::default();
     tally.add(&one, &again, other.presses, WINDOW);
     tally.similarity().kappa
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WizardTrainingRecord {
+    /// The wizard's code, never a name.
+    pub wizard: String,
+    /// Wall clock time at which the training began (UTC, RFC 3339).
+    pub at: String,
+    /// Duration of the training, in minutes.
+    pub minutes: f64,
+    pub speed: f64,
+    pub criterion: TrainingCriterion,
+    pub met: bool,
+    pub recordings: Vec<WatchedRecording>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WatchedRecording {
+    /// Name of the recording's folder; a recording that was simulated for the training has its length in front of the
+    /// name.
+    pub recording: String,
+    pub complete: bool,
+    pub presses: u32,
+    pub signals: Vec<JudgedSignal>,
+    /// False beliefs that led to errors, among those that began in the part that was watched.
+    pub beliefs: Vec<HarmfulFalseBelief>,
+    /// Measures of the wizard's performance: hits and wrong signals.
+    pub measures: WizardMeasures,
+    /// Cohen's kappa between the wizard's signals now and in the previous pass through the same recording; null without
+    /// a previous pass.
+    pub kappa_with_oneself: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JudgedSignal {
+    pub press: u32,
+    /// Time of the signal on the trial's clock, in nanoseconds.
+    pub clock_ns: SessionTime,
+    pub signal: Signal,
+    /// Judgement of the signal: "hit", "again", "harmless", "late", "wrong" or "needless".
+    pub worth: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HarmfulFalseBelief {
+    pub aspect: String,
+    pub began_ns: SessionTime,
+    /// Time at which the belief was corrected, on the trial's clock; null if the participant held it until the end.
+    pub corrected_ns: Option<SessionTime>,
+    pub errors: u32,
+    pub believed: String,
+    pub truth: String,
+    /// Believed and true value in words for screens; filled in only while signals are judged, not in records on disk.
+    #[serde(skip)]
+    pub words: String,
+    /// The signal that would have corrected the belief; null if no signal can.
+    pub signal: Option<Signal>,
+    /// Index, from 0, of the wizard's signal that hit the false belief; null if no signal hit it.
+    pub hit_by: Option<usize>,
 }

@@ -1,31 +1,20 @@
 //! Computation over sessions and recordings: judged presses and estimates, fits, comparisons and summaries. Everything
 //! in this module is a function of events that the caller passes in; files, threads and clocks belong to the caller.
+
 pub mod bids;
-pub mod compared_recording;
 pub mod comparison_summary;
 pub mod event_lines;
-pub mod exclusion_status;
 pub mod fitting;
 #[cfg(feature = "mcap")]
 pub mod foxglove;
-pub mod gaze_summary;
 pub mod kitchen_summary;
 pub mod lesson_report;
 pub mod likelihood;
-pub mod looks;
 pub mod offer_summary;
-pub mod order_work;
-pub mod probe_accuracy;
-pub mod probe_collector;
 pub mod probe_detection;
 pub mod probe_figures;
-pub mod probe_lines;
 pub mod probe_record;
-pub mod probe_scores;
 pub mod recording_summary;
-pub mod recording_table;
 pub mod seen_contents;
-pub mod signal_time;
-pub mod training_record;
 pub mod trial_bootstrap;
 pub mod trial_summary;

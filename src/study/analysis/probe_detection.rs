@@ -1,33 +1,34 @@
 //! Accuracy of the belief estimate measured by answers to freeze probes, as an estimate for all state aspects at all
 //! probes. Each question is weighted by the inverse of the probability with which it was drawn, so that using the
 //! estimate to draw questions does not make the estimate look better.
+//!
+//! The answers are also predicted by three baselines that use no gaze model, no memory and no presses: the usual
+//! content, the content last seen, and the true content.
 
 use serde::Serialize;
 
-use super::probe_record::{ProbeQuestionKind, ProbedQuestion, weighted_share};
+use crate::analysis::probe_record::{AspectAtFreeze, ProbeQuestionKind, ProbedQuestion, weighted_share};
 use tomcom_core::measures::detection::{CALIBRATED, CALIBRATION_BINS, FalseBeliefDetection};
 use tomcom_core::measures::detection::{Calibration, weighted_auc};
+use tomcom_core::mind::dirichlet::LEAST_MEAN;
 
 /// A probe question with its weight, and whether the participant's belief about the asked aspect is false.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedProbeBelief<'a> {
-    /// The probe question, with truth, estimate and answer.
     pub question: &'a ProbedQuestion,
-    /// Whether the participant's belief about the asked aspect is false.
     pub is_wrong: bool,
     /// Weight of the probe question: the inverse of its inclusion probability, or 1.
     pub weight: f64,
 }
 
 impl<'a> WeightedProbeBelief<'a> {
-    /// A probe question of the main results; whether the belief is false is judged by the participant's answer.
     pub fn by_answer(question: &'a ProbedQuestion) -> Option<WeightedProbeBelief<'a>> {
         question.is_counted().then_some(())?;
         Some(WeightedProbeBelief { question, is_wrong: question.is_wrong()?, weight: question.weight() })
     }
 
     /// This probe question; whether the belief is false is judged by what the simulated participant believed.
-    pub fn by_true_belief(self) -> Option<WeightedProbeBelief<'a>> {
+    pub(crate) fn by_true_belief(self) -> Option<WeightedProbeBelief<'a>> {
         let believed = self.question.frozen.as_ref()?.believed.as_ref()?;
         Some(WeightedProbeBelief { is_wrong: believed.is_wrong(), ..self })
     }
@@ -42,7 +43,6 @@ impl<'a> WeightedProbeBelief<'a> {
 /// none, are false.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeDetection {
-    /// Weighted share of the beliefs that are false.
     pub wrong: Option<f64>,
     /// Mean of the areas under the ROC curves of locations and of recipes.
     pub auc: Option<f64>,
@@ -100,4 +100,102 @@ impl ProbeDetection {
             calibration,
         }
     }
+}
+
+/// Weighted mean log probability of the answered values, in nats, for several predictors of answers; higher is better.
+/// The answer "I don't know" names no value and is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ProbeLogScores {
+    pub n: u64,
+    /// Score of the belief estimate, which predicts beliefs and expects no mistaken answers.
+    pub estimate: Option<f64>,
+    /// Score of the belief estimate mixed with a share of random answers; the share is fitted to the other
+    /// participants.
+    pub estimate_with_slips: Option<f64>,
+    /// Score of predicting the content that the location had for the longest time so far.
+    pub usual: Option<f64>,
+    /// Score of predicting the content that the participant last saw, which is wrong if the content changed since.
+    pub last_seen: Option<f64>,
+    /// Score of predicting the true content of the location.
+    pub truth: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct NamedAnswer<'a> {
+    participant: usize,
+    is_recipe: bool,
+    weight: f64,
+    answer: &'a str,
+    truth: &'a str,
+    frozen: &'a AspectAtFreeze,
+}
+
+const SLIPS: [f64; 9] = [0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
+
+impl NamedAnswer<'_> {
+    fn estimated(&self) -> f64 {
+        self.frozen.estimate_p.get(self.answer).copied().unwrap_or(LEAST_MEAN)
+    }
+
+    fn with_slips(&self, share: f64) -> f64 {
+        (1.0 - share) * self.estimated() + share / self.frozen.values.max(1) as f64
+    }
+}
+
+impl ProbeLogScores {
+    /// Scores the predictors on the questions of the main results, each given with the index of its participant. How
+    /// often a baseline is right is learnt from the other participants.
+    pub(crate) fn from_questions(questions: &[(usize, &ProbedQuestion)]) -> ProbeLogScores {
+        let named: Vec<NamedAnswer> = questions.iter().filter_map(|&(of, question)| named(of, question)).collect();
+        let mean = |log_p: &dyn Fn(&NamedAnswer) -> f64| {
+            let (weights, sum) = named
+                .iter()
+                .fold((0.0, 0.0), |(weights, sum), one| (weights + one.weight, sum + one.weight * log_p(one)));
+            (weights > 0.0).then(|| sum / weights)
+        };
+        let participants = named.iter().map(|one| one.participant + 1).max().unwrap_or(0);
+        let slips: Vec<f64> = (0..participants).map(|without| share_of_slips(&named, without)).collect();
+        let point = |of: for<'a> fn(&NamedAnswer<'a>) -> &'a str| {
+            let rates: Vec<[f64; 2]> =
+                (0..participants).map(|without| [false, true].map(|group| rate(&named, without, group, of))).collect();
+            mean(&|one| {
+                let right = rates[one.participant][usize::from(one.is_recipe)];
+                let others = (one.frozen.values.max(2) - 1) as f64;
+                if of(one) == one.answer { right.ln() } else { ((1.0 - right) / others).ln() }
+            })
+        };
+        ProbeLogScores {
+            n: named.len() as u64,
+            estimate: mean(&|one| one.estimated().ln()),
+            estimate_with_slips: mean(&|one| one.with_slips(slips[one.participant]).ln()),
+            usual: point(|one| &one.frozen.usual),
+            last_seen: point(|one| &one.frozen.last_seen),
+            truth: point(|one| one.truth),
+        }
+    }
+}
+
+fn named(participant: usize, question: &ProbedQuestion) -> Option<NamedAnswer<'_>> {
+    question.is_counted().then_some(())?;
+    Some(NamedAnswer {
+        participant,
+        is_recipe: question.kind == ProbeQuestionKind::Recipe,
+        weight: question.weight(),
+        answer: question.answer()?,
+        truth: question.truth.as_deref()?,
+        frozen: question.frozen.as_ref()?,
+    })
+}
+
+/// How often predicting one value is right for the other participants, by Laplace's rule of succession.
+fn rate<'a>(named: &[NamedAnswer<'a>], without: usize, is_recipe: bool, of: fn(&NamedAnswer<'a>) -> &'a str) -> f64 {
+    let others = named.iter().filter(|one| one.participant != without && one.is_recipe == is_recipe);
+    let (n, right) = others.fold((0u32, 0u32), |(n, right), one| (n + 1, right + u32::from(of(one) == one.answer)));
+    f64::from(right + 1) / f64::from(n + 2)
+}
+
+fn share_of_slips(named: &[NamedAnswer], without: usize) -> f64 {
+    let others = || named.iter().filter(|one| one.participant != without);
+    let score = |share: f64| others().map(|one| one.with_slips(share).ln()).sum::<f64>();
+    SLIPS.into_iter().fold(SLIPS[0], |best, share| if score(share) > score(best) { share } else { best })
 }

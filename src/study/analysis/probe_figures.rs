@@ -1,16 +1,15 @@
-//! Results of freeze probes: what participants knew, and how well the estimate predicted their beliefs.
+//! Results of freeze probes: what participants knew (by state aspect, by what happened at the aspect's location, by
+//! condition), the effect of assistance, and how well the estimate predicted beliefs.
 
 use serde::Serialize;
 
-use super::probe_accuracy::{
-    ProbeAccuracyGrouping, ProbeAnswerAccuracy, SituationAwarenessEffect, accuracies, accuracy, awareness_effect,
-};
-use super::probe_detection::{ProbeDetection, WeightedProbeBelief};
-use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial};
-use super::probe_scores::ProbeLogScores;
-use super::trial_bootstrap::interval_where_known;
+use crate::analysis::probe_detection::{ProbeDetection, ProbeLogScores, WeightedProbeBelief};
+use crate::analysis::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
+use crate::analysis::trial_bootstrap::interval_where_known;
+use tomcom_core::base::text::{count, decimal, percent};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
+use tomcom_session::study_arm::StudyArm;
 
 /// Seed of the bootstrap's random numbers: the same answers give the same intervals.
 const SEED: u64 = 1;
@@ -21,7 +20,6 @@ const SEED: u64 = 1;
 pub struct ProbeSummary {
     /// Source of what participants believed: recorded beliefs, or answers to freeze probes.
     pub beliefs_from: BeliefSource,
-    /// Number of participants with a probe question in the main results.
     pub participants: u64,
     /// Numbers of probes and questions, and how many questions the main results include.
     pub counts: ProbeCounts,
@@ -37,7 +35,6 @@ pub struct ProbeSummary {
     pub auc_unweighted: Option<f64>,
     /// How well the answers to freeze probes are predicted by the estimate and by baselines.
     pub log_scores: ProbeLogScores,
-    /// Share of right answers over all questions of the main results.
     pub accuracy: ProbeAnswerAccuracy,
     /// Share of right answers in groups of questions: by state aspect, by change of the location, by condition.
     pub accuracies: Vec<ProbeAnswerAccuracy>,
@@ -51,18 +48,13 @@ pub struct ProbeSummary {
     pub by_true_beliefs: Option<RecordedBeliefComparison>,
 }
 
-/// Numbers of freeze probes and of their questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeCounts {
-    /// Number of freeze probes that began.
     pub probes: u64,
-    /// Number of freeze probes that did not begin in time and were dropped.
     pub dropped: u64,
     /// Number of freeze probes of which the wizard skipped remaining questions.
     pub skipped: u64,
-    /// Number of questions that were shown to participants.
     pub questions: u64,
-    /// Number of questions in the main results.
     pub counted: u64,
     /// Number of questions in the main results that were answered with "I don't know".
     pub unsure: u64,
@@ -82,11 +74,9 @@ pub struct ProbeCounts {
 /// Comparison of probe answers with what simulated participants believed, at the questions of the main results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordedBeliefComparison {
-    /// Number of probe questions for which the participant's belief is recorded.
     pub n: u64,
     /// Share of the questions with a recorded belief where answer and belief are both right or both wrong.
     pub agreement: f64,
-    /// Accuracy of the belief estimate, measured by recorded beliefs.
     #[serde(flatten)]
     pub detection: ProbeDetection,
     /// Accuracy of the belief estimate at the same questions, measured by the participants' answers.
@@ -197,4 +187,242 @@ impl RecordedBeliefComparison {
             by_answers,
         })
     }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeAccuracyGrouping {
+    /// Questions are grouped by their kind: orders, recipes, other locations.
+    Kind,
+    Aspect,
+    /// Questions are grouped by the time since the last change of the location.
+    Age,
+    /// Questions are grouped by whether the location changed since the participant last looked at it.
+    Seen,
+    /// Questions are grouped by the condition of the trial: who could send signals.
+    Condition,
+    /// Questions are grouped by whether the belief estimate took part in the choice of the questions.
+    Choice,
+    Confidence,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeAnswerAccuracy {
+    pub by: ProbeAccuracyGrouping,
+    pub group: String,
+    pub n: u64,
+    pub unsure: u64,
+    /// Share of right answers, weighted by the inverse of the questions' inclusion probability.
+    pub accuracy: Option<f64>,
+    /// 95 % interval of the accuracy, by bootstrap over participants; null with fewer than five participants.
+    pub interval: Option<[f64; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SituationAwarenessEffect {
+    pub participants: u64,
+    /// Mean over the compared participants of accuracy with assistance minus accuracy without.
+    pub difference: f64,
+    /// 95 % interval of the mean difference, by bootstrap over participants; null with fewer than five participants.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// Groups of questions by time since the location's last change: upper end in seconds, and name.
+const AGES: [(f64, &str); 4] = [
+    (5.0, "changed less than 5 s ago"),
+    (15.0, "changed 5 to 15 s ago"),
+    (60.0, "changed 15 to 60 s ago"),
+    (f64::INFINITY, "changed more than 60 s ago"),
+];
+
+/// The groups to which a probe question belongs, in the order of the table.
+fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyGrouping, usize, String)> {
+    let kind = match question.kind {
+        ProbeQuestionKind::Order => 0,
+        ProbeQuestionKind::Recipe => 1,
+        _ => 2,
+    };
+    let choice = ["drawn without the estimate", "drawn with the estimate"][usize::from(question.uses_estimate)];
+    let mut groups = vec![
+        (ProbeAccuracyGrouping::Kind, kind, question.kind.words().to_string()),
+        (ProbeAccuracyGrouping::Aspect, 0, question.aspect.clone()),
+        (ProbeAccuracyGrouping::Condition, trial.planned_arm as usize, trial.planned_arm.name().to_string()),
+        (ProbeAccuracyGrouping::Choice, usize::from(question.uses_estimate), choice.to_string()),
+    ];
+    if let Some((frozen, changed_unseen)) =
+        question.frozen.as_ref().and_then(|frozen| Some((frozen, frozen.changed_unseen?)))
+    {
+        groups.push(match frozen.changed_s {
+            None => (ProbeAccuracyGrouping::Age, AGES.len(), "not changed in the trial".to_string()),
+            Some(s) => {
+                let age = AGES.iter().position(|(to, _)| s < *to).unwrap_or(AGES.len() - 1);
+                (ProbeAccuracyGrouping::Age, age, AGES[age].1.to_string())
+            }
+        });
+        let seen = ["not changed by others since the last look", "changed by others since the last look"];
+        let index = usize::from(changed_unseen);
+        groups.push((ProbeAccuracyGrouping::Seen, index, seen[index].to_string()));
+    }
+    if let Some(confidence) = question.confidence.filter(|_| question.response != ProbeResponse::Unsure) {
+        let group = format!("confidence {confidence} of 3");
+        groups.push((ProbeAccuracyGrouping::Confidence, usize::from(confidence), group));
+    }
+    groups
+}
+
+/// Accuracy in each group of each grouping, over the probe questions of the main results; `participants` holds the
+/// trials of each participant.
+fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerAccuracy> {
+    let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
+        .iter()
+        .flatten()
+        .flat_map(|trial| trial.counted().flat_map(|question| groups(trial, question)))
+        .collect();
+    all.sort();
+    all.dedup();
+    all.into_iter()
+        .map(|key| {
+            let is_in = |trial: &ProbedTrial, question: &ProbedQuestion| {
+                question.is_counted() && groups(trial, question).contains(&key)
+            };
+            accuracy(participants, (key.0, &key.2), seed, is_in)
+        })
+        .collect()
+}
+
+fn accuracy(
+    participants: &[Vec<&ProbedTrial>],
+    (by, group): (ProbeAccuracyGrouping, &str),
+    seed: u64,
+    is_in: impl Fn(&ProbedTrial, &ProbedQuestion) -> bool,
+) -> ProbeAnswerAccuracy {
+    let of_one = |trials: &Vec<&ProbedTrial>| -> Vec<(f64, bool)> {
+        let all = trials.iter().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
+        all.filter_map(|one| Some((one.weight(), !one.is_wrong()?))).collect()
+    };
+    let answers: Vec<Vec<(f64, bool)>> = participants.iter().map(of_one).collect();
+    // The bootstrap needs only two sums of weights for each participant: of all answers, and of right ones.
+    let sums: Vec<[f64; 2]> = answers
+        .iter()
+        .filter(|of_one| !of_one.is_empty())
+        .map(|of_one| {
+            let right = of_one.iter().filter(|(_, is_right)| *is_right).map(|(weight, _)| weight).sum();
+            [of_one.iter().map(|(weight, _)| weight).sum(), right]
+        })
+        .collect();
+    let share = |sums: &[[f64; 2]]| {
+        let [all, right] = sums.iter().fold([0.0, 0.0], |[all, right], one| [all + one[0], right + one[1]]);
+        (all > 0.0).then(|| right / all)
+    };
+    let questions =
+        || participants.iter().flatten().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
+    ProbeAnswerAccuracy {
+        by,
+        group: group.to_string(),
+        n: questions().filter(|one| one.is_wrong().is_some()).count() as u64,
+        unsure: questions().filter(|one| one.response == ProbeResponse::Unsure).count() as u64,
+        accuracy: weighted_share(answers.into_iter().flatten()),
+        interval: interval_where_known(&sums, seed, share),
+    }
+}
+
+/// The effect of assistance on the accuracy of answers, within participants; `None` if no participant has answers in
+/// both assisted and unassisted trials.
+fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<SituationAwarenessEffect> {
+    let share = |trials: &[&ProbedTrial], assisted: bool| {
+        let of = trials.iter().filter(|trial| (trial.planned_arm != StudyArm::None) == assisted);
+        let answers = of.flat_map(|trial| trial.counted());
+        weighted_share(answers.filter_map(|one| Some((one.weight(), !one.is_wrong()?))))
+    };
+    let differences: Vec<f64> =
+        participants.iter().filter_map(|of| Some(share(of, true)? - share(of, false)?)).collect();
+    let mean = |of: &[f64]| (!of.is_empty()).then(|| of.iter().sum::<f64>() / of.len() as f64);
+    Some(SituationAwarenessEffect {
+        participants: differences.len() as u64,
+        difference: mean(&differences)?,
+        interval: interval_where_known(&differences, seed, mean),
+    })
+}
+
+pub fn describe(found: &ProbeSummary) -> String {
+    let (counts, detection, scores) = (&found.counts, &found.detection, &found.log_scores);
+    let text = format!(
+        "probes: {} of {} in {}; {} count, {} of them \"I don't know\"; left out: {} without an answer in time, {} in probes of the \
+         wizard, {} about what comes next\n\
+         right answers: {}{}\n\
+         estimate against answers, weighted by the chance of each question: area under the ROC {}{} (locations {}, where knowing \
+         only what changed unseen gives {}, recipes {}; unweighted {}), calibration error {}{}\n\
+         log score of answers: estimate {} (with wrong answers at random {}), what usually lies there {}, what was seen last {}, what \
+         is true {} nats\n",
+        count(counts.questions, "question", "questions"),
+        count(found.participants, "participant", "participants"),
+        count(counts.probes, "probe", "probes"),
+        counts.counted,
+        counts.unsure,
+        counts.unanswered,
+        counts.by_wizard,
+        counts.level_2,
+        percent(found.accuracy.accuracy),
+        interval_text(found.accuracy.interval, 100.0, 1),
+        decimal(detection.auc, 3),
+        interval_text(found.auc_interval, 1.0, 3),
+        decimal(detection.auc_locations, 3),
+        decimal(detection.auc_baseline, 3),
+        decimal(detection.auc_recipes, 3),
+        decimal(found.auc_unweighted, 3),
+        decimal(detection.ece, 3),
+        interval_text(found.ece_interval, 1.0, 3),
+        decimal(scores.estimate, 3),
+        decimal(scores.estimate_with_slips, 3),
+        decimal(scores.usual, 3),
+        decimal(scores.last_seen, 3),
+        decimal(scores.truth, 3),
+    );
+    text + &describe_accuracies(found)
+}
+
+/// Text about right answers to probes by group, the effect of assistance, questions about what comes next, and accuracy
+/// measured by recorded beliefs.
+fn describe_accuracies(found: &ProbeSummary) -> String {
+    let mut text = String::new();
+    // Groups by single state aspect and by the way of drawing questions are in the JSON output only.
+    let told = [
+        ProbeAccuracyGrouping::Kind,
+        ProbeAccuracyGrouping::Age,
+        ProbeAccuracyGrouping::Seen,
+        ProbeAccuracyGrouping::Condition,
+    ];
+    for one in found.accuracies.iter().filter(|one| told.contains(&one.by)) {
+        let share = percent(one.accuracy);
+        text += &format!("  {:<44}{share:>8}{} of {}\n", one.group, interval_text(one.interval, 100.0, 1), one.n);
+    }
+    if let Some(effect) = &found.assistance {
+        text += &format!(
+            "assistance: {:+.1} % right answers{} within {}\n",
+            100.0 * effect.difference,
+            interval_text(effect.interval, 100.0, 1),
+            count(effect.participants, "participant", "participants"),
+        );
+    }
+    for one in &found.level_2 {
+        text += &format!("what comes next: {}: {} right of {}\n", one.group, percent(one.accuracy), one.n);
+    }
+    if let Some(known) = &found.by_true_beliefs {
+        text += &format!(
+            "by the recorded beliefs at {} of these questions: area {}, calibration error {}; by their answers {} and {}; {} of the \
+             answers agree\n",
+            known.n,
+            decimal(known.detection.auc, 3),
+            decimal(known.detection.ece, 3),
+            decimal(known.by_answers.auc, 3),
+            decimal(known.by_answers.ece, 3),
+            percent(Some(known.agreement)),
+        );
+    }
+    text
+}
+
+/// A confidence interval in brackets; empty if the interval is not known.
+fn interval_text(interval: Option<[f64; 2]>, scale: f64, digits: usize) -> String {
+    interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
 }

@@ -1,22 +1,27 @@
-//! A question of a freeze probe as the analysis needs it: what was true, estimated and (in simulations) believed when
-//! the trial froze; and the answer.
+//! The questions of a recording's freeze probes as the analysis needs them: what was true, estimated and (in
+//! simulations) believed when the trial froze; and the answer.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::seen_contents::LastSeenContents;
+use tomcom_core::base::maths::regularized_incomplete_beta;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationKind, OrderContent, Press,
+};
 use tomcom_core::measures::sequences::FALSE_BELOW;
-use tomcom_session::probes::ProbeOrigin;
+use tomcom_core::mind::RecordedBelief;
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom_session::study_arm::StudyArm;
+use tomcom_session::{Event, Session, TimestampedEvent};
 
-/// Kind of a probe question, by what the question asks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ProbeQuestionKind {
-    /// The question asks for the content of an order location.
     Order,
-    /// The question asks for the recipe of a dish.
     Recipe,
-    /// The question asks for the content of a location other than an order.
     Place,
     /// The question asks which order will be ready next (level 2 of situation awareness).
     NextOrder,
@@ -25,7 +30,6 @@ pub enum ProbeQuestionKind {
 }
 
 impl ProbeQuestionKind {
-    /// Name of the kind of probe question in tables.
     pub fn name(self) -> &'static str {
         match self {
             ProbeQuestionKind::Order => "order",
@@ -36,7 +40,6 @@ impl ProbeQuestionKind {
         }
     }
 
-    /// The kind of probe question in words, in the plural.
     pub fn words(self) -> &'static str {
         match self {
             ProbeQuestionKind::Order => "orders",
@@ -54,29 +57,21 @@ impl ProbeQuestionKind {
     }
 }
 
-/// Response of a participant to a probe question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ProbeResponse {
-    /// The participant answered with this value, given by its name.
     Value(String),
-    /// The participant answered "I don't know".
     Unsure,
     /// The participant gave no answer, because the wizard skipped the rest of the probe.
     Skipped,
-    /// The participant gave no answer within the time limit of the probe.
     Missing,
 }
 
 /// State aspect of a probe question at the time the trial froze: estimate, belief and history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectAtFreeze {
-    /// Number of values that the state aspect can have.
     pub values: usize,
-    /// Name of the value that the participant most probably believes, in the estimate.
     pub estimate: String,
-    /// Expected probability that the participant gives to each value, in the estimate, by the value's name.
     pub estimate_p: BTreeMap<String, f64>,
-    /// Expected probability that the participant gives to the true value, in the estimate.
     pub estimate_p_truth: f64,
     /// Estimated probability that the participant's belief is false, as in [`tomcom_core::measures::detection`].
     pub estimate_p_false: f64,
@@ -94,12 +89,9 @@ pub struct AspectAtFreeze {
     pub last_seen: String,
 }
 
-/// Belief of a simulated participant about a state aspect when the trial froze.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedBeliefAtFreeze {
-    /// Name of the value that the simulated participant believed most probable.
     pub believes: String,
-    /// Probability that the simulated participant gave to the true value.
     pub p_truth: f64,
 }
 
@@ -117,25 +109,19 @@ pub struct ProbedQuestion {
     pub probe: u32,
     /// Number of the question in the probe, from 1.
     pub question: u32,
-    /// Time at which the trial froze, on the trial's clock in seconds.
     pub time_s: f64,
-    /// Whether the schedule or the wizard started the freeze probe.
     pub origin: ProbeOrigin,
     /// Whether the belief estimate took part in the choice of the probe's questions.
     pub uses_estimate: bool,
-    /// Kind of the probe question.
     pub kind: ProbeQuestionKind,
     /// Name of the state aspect that the question is about; for questions of level 2, name of the kind of question.
     pub aspect: String,
-    /// Probability with which the question was drawn (inclusion probability).
     pub inclusion: f64,
     /// Name of the right answer; `None` for questions of level 2 if the trial ended before the right answer was known.
     pub truth: Option<String>,
-    /// The participant's response to the probe question.
     pub response: ProbeResponse,
     /// Confidence of the participant in the answer, from 1 to 3, if it was asked for.
     pub confidence: Option<u8>,
-    /// Response time from the question's appearance to the answer, in seconds.
     pub took_s: Option<f64>,
     /// The asked state aspect at the freeze; `None` for questions of level 2.
     pub frozen: Option<AspectAtFreeze>,
@@ -161,7 +147,7 @@ impl ProbedQuestion {
 
     /// Whether the probe question is part of the main results: drawn by the schedule, about the present state, and
     /// answered in time.
-    pub fn is_counted(&self) -> bool {
+    pub(crate) fn is_counted(&self) -> bool {
         self.origin == ProbeOrigin::Schedule && !self.kind.is_level_2() && self.is_wrong().is_some()
     }
 
@@ -174,58 +160,235 @@ impl ProbedQuestion {
     }
 }
 
-/// The freeze probes of one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedTrial {
-    /// Study arm under which the trial counts.
     pub planned_arm: StudyArm,
-    /// Number of freeze probes that began in the trial.
     pub begun: u64,
-    /// Number of probes that did not begin in time and were dropped.
     pub dropped: u64,
-    /// Number of freeze probes of which the wizard skipped remaining questions.
     pub skipped: u64,
-    /// The probe questions that the participant was shown, in order.
     pub questions: Vec<ProbedQuestion>,
 }
 
-/// Statistics of the freeze probes of one trial.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedTrialStatistics {
-    /// Number of probe questions in the main results.
     pub counted: u64,
     /// Weighted share of wrong answers among the probe questions of the main results; `None` without such questions.
     pub share_wrong: Option<f64>,
 }
 
 impl ProbedTrial {
-    /// Statistics of the trial's freeze probes.
     pub fn statistics(&self) -> ProbedTrialStatistics {
         ProbedTrialStatistics { counted: self.counted().count() as u64, share_wrong: self.share_wrong() }
     }
 
-    /// Whether the trial had, or should have had, a freeze probe.
     pub fn is_any(&self) -> bool {
         self.begun + self.dropped > 0
     }
 
-    /// The probe questions of the trial that belong to the main results.
     pub fn counted(&self) -> impl Iterator<Item = &ProbedQuestion> {
         self.questions.iter().filter(|question| question.is_counted())
     }
 
     /// Weighted share of wrong answers among the probe questions of the main results; `None` without such questions.
-    pub fn share_wrong(&self) -> Option<f64> {
+    pub(crate) fn share_wrong(&self) -> Option<f64> {
         weighted_share(self.counted().filter_map(|one| Some((one.weight(), one.is_wrong()?))))
     }
 }
 
 /// Weighted share of elements that are true; an element is a weight, and whether it is true. `None` without elements.
-pub fn weighted_share(of: impl IntoIterator<Item = (f64, bool)>) -> Option<f64> {
+pub(crate) fn weighted_share(of: impl IntoIterator<Item = (f64, bool)>) -> Option<f64> {
     let (mut all, mut part) = (0.0, 0.0);
     for (weight, is_it) in of {
         all += weight;
         part += if is_it { weight } else { 0.0 };
     }
     (all > 0.0).then(|| part / all)
+}
+
+#[derive(Debug, Default)]
+pub struct ProbeCollector {
+    seen: LastSeenContents,
+    belief: Option<(SessionTime, RecordedBelief)>,
+    open: Option<OpenQuestions>,
+    questions: Vec<ProbedQuestion>,
+    begun: u64,
+    dropped: u64,
+    skipped: u64,
+}
+
+#[derive(Debug)]
+struct OpenQuestions {
+    drawn: Vec<ProbedQuestion>,
+    /// Session time at which each question appeared; `None` for questions that were not shown yet.
+    asked: Vec<Option<SessionTime>>,
+}
+
+impl ProbeCollector {
+    pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
+        let session = &follower.session;
+        self.seen.note(session, &stamped.event, change);
+        match &stamped.event {
+            Event::ParticipantBelieves(witness) => self.belief = Some((stamped.time, witness.clone())),
+            Event::Probe(event) => self.probe(stamped.time, event, follower),
+            _ => {}
+        }
+        if let KitchenChange::Press { press, .. } = change {
+            self.next(&session.kitchen, press);
+        }
+    }
+
+    fn probe(&mut self, now: SessionTime, event: &ProbeEvent, follower: &SessionFollower) {
+        match event {
+            ProbeEvent::Begun { probe, origin, uses_estimate, questions } => {
+                self.begun += 1;
+                let drawn: Vec<ProbedQuestion> = (1..)
+                    .zip(questions)
+                    .map(|(number, question)| ProbedQuestion {
+                        probe: *probe,
+                        question: number,
+                        origin: *origin,
+                        uses_estimate: *uses_estimate,
+                        ..self.frozen(now, question, follower)
+                    })
+                    .collect();
+                self.open = Some(OpenQuestions { asked: vec![None; drawn.len()], drawn });
+            }
+            ProbeEvent::Asked { question, .. } => {
+                if let Some((asked, _)) = self.question(*question) {
+                    *asked = Some(now);
+                }
+            }
+            ProbeEvent::Answered { question, answer, confidence, .. } => {
+                if let Some((asked, drawn)) = self.question(*question) {
+                    drawn.response = answer.clone().map_or(ProbeResponse::Unsure, ProbeResponse::Value);
+                    drawn.confidence = *confidence;
+                    drawn.took_s = asked.map(|asked| now.secs_since(asked));
+                }
+            }
+            ProbeEvent::Dropped { .. } => self.dropped += 1,
+            ProbeEvent::Skipped { .. } => {
+                self.skipped += 1;
+                let missing = self.open.iter_mut().flat_map(|open| &mut open.drawn);
+                for question in missing.filter(|question| question.response == ProbeResponse::Missing) {
+                    question.response = ProbeResponse::Skipped;
+                }
+            }
+            ProbeEvent::Ended { .. } => self.close(),
+            ProbeEvent::Requested | ProbeEvent::Delayed { .. } | ProbeEvent::Closed { .. } => {}
+        }
+    }
+
+    fn question(&mut self, number: u32) -> Option<(&mut Option<SessionTime>, &mut ProbedQuestion)> {
+        let open = self.open.as_mut()?;
+        let index = (number as usize).checked_sub(1)?;
+        Some((open.asked.get_mut(index)?, open.drawn.get_mut(index)?))
+    }
+
+    /// Ends the open freeze probe and keeps the questions that were shown.
+    fn close(&mut self) {
+        let Some(open) = self.open.take() else { return };
+        let shown = open.drawn.into_iter().zip(open.asked).filter(|(_, asked)| asked.is_some());
+        self.questions.extend(shown.map(|(question, _)| question));
+    }
+
+    fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &SessionFollower) -> ProbedQuestion {
+        let (session, kitchen) = (&follower.session, &follower.session.kitchen);
+        let (kind, aspect) = subject(kitchen, &question.about);
+        let truth = aspect.map(|aspect| label(kitchen, aspect, kitchen.true_value(session.state, aspect)));
+        ProbedQuestion {
+            probe: 0,
+            question: 0,
+            time_s: session.trial_clock(now).as_secs_f64(),
+            origin: ProbeOrigin::Schedule,
+            uses_estimate: false,
+            kind,
+            aspect: aspect.map_or(kind.name().to_string(), |aspect| kitchen.aspects[aspect.index()].name.clone()),
+            inclusion: question.inclusion,
+            truth,
+            response: ProbeResponse::Missing,
+            confidence: None,
+            took_s: None,
+            frozen: aspect.map(|aspect| self.aspect(now, aspect, follower)),
+        }
+    }
+
+    fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &SessionFollower) -> AspectAtFreeze {
+        let (session, kitchen) = (&follower.session, &follower.session.kitchen);
+        let labels = &kitchen.aspects[aspect.index()].labels;
+        // The belief estimate at the freeze includes the effect of the time since the last event.
+        let estimate =
+            follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
+        let truth = kitchen.true_value(session.state, aspect);
+        let estimate_p_truth = estimate.mean()[truth];
+        let [of_truth, of_others] = [estimate_p_truth, 1.0 - estimate_p_truth].map(|mean| mean * estimate.precision());
+        let believed = self.belief.as_ref().filter(|(at, _)| *at == now);
+        let believed = believed.and_then(|(_, witness)| witness.aspects.get(aspect.index()));
+        let location = match kitchen.aspects[aspect.index()].kind {
+            AspectKind::Location(location) => Some(location),
+            AspectKind::Recipe(_) => None,
+        };
+        // Recipes do not change, so for a recipe the usual value and the value last seen are the true one.
+        let of_code =
+            |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
+        let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
+        AspectAtFreeze {
+            values: labels.len(),
+            estimate: label(kitchen, aspect, estimate.most_likely()),
+            estimate_p: labels.iter().cloned().zip(estimate.mean().iter().copied()).collect::<BTreeMap<_, _>>(),
+            estimate_p_truth,
+            estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
+            believed: believed
+                .map(|own| RecordedBeliefAtFreeze { believes: own.believes.clone(), p_truth: own.p_truth }),
+            changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
+            changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
+            usual: of_location(location.map(|location| self.seen.usual(session, location))),
+            last_seen: of_location(location.map(|location| self.seen.last_seen(location))),
+        }
+    }
+
+    /// Fills in the right answer to questions about the next press or order, from a press that has just happened.
+    fn next(&mut self, kitchen: &Kitchen, press: &Press) {
+        let button = kitchen.button(press.agent, press.button);
+        let served = match button.action {
+            ButtonAction::Serve(order) if press.effective => {
+                matches!(press.before.order(order), OrderContent::Dish(_)).then_some(order)
+            }
+            _ => None,
+        };
+        for question in self.questions.iter_mut().filter(|question| question.truth.is_none()) {
+            question.truth = match question.kind {
+                ProbeQuestionKind::NextOrder => served.map(|order| kitchen.location(order).name.clone()),
+                ProbeQuestionKind::NextPress if press.agent == Agent::Robot => Some(button.name.clone()),
+                _ => None,
+            };
+        }
+    }
+
+    /// The freeze probes of the recording, after the recording's last event has been noted.
+    pub fn finish(mut self, session: &Session) -> ProbedTrial {
+        self.close();
+        let ProbeCollector { begun, dropped, skipped, questions, .. } = self;
+        ProbedTrial { planned_arm: session.planned_arm(), begun, dropped, skipped, questions }
+    }
+}
+
+fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbeQuestionKind, Option<AspectId>) {
+    match about {
+        ProbeSubject::Location { location } => {
+            let id = kitchen.location_named(location);
+            let is_order = id.is_some_and(|id| kitchen.location(id).kind == LocationKind::Order);
+            (if is_order { ProbeQuestionKind::Order } else { ProbeQuestionKind::Place }, id.map(AspectId::of_location))
+        }
+        ProbeSubject::Recipe { dish } => {
+            let is_it = |kind: AspectKind| matches!(kind, AspectKind::Recipe(id) if kitchen.dish(id).name == *dish);
+            let index = kitchen.aspects.iter().position(|aspect| is_it(aspect.kind));
+            (ProbeQuestionKind::Recipe, index.map(|index| AspectId(index as u8)))
+        }
+        ProbeSubject::NextOrder => (ProbeQuestionKind::NextOrder, None),
+        ProbeSubject::NextPress => (ProbeQuestionKind::NextPress, None),
+    }
+}
+
+fn label(kitchen: &Kitchen, aspect: AspectId, value: usize) -> String {
+    kitchen.aspects[aspect.index()].labels[value].clone()
 }

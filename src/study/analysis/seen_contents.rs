@@ -1,7 +1,6 @@
 //! What the participant has last seen at each location, and which content was at each location for how long; follows
 //! from gaze, changes and the participant's presses, without any belief estimate.
 
-use super::looks::LocationDwells;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
@@ -9,22 +8,17 @@ use tomcom_core::kitchen::{KitchenChange, LocationId, State};
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::{Event, Session};
 
-/// What was seen and what was present at one location so far.
 #[derive(Clone, Debug, Default)]
 struct SeenLocation {
-    /// Code of the content that the participant last saw at the location.
     seen: u8,
     /// Whether somebody else changed the location since the participant last saw it.
     is_changed_unseen: bool,
-    /// Whether the location has changed in the trial.
     has_changed: bool,
     /// Duration, on the trial's clock, for which each content (by its code) was at the location until its last change.
     lay: Vec<(u8, SessionTime)>,
-    /// Time of the location's last change, or of the trial's start, on the trial's clock.
     since: SessionTime,
 }
 
-/// What the participant has last seen at each location of the kitchen, and what was there for how long.
 #[derive(Clone, Debug, Default)]
 pub struct LastSeenContents {
     locations: [SeenLocation; MAX_LOCATIONS],
@@ -32,7 +26,6 @@ pub struct LastSeenContents {
 }
 
 impl LastSeenContents {
-    /// Notes an event that has just been applied to the session.
     pub fn note(&mut self, session: &Session, event: &Event, change: &KitchenChange) {
         if let KitchenChange::TrialStarted { after, .. } = change {
             *self = LastSeenContents::default();
@@ -80,7 +73,6 @@ impl LastSeenContents {
         self.locations[place.index()].is_changed_unseen
     }
 
-    /// Code of the content that the participant last saw at a location, or made there.
     pub fn last_seen(&self, place: LocationId) -> u8 {
         self.locations[place.index()].seen
     }
@@ -92,7 +84,6 @@ impl LastSeenContents {
         location.has_changed.then(|| session.trial_clock(session.time).secs_since(location.since))
     }
 
-    /// Code of the content that was at a location for the longest time in the trial; with ties, the present content.
     pub fn usual(&self, session: &Session, place: LocationId) -> u8 {
         let location = &self.locations[place.index()];
         let present = session.state.code(place);
@@ -104,5 +95,36 @@ impl LastSeenContents {
         };
         let codes = location.lay.iter().map(|(code, _)| *code);
         codes.fold(present, |best, code| if of(code) > of(best) { code } else { best })
+    }
+}
+
+/// Least duration of a look after which a location counts as seen, in seconds.
+const LOOK_S: f64 = 0.1;
+
+/// For each location, the time since which the gaze has been in the location's area without a change there. Times are
+/// those at which samples were taken.
+#[derive(Clone, Debug, Default)]
+pub struct LocationDwells {
+    since: [Option<SessionTime>; MAX_LOCATIONS],
+}
+
+impl LocationDwells {
+    /// Notes a change of a location's content: a look at the earlier content does not count for the new content.
+    pub fn changed(&mut self, location: LocationId) {
+        self.since[location.index()] = None;
+    }
+
+    /// Ends the looks at all locations, because a pause of the trial interrupts looks.
+    pub fn interrupted(&mut self) {
+        self.since = Default::default();
+    }
+
+    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen
+    /// the location's present content by now. A sample that was taken before the last change there is no look at it.
+    pub(crate) fn sampled(&mut self, session: &Session, location: LocationId) -> bool {
+        let since = &mut self.since[location.index()];
+        let taken = session.gaze.looked_at[location.index()].filter(|_| session.sees_present_content(location));
+        *since = taken.map(|taken| since.unwrap_or(taken));
+        since.zip(taken).is_some_and(|(since, taken)| taken.secs_since(since) >= LOOK_S)
     }
 }

@@ -39,16 +39,12 @@ pub fn intervals<T: Copy, const N: usize>(
             statistics(&drawn)
         })
         .collect();
-    std::array::from_fn(|index| {
-        let mut values: Vec<f64> = resampled.iter().map(|all| all[index]).collect();
-        values.sort_by(f64::total_cmp);
-        INTERVAL.map(|share| values[((RESAMPLES - 1) as f64 * share).round() as usize])
-    })
+    std::array::from_fn(|index| percentiles(resampled.iter().map(|all| all[index]).collect(), INTERVAL))
 }
 
 /// The 95 % interval of a statistic that is undefined for some resamples, which are left out. `None` with fewer than
 /// five units, or if the statistic is undefined for more than half of the resamples.
-pub fn interval_where_known<T: Copy>(
+pub(crate) fn interval_where_known<T: Copy>(
     units: &[T],
     seed: u64,
     statistic: impl Fn(&[T]) -> Option<f64>,
@@ -57,13 +53,17 @@ pub fn interval_where_known<T: Copy>(
         return None;
     }
     let mut random = stream(seed, "bootstrap over participants", 0);
-    let mut resampled: Vec<f64> = (0..RESAMPLES)
+    let resampled: Vec<f64> = (0..RESAMPLES)
         .filter_map(|_| {
             let drawn: Vec<T> = units.iter().map(|_| units[random.random_range(0..units.len())]).collect();
             statistic(&drawn)
         })
         .collect();
-    resampled.sort_by(f64::total_cmp);
-    let last = resampled.len().checked_sub(1)?;
-    (2 * resampled.len() >= RESAMPLES).then(|| INTERVAL.map(|share| resampled[(last as f64 * share).round() as usize]))
+    (2 * resampled.len() >= RESAMPLES).then(|| percentiles(resampled, INTERVAL))
+}
+
+/// The values at these shares of the sorted values, of which there is at least one.
+pub(crate) fn percentiles(mut values: Vec<f64>, shares: [f64; 2]) -> [f64; 2] {
+    values.sort_by(f64::total_cmp);
+    shares.map(|share| values[((values.len() - 1) as f64 * share).round() as usize])
 }

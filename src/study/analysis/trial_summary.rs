@@ -1,45 +1,43 @@
-//! Summaries of trials and simulations that commands print. A number that cannot be computed is null in JSON.
+//! Summaries of trials and simulations that commands print, and times of orders and signals. A number that cannot be
+//! computed is null in JSON.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::offer_summary::{OfferDurations, TimedOffer};
+use crate::analysis::offer_summary::{OfferDurations, TimedOffer};
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::{count, decimal};
-use tomcom_core::kitchen::{Agent, DishId};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::cost_to_go::{CostToGo, ProofBudget};
+use tomcom_core::kitchen::{Agent, DishId, Kitchen, KitchenChange, LocationId};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
-use tomcom_session::TimelineEvent;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::study_arm::StudyArm;
+use tomcom_session::wizard_log::clock_at;
+use tomcom_session::{Event, Session, TimelineEvent, TimestampedEvent};
 
 /// Summary of one trial: presses, errors, signals, served orders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialSummary {
-    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Number of the human's presses that the robot may have overtaken (races), which do not count as errors.
     pub races: u64,
-    /// Number of signals shown to the participant.
     pub signals: u64,
     /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub beliefs: Option<TrialFalseBeliefErrors>,
     /// For each served order, its dish and the number of presses of both agents since the previously served order.
     pub served: Vec<(DishId, u32)>,
-    /// Duration of the trial on its own clock, in seconds.
     pub seconds: f64,
     /// For each closed offer, the time for which the offer stood, in milliseconds.
     pub offers_ms: Vec<u32>,
 }
 
 impl TrialSummary {
-    /// Summary of the session's trial up to the session's last event.
     pub fn from_follower(follower: &SessionFollower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
@@ -70,15 +68,11 @@ impl TrialSummary {
 /// Errors of one trial that follow from false beliefs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialFalseBeliefErrors {
-    /// Number of errors that follow from false beliefs.
     pub related: u64,
-    /// Number of errors that only a pair of false beliefs explains.
     pub related_to_pairs: u64,
     /// Error sequences: successive errors that follow from the same false belief.
     pub sequences: Vec<ErrorSequence>,
-    /// Error sequences that are formed whichever false beliefs the errors follow from.
     pub any_aspect: Vec<ErrorSequence>,
-    /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
 }
 
@@ -106,9 +100,7 @@ impl TrialFalseBeliefErrors {
 /// not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FalseBeliefErrorSummary {
-    /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
-    /// Number of errors that only a pair of false beliefs explains.
     pub errors_of_two_beliefs: Option<u64>,
     /// Number of error sequences: successive errors that follow from the same false belief.
     pub sequences: Option<u64>,
@@ -116,23 +108,19 @@ pub struct FalseBeliefErrorSummary {
     pub mean_sequence_length: Option<f64>,
     /// Mean time from the first error of a sequence to the first correct press after its last error, in seconds.
     pub mean_recovery_s: Option<f64>,
-    /// Number of error sequences that are formed whichever false beliefs the errors follow from.
     pub sequences_any_aspect: Option<u64>,
     /// Mean number of errors in the sequences of `sequences_any_aspect`; null also without such sequences.
     pub mean_sequence_length_any_aspect: Option<f64>,
-    /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
 }
 
 impl FalseBeliefErrorSummary {
-    /// Sums over several trials of the errors that follow from false beliefs.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> FalseBeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
         sums.figures()
     }
 
-    /// The errors from false beliefs as text; `errors` is the number of all errors.
     pub fn describe(&self, errors: u64) -> String {
         let (Some(related), Some(sequences)) = (self.belief_related_errors, self.sequences) else {
             return "belief related errors: not known, since nobody knows what the participant believed".to_string();
@@ -149,31 +137,21 @@ impl FalseBeliefErrorSummary {
     }
 }
 
-/// Totals of presses, errors and signals over the trials of one study arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StudyArmTotals {
-    /// Study arm of the trials, as they were carried out.
     pub arm: StudyArm,
-    /// Number of trials in the study arm.
     pub trials: u64,
-    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Number of signals shown to the participant.
     pub signals: u64,
 }
 
 /// Summary of simulated trials: the output of `tomcom simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SimulationSummary {
-    /// Number of simulated trials.
     pub trials: u64,
-    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Number of the human's presses shortly after a change by the robot at the same location (races), which do not
     /// count as errors.
@@ -181,37 +159,28 @@ pub struct SimulationSummary {
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: FalseBeliefErrorSummary,
-    /// Number of signals shown to the participants.
     pub signals: u64,
     /// Durations of offers, both of those that a wizard could see and of the others.
     pub offers: OfferDurations,
-    /// Number of orders served.
     pub orders_served: u64,
     /// Median over served orders of the number of presses of both agents since the previously served order.
     pub presses_per_order: Option<f64>,
     /// Median over served orders of the least number of presses for the dish from an empty kitchen.
     pub optimal_presses_per_order: Option<f64>,
-    /// Duration of all trials together, by their own clocks, in seconds.
     pub simulated_s: f64,
-    /// Duration of the simulation by the computer's clock, in seconds.
     pub wall_s: f64,
-    /// Number of excluded recordings, which the summary leaves out.
     pub excluded: u64,
     /// Number of complete recordings that already existed and were read instead of simulated anew.
     pub found: u64,
     /// New paths of logs that end before the end of their header, as after a power failure; the trials of these logs
     /// were simulated anew.
     pub moved: Vec<String>,
-    /// Totals of presses, errors and signals, by study arm.
     pub arms: Vec<StudyArmTotals>,
-    /// Paths of the folders of the recordings.
     pub recordings: Vec<PathText>,
 }
 
-/// Running sums over trials of errors that follow from false beliefs.
 #[derive(Clone, Debug, Default)]
 struct BeliefSums {
-    /// Whether the participant's beliefs are unknown in at least one trial.
     unknown: bool,
     related: u64,
     related_to_pairs: u64,
@@ -316,7 +285,6 @@ impl SimulationSums {
         }
     }
 
-    /// The summary of all added simulated trials.
     pub fn figures(&self) -> SimulationSummary {
         SimulationSummary {
             beliefs: self.beliefs.figures(),
@@ -343,4 +311,78 @@ fn median_of(counts: &BTreeMap<u32, u64>) -> Option<f64> {
         })
     };
     Some((nth(all.checked_sub(1)? / 2)? + nth(all / 2)?) / 2.0)
+}
+
+/// Seconds from the appearance of each served order to its serving, on the trial's clock.
+pub fn order_times(session: &Session) -> Vec<f64> {
+    let mut shown: BTreeMap<LocationId, SessionTime> = BTreeMap::new();
+    let mut times = Vec::new();
+    for entry in &session.timeline {
+        match entry.what {
+            TimelineEvent::OrderShown { order } => {
+                shown.insert(order, entry.time);
+            }
+            TimelineEvent::Served { order } => {
+                let since = shown.remove(&order);
+                times.extend(since.map(|since| clock_at(session, entry.time).secs_since(clock_at(session, since))));
+            }
+            _ => {}
+        }
+    }
+    times
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RegretSum {
+    lost: i64,
+}
+
+impl RegretSum {
+    pub fn note(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, change: &KitchenChange) {
+        let KitchenChange::Press { press, .. } = change else { return };
+        let recipes = kitchen.true_recipes();
+        self.lost += match press.before == press.after {
+            true => 1,
+            false => {
+                let mut budget = ProofBudget::default();
+                let mut least = |state| i64::from(cost.proven_all_orders(state, &recipes, &mut budget).presses);
+                1 + least(press.after) - least(press.before)
+            }
+        };
+    }
+
+    /// Regret (lost presses) per served order; `None` if no order was served.
+    pub fn per_order(&self, served: u64) -> Option<f64> {
+        (served > 0).then(|| self.lost as f64 / served as f64)
+    }
+}
+
+/// Session times at which signals appeared on the display (true) and vanished (false).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SignalTimes {
+    changes: Vec<(SessionTime, bool)>,
+}
+
+impl SignalTimes {
+    /// Notes when the next event of the session makes a signal appear or vanish.
+    pub fn note(&mut self, stamped: &TimestampedEvent) {
+        match stamped.event {
+            Event::SignalShown { .. } => self.changes.push((stamped.time, true)),
+            Event::SignalEnded { .. } => self.changes.push((stamped.time, false)),
+            _ => {}
+        }
+    }
+
+    /// Time with a signal on the display, in seconds of the trial's clock, after the session's last event. At most one
+    /// signal is shown at a time: a new signal replaces the last one, and the end of the trial removes it.
+    pub fn seconds(&self, session: &Session) -> f64 {
+        let end = session.trial_clock(session.time);
+        let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);
+        for &(time, appears) in &self.changes {
+            let now = clock_at(session, time).min(end);
+            let since = if appears { shown.replace(now) } else { shown.take() };
+            seconds += since.map_or(0.0, |since| now.secs_since(since));
+        }
+        seconds + shown.map_or(0.0, |since| end.secs_since(since))
+    }
 }

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use flate2::{Compression, GzBuilder};
 
-use crate::analysis::bids::{
-    BidsFile, CODE_COLUMN, DESCRIPTION_NAME, LongTableFacts, LongTableRow, PARTICIPANTS_NAME, PROGRAM_NAME,
-};
+use crate::analysis::bids::dataset::{CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME};
+use crate::analysis::bids::sample_rows::{LongTableFacts, LongTableRow};
+use crate::analysis::bids::tsv::BidsFile;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
 
@@ -45,9 +45,6 @@ impl BidsTree {
 
     /// Writes a file of the data set; the file's name is the path below the root folder. Files whose name ends with
     /// `.gz` are compressed.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn write(&self, file: &BidsFile) -> FileResult<()> {
         let path = self.root.join(&file.name);
         let write = || {
@@ -90,9 +87,6 @@ impl BidsTree {
 
 impl LongTableFile {
     /// Adds a row.
-    ///
-    /// # Errors
-    /// The disk is full.
     pub fn add(&mut self, row: LongTableRow) -> FileResult<()> {
         if row.time < self.newest {
             self.late.push((row.time, row.line));
@@ -102,16 +96,12 @@ impl LongTableFile {
         self.put(row.time, &row.line).map_err(|reason| FileError::not_written(&self.path, reason, REMEDY))
     }
 
-    /// Writes a row with its time to the temporary file.
     fn put(&mut self, time: SessionTime, line: &str) -> io::Result<()> {
         self.rows.write_all(&time.0.to_le_bytes())?;
         self.rows.write_all(line.as_bytes())
     }
 
     /// Writes the table with all rows in the order of their times, if it has any. Returns what was counted of them.
-    ///
-    /// # Errors
-    /// The table cannot be written.
     pub fn finish(mut self) -> FileResult<LongTableFacts> {
         let path = self.path.clone();
         self.write().map_err(|reason| FileError::not_written(&path, reason, REMEDY))?;

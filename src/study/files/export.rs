@@ -3,24 +3,23 @@
 //! recordings and tables have the order of the recordings.
 
 use std::borrow::{Borrow, Cow};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use super::written_tables::{ListedTables, reader};
-use crate::column::{CsvCell, CsvRow, CsvTable};
-use crate::dictionary::columns;
-use crate::report::page_head;
+use csv::{ByteRecord, ReaderBuilder};
+
+use crate::column::{CsvCell, CsvRow, CsvTable, columns};
+use crate::report;
 use crate::study_part::AnalysedRecording;
 use tomcom_core::base::text::without_formula;
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::{self, Replacement};
 
-/// File name of the analysis report.
-pub const REPORT_NAME: &str = "report.html";
+const REPORT_NAME: &str = "report.html";
 /// Name of the folder for temporary files of an analysis.
 const PARTS_NAME: &str = ".rows";
-/// End of the name of a temporary file with an analysed recording.
 const ANALYSED: &str = "analysed";
 
 /// An output file of an analysis that cannot be written.
@@ -32,6 +31,10 @@ pub struct AnalysisWriteError {
     pub path: PathBuf,
     /// Why the output file cannot be written.
     pub reason: io::Error,
+}
+
+fn at<T>(path: &Path, done: io::Result<T>) -> Result<T, AnalysisWriteError> {
+    done.map_err(|reason| AnalysisWriteError { path: path.to_path_buf(), reason })
 }
 
 /// Rows of one CSV table, without the header line, which are written to memory or to a file.
@@ -66,7 +69,6 @@ impl<Out: Write> TableRows<Out> {
 }
 
 impl TableRows {
-    /// Adds a row to the CSV table.
     pub fn add(&mut self, row: &impl CsvRow) {
         self.write(row).expect("rows are flat, and written to memory");
     }
@@ -88,28 +90,21 @@ pub struct TableFile {
 
 impl TableFile {
     /// Writes a row of the table.
-    ///
-    /// # Errors
-    /// The disk is full.
     pub fn add<Row: CsvRow>(&mut self, row: &Row) -> Result<(), AnalysisWriteError> {
         debug_assert_eq!(Row::TABLE, self.table, "a row of another table");
         self.has_rows = true;
-        self.rows.write(row).map_err(|reason| AnalysisWriteError { path: self.path.clone(), reason })
+        at(&self.path, self.rows.write(row))
     }
 
     /// Completes the table and gives its file its name. Returns the table if it has rows.
-    ///
-    /// # Errors
-    /// The folder cannot be written to, or the disk is full.
     pub fn finish(self) -> Result<Option<CsvTable>, AnalysisWriteError> {
         let TableFile { table, path, rows, has_rows } = self;
         let written = rows.rows.into_inner().map_err(csv::IntoInnerError::into_error).and_then(Replacement::finish);
-        written.map_err(|reason| AnalysisWriteError { path, reason })?;
+        at(&path, written)?;
         Ok(has_rows.then_some(table))
     }
 }
 
-/// Output folder of an analysis, with tables and report.
 #[derive(Debug)]
 pub struct AnalysisFolder {
     folder: PathBuf,
@@ -126,15 +121,12 @@ impl AnalysisFolder {
         export.check_replaced()?;
         let parts = export.parts();
         // Temporary files that an interrupted analysis left are removed.
-        remove_parts(&parts).map_err(|reason| AnalysisWriteError { path: parts.clone(), reason })?;
-        fs::create_dir_all(&parts).map_err(|reason| AnalysisWriteError { path: parts, reason })?;
+        at(&parts, remove_parts(&parts).and_then(|()| fs::create_dir_all(&parts)))?;
         Ok(export)
     }
 
-    /// Checks that all files that would be replaced come from an earlier analysis.
     fn check_replaced(&self) -> Result<(), AnalysisWriteError> {
-        let written = ListedTables::read(&self.folder)
-            .map_err(|reason| AnalysisWriteError { path: self.folder.clone(), reason })?;
+        let written = at(&self.folder, ListedTables::read(&self.folder))?;
         for table in CsvTable::ALL {
             let path = self.folder.join(format!("{}.csv", table.name()));
             let is_own = |head: &[u8]| {
@@ -142,11 +134,11 @@ impl AnalysisFolder {
                 reader(head).read_byte_record(&mut header).unwrap_or(false) && written.has(table.name(), &header)
             };
             let what = format!("the table \"{}\"", table.name());
-            overwrite::check(&path, &what, is_own).map_err(|reason| AnalysisWriteError { path, reason })?;
+            at(&path, overwrite::check(&path, &what, is_own))?;
         }
         let path = self.folder.join(REPORT_NAME);
-        let is_own = |head: &[u8]| page_head::participants(&String::from_utf8_lossy(head)).is_some();
-        overwrite::check(&path, "a report", is_own).map_err(|reason| AnalysisWriteError { path, reason })
+        let is_own = |head: &[u8]| report::participants_of_page(&String::from_utf8_lossy(head)).is_some();
+        at(&path, overwrite::check(&path, "a report", is_own))
     }
 
     fn parts(&self) -> PathBuf {
@@ -159,35 +151,26 @@ impl AnalysisFolder {
     }
 
     /// Stores the event rows of one recording in temporary files, in the order of [`CsvTable::OF_EVENTS`].
-    ///
-    /// # Errors
-    /// The files cannot be written.
     pub fn keep(&self, index: usize, rows: &[Vec<u8>; 5]) -> Result<(), AnalysisWriteError> {
         for (table, rows) in CsvTable::OF_EVENTS.into_iter().zip(rows) {
             let path = self.part(index, table.name());
-            fs::write(&path, rows).map_err(|reason| AnalysisWriteError { path, reason })?;
+            at(&path, fs::write(&path, rows))?;
         }
         Ok(())
     }
 
     /// Stores an analysed recording in a temporary file.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn keep_analysed(&self, index: usize, recording: &AnalysedRecording) -> Result<(), AnalysisWriteError> {
         let path = self.part(index, ANALYSED);
         let written = serde_json::to_vec(recording).map_err(io::Error::from).and_then(|text| fs::write(&path, text));
-        written.map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, written)
     }
 
     /// The stored analysed recording with this number.
-    ///
-    /// # Errors
-    /// The temporary file cannot be read.
     pub fn kept_analysed(&self, index: usize) -> Result<AnalysedRecording, AnalysisWriteError> {
         let path = self.part(index, ANALYSED);
         let read = fs::read(&path).and_then(|text| serde_json::from_slice(&text).map_err(io::Error::from));
-        read.map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, read)
     }
 
     /// Removes the temporary files of the analysis.
@@ -196,25 +179,17 @@ impl AnalysisFolder {
     /// The folder for temporary files cannot be changed.
     pub fn remove_kept(&self) -> Result<(), AnalysisWriteError> {
         let path = self.parts();
-        remove_parts(&path).map_err(|reason| AnalysisWriteError { path, reason })
+        at(&path, remove_parts(&path))
     }
 
     /// Begins a table of the analysis with its header line.
-    ///
-    /// # Errors
-    /// The table cannot be written.
     pub fn begin(&self, table: CsvTable) -> Result<TableFile, AnalysisWriteError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
-        match begin_table(&path, table).map(TableRows::new) {
-            Ok(rows) => Ok(TableFile { table, path, rows, has_rows: false }),
-            Err(reason) => Err(AnalysisWriteError { path, reason }),
-        }
+        let rows = TableRows::new(at(&path, begin_table(&path, table))?);
+        Ok(TableFile { table, path, rows, has_rows: false })
     }
 
     /// Writes a table of the analysis; returns the table if it has rows.
-    ///
-    /// # Errors
-    /// The table cannot be written.
     pub fn table<Row: CsvRow>(
         &self,
         rows: impl IntoIterator<Item: Borrow<Row>>,
@@ -226,9 +201,6 @@ impl AnalysisFolder {
 
     /// Writes the tables of events from the stored rows of these recordings, in this order. Returns the tables that
     /// have rows.
-    ///
-    /// # Errors
-    /// The files cannot be written.
     pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<CsvTable>, AnalysisWriteError> {
         let mut filled = Vec::new();
         for table in CsvTable::OF_EVENTS {
@@ -241,25 +213,19 @@ impl AnalysisFolder {
                 }
                 out.finish().map(|()| (bytes > 0).then_some(table))
             };
-            filled.extend(write().map_err(|reason| AnalysisWriteError { path: path.clone(), reason })?);
+            filled.extend(at(&path, write())?);
         }
         Ok(filled)
     }
 
     /// Writes the analysis report and returns its path.
-    ///
-    /// # Errors
-    /// The report cannot be written.
     pub fn report(&self, page: &str) -> Result<PathBuf, AnalysisWriteError> {
         let path = self.folder.join(REPORT_NAME);
-        match replace_file::replace(&path, page.as_bytes()) {
-            Ok(()) => Ok(path),
-            Err(reason) => Err(AnalysisWriteError { path, reason }),
-        }
+        at(&path, replace_file::replace(&path, page.as_bytes()))?;
+        Ok(path)
     }
 }
 
-/// Begins the file of a table with the header line.
 fn begin_table(path: &Path, table: CsvTable) -> io::Result<Replacement> {
     let mut out = Replacement::begin(path)?;
     let names: Vec<Cow<str>> = columns(table).into_iter().map(|column| column.column).collect();
@@ -290,4 +256,68 @@ fn remove_parts(folder: &Path) -> io::Result<()> {
         }
     }
     fs::remove_dir(folder)
+}
+
+/// The tables in a folder that this program wrote, by the data dictionary beside them.
+#[derive(Debug, Default)]
+pub struct ListedTables {
+    columns: BTreeMap<Vec<u8>, Vec<Vec<u8>>>,
+}
+
+impl ListedTables {
+    /// Reads the data dictionary in a folder, if the folder has one.
+    ///
+    /// # Errors
+    /// The data dictionary exists but cannot be read.
+    pub fn read(folder: &Path) -> io::Result<ListedTables> {
+        let mut tables = ListedTables::default();
+        let dictionary = records(&folder.join("dictionary.csv"))?;
+        if let Some((header, rows)) = dictionary.split_first()
+            && has_columns_of(header, CsvTable::Dictionary)
+        {
+            for row in rows {
+                if let (Some(table), Some(column)) = (row.get(0), row.get(1)) {
+                    tables.columns.entry(table.to_vec()).or_default().push(column.to_vec());
+                }
+            }
+        }
+        Ok(tables)
+    }
+
+    /// Whether the folder has a data dictionary that this program wrote.
+    pub fn is_listed(&self) -> bool {
+        !self.columns.is_empty()
+    }
+
+    pub fn has(&self, name: &str, header: &ByteRecord) -> bool {
+        let listed = self.columns.get(name.as_bytes());
+        listed.is_some_and(|columns| header.iter().eq(columns.iter().map(Vec::as_slice)))
+            || table_named(name).is_some_and(|table| has_columns_of(header, table))
+    }
+}
+
+pub fn table_named(name: &str) -> Option<CsvTable> {
+    CsvTable::ALL.into_iter().find(|table| table.name() == name)
+}
+
+fn has_columns_of(header: &ByteRecord, table: CsvTable) -> bool {
+    header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
+}
+
+/// A CSV reader of all records including the header, which accepts any number of cells and any bytes.
+pub fn reader<R: io::Read>(table: R) -> csv::Reader<R> {
+    ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table)
+}
+
+/// All records of a CSV table; empty if the file does not exist.
+///
+/// # Errors
+/// The file exists but cannot be read.
+pub fn records(path: &Path) -> io::Result<Vec<ByteRecord>> {
+    match path.symlink_metadata() {
+        Ok(data) if data.is_file() => Ok(reader(File::open(path)?).into_byte_records().collect::<csv::Result<_>>()?),
+        Ok(_) => Ok(Vec::new()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(error),
+    }
 }

@@ -2,13 +2,8 @@
 
 pub mod bids_tree;
 pub mod export;
-pub mod frozen_file;
-#[cfg(feature = "mcap")]
-pub mod mcap_file;
 pub mod pool_file;
-pub mod power_files;
 pub mod recordings;
 pub mod simulated_trials;
 pub mod study_part_file;
 pub mod training;
-pub mod written_tables;

@@ -1,16 +1,20 @@
-//! Files of pools (simulated participants for power analyses) in the format JSON Lines
-//! ([`crate::simulation_pool`]).
+//! Files of pools (simulated participants for power analyses) in the format JSON Lines, of the table of power, and of
+//! frozen plans.
 
-use std::io;
+use std::io::{self, ErrorKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
 
-use crate::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
-use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
-use tomcom_session::files::overwrite;
+use crate::drawn_study::SignificanceTestMethod;
+use crate::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
+use crate::pool::{POOL_FORMAT, PoolHeader, SimulationPool};
+use crate::power::{PowerSummary, SampleSizePower, TestPower};
+use tomcom_session::files::file_error::{FileError, FileResult, read_bytes, read_text};
+use tomcom_session::files::{overwrite, replace_file};
 
 /// Largest size of a pool's file, in bytes.
 const MAX_POOL: u64 = 1 << 30;
@@ -88,4 +92,114 @@ pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
 fn line(value: &impl Serialize) -> String {
     // Writing JSON cannot fail here, since headers and trials contain only string keys and finite numbers.
     serde_json::to_string(value).unwrap_or_default() + "\n"
+}
+
+/// A column of the table of statistical power: its name, and the function that computes its value for a row.
+type PowerColumn = (&'static str, fn(&SampleSizePower, &TestPower) -> String);
+
+const COLUMNS: [PowerColumn; 12] = [
+    ("participants", |size, _| size.participants.to_string()),
+    ("method", |_, one| method(one.test.method).to_string()),
+    ("arm", |_, one| one.test.arm.name().to_string()),
+    ("against", |_, one| one.test.against.name().to_string()),
+    ("studies", |_, one| one.found.studies.to_string()),
+    ("rejected", |_, one| one.found.rejected.to_string()),
+    ("rejected_uncorrected", |_, one| one.found.rejected_uncorrected.to_string()),
+    ("unknown", |_, one| one.found.unknown.to_string()),
+    ("share", |_, one| format!("{:.4}", one.found.share)),
+    ("low", |_, one| format!("{:.4}", one.found.interval[0])),
+    ("high", |_, one| format!("{:.4}", one.found.interval[1])),
+    ("least_ratio", |_, one| one.least_ratio.map_or(String::new(), |ratio| format!("{ratio:.4}"))),
+];
+
+fn method(method: SignificanceTestMethod) -> &'static str {
+    match method {
+        SignificanceTestMethod::MixedAnova => "mixed_anova",
+        SignificanceTestMethod::LinearMixedModel => "linear_mixed_model",
+    }
+}
+
+/// Checks that the table of statistical power can be written to this path.
+///
+/// # Errors
+/// There is a file at the path that this program did not write.
+pub fn check_table(path: &Path) -> FileResult<()> {
+    let names = COLUMNS.map(|(name, _)| name).join(",");
+    overwrite::check(path, "a table of power", |head| overwrite::first_line(head) == names.as_bytes())
+        .map_err(|reason| FileError::unwritable(path, reason))
+}
+
+/// Writes the table of statistical power (CSV): a row for each number of participants and each test.
+pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
+    let write = || -> io::Result<()> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record(COLUMNS.map(|(name, _)| name))?;
+        for size in &found.sizes {
+            for one in &size.tests {
+                table.write_record(COLUMNS.map(|(_, value)| value(size, one)))?;
+            }
+        }
+        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
+        overwrite::write(path, &bytes)
+    };
+    write().map_err(|reason| FileError::unwritable(path, reason))
+}
+
+/// Text in the first line of a frozen plan's file, before the digest: SHA-256 of every byte after that line, so that it
+/// can be checked without this program (`tail -n +2 FILE | sha256sum`).
+const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";
+const FROZEN_REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchanged";
+
+/// Writes a frozen plan and returns its digest.
+///
+/// # Errors
+/// A file of that name exists already, or the folder cannot be written to.
+pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
+    // Writing JSON cannot fail here, since a plan contains only string keys and finite numbers.
+    let body = serde_json::to_string_pretty(frozen).unwrap_or_default() + "\n";
+    let digest = sha256(body.as_bytes());
+    let written = replace_file::create(path, format!("{HEAD}{digest}\n{body}").as_bytes());
+    written.map_err(|reason| match reason.kind() {
+        ErrorKind::AlreadyExists => {
+            let remedy = "another name for the file: a frozen plan is never overwritten".to_string();
+            FileError::from_finding(path, "a file that is there already".to_string(), remedy)
+        }
+        _ => FileError::not_written(path, reason, "a new file in a folder that can be written to"),
+    })?;
+    Ok(digest)
+}
+
+/// Reads a frozen plan with its digest.
+///
+/// # Errors
+/// The file cannot be read, is not a frozen plan, or was changed after it was frozen.
+pub fn read_frozen(path: &Path) -> FileResult<(String, FrozenPlan)> {
+    let text = read_text(path)?;
+    let wrong = |place, found: String, remedy: &str| FileError::at(path, &text, Some(place), found, remedy.to_string());
+    let first = text.lines().next().unwrap_or_default();
+    let (Some(digest), Some((_, body))) = (first.strip_prefix(HEAD), text.split_once('\n')) else {
+        return Err(wrong(0..first.len(), "no frozen plan".to_string(), FROZEN_REMEDY));
+    };
+    let found = sha256(body.as_bytes());
+    if found != digest.trim_end() {
+        return Err(wrong(
+            HEAD.len()..first.len(),
+            format!("a file with the SHA-256 {found}: it was changed after the plan was frozen"),
+            FROZEN_REMEDY,
+        ));
+    }
+    let frozen: FrozenPlan = serde_json::from_str(body).map_err(|error| {
+        let start = text.len() - body.len();
+        let before: usize = body.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
+        wrong(start + before..start + before, error.to_string(), "the version of the program that froze the plan")
+    })?;
+    if frozen.frozen_plan != FROZEN_FORMAT {
+        let found = format!("a frozen plan of format {}", frozen.frozen_plan);
+        return Err(wrong(0..first.len(), found, "the version of the program that froze the plan"));
+    }
+    Ok((digest.trim_end().to_string(), frozen))
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

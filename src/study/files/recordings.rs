@@ -69,9 +69,6 @@ fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResul
 
 /// Recordings that a path means: the recording itself, or all recordings in the folder, sorted by name. Of a recording
 /// with several parts, only the last part is listed.
-///
-/// # Errors
-/// The folder cannot be read, or contains no recording.
 pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     let remedy = "the folder of a recording, or one with recordings in it";
     let unreadable = |reason: io::Error| {
@@ -117,17 +114,14 @@ struct PartHeaderGlance {
     continues: Option<PreviousPart>,
 }
 
-/// Content of the log of one part of a recording.
 #[derive(Debug)]
 struct Part {
     code: String,
-    /// The code in the log, if it was corrected afterwards.
     recorded_as: Option<String>,
     step: PlanPosition,
     continues: Option<String>,
     consent: bool,
     instructed: bool,
-    /// Index of the study phase that began last in the recording.
     phase: usize,
     presses: u32,
     trial_over: bool,
@@ -137,7 +131,6 @@ struct Part {
     /// Whether an event excludes the recording from the analysis or includes it again, and the reason of an exclusion.
     excluded: Option<Option<String>>,
     ended: bool,
-    /// Whether a program is writing the log at present.
     running: bool,
 }
 
@@ -216,7 +209,6 @@ impl Part {
         }
     }
 
-    /// The whole recording that ends with this part.
     fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> PlanRecording {
         let mut all = vec![self];
         // Parts of a recording whose headers refer to each other must not lead to an endless loop.

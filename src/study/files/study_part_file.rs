@@ -19,7 +19,6 @@ use tomcom_session::log::at_line;
 const MAX_LINE: u64 = 1 << 28;
 const REMEDY: &str = "a part that tomcom study wrote with --shard, unchanged";
 
-/// Writer of the file of a study's part; the file gets its name when it is complete.
 #[derive(Debug)]
 pub struct PartWriter {
     path: PathBuf,
@@ -46,9 +45,6 @@ impl PartWriter {
     }
 
     /// Adds an analysed recording, with its rows of the tables of events.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn add(&mut self, recording: &AnalysedRecording, rows: &[Vec<u8>; 5]) -> FileResult<()> {
         self.line(recording)?;
         // Rows of tables are always UTF-8.
@@ -64,16 +60,12 @@ impl PartWriter {
     }
 
     /// Completes the part's file and gives it its name.
-    ///
-    /// # Errors
-    /// The folder cannot be written to.
     pub fn finish(self) -> FileResult<()> {
         let PartWriter { path, file } = self;
         file.finish().map_err(|reason| FileError::unwritable(&path, reason))
     }
 }
 
-/// Reader of the file of a study's part.
 #[derive(Debug)]
 pub struct PartReader {
     /// First line of the part's file: its header.
@@ -82,7 +74,6 @@ pub struct PartReader {
     pub kitchen: PartKitchen,
     path: PathBuf,
     lines: BufReader<File>,
-    /// Number of lines of the file that were read.
     number: usize,
 }
 
@@ -113,7 +104,6 @@ impl PartReader {
         Ok(PartReader { header, kitchen, path, lines, number })
     }
 
-    /// Path of the part's file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -122,7 +112,7 @@ impl PartReader {
     ///
     /// # Errors
     /// A line is not that of a part, or there are more or fewer recordings than the header says.
-    pub fn next_recording(&mut self) -> FileResult<Option<(AnalysedRecording, [Vec<u8>; 5])>> {
+    pub(crate) fn next_recording(&mut self) -> FileResult<Option<(AnalysedRecording, [Vec<u8>; 5])>> {
         let (read, all) = ((self.number as u64 - 2) / 2, self.header.recordings);
         let is_whole = read == all;
         match (self.next()?, is_whole) {

@@ -4,14 +4,11 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::analysis::training_record::WizardTrainingRecord;
+use crate::analysis::lesson_report::WizardTrainingRecord;
 use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
 use tomcom_session::files::replace_file;
 
 /// Writes a training record to a new file in the folder and returns its path.
-///
-/// # Errors
-/// The file cannot be written.
 pub fn write(folder: &Path, record: &WizardTrainingRecord) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let text = serde_json::to_string_pretty(record).map_err(io::Error::other)? + "\n";

@@ -5,52 +5,40 @@
 //! together give summary, tables and report. Between these two steps a study can be cut into parts, which are analysed
 //! on different machines and joined ([`shards`]).
 
-mod coded_errors;
-mod questionnaire_answers;
 pub mod reading;
-mod replay_pass;
 mod rows;
 pub mod shards;
 mod sweep;
 mod tell;
-mod tutorials;
-mod twin;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use self::reading::AnalysisScope;
-pub use self::tell::{describe, describe_arms};
-use super::gathered::GatheredRecordings;
-use super::kept_cost::KeptCost;
-use super::{consents, parallel};
-use crate::column::CsvTable;
-use crate::detail_totals::DetailTotals;
-use crate::dictionary::{DataDictionaryRow, dictionary};
+use crate::column::{CsvTable, DataDictionaryRow, dictionary};
 use crate::facts::RecordingFacts;
 use crate::figures::{CorrectedRecording, StudySummary};
 use crate::files::export::{AnalysisFolder, AnalysisWriteError};
-use crate::files::frozen_file::read_frozen;
-use crate::frozen_plan::FrozenPlan;
-use crate::missing_trials::missing_trials;
-use crate::planned_trial::RecordingCopy;
-use crate::preregistration::{PreregistrationCheck, RecordedPlan};
-use crate::recorded_consent::RecordedConsent;
-use crate::report;
+use crate::files::pool_file::read_frozen;
+use crate::frozen_plan::{FrozenPlan, PreregistrationCheck, RecordedPlan};
+use crate::gathered::GatheredRecordings;
+use crate::kept_cost::KeptCost;
+use crate::pass::reading::{AnalysisScope, RecordedConsent};
+pub use crate::pass::tell::{describe, describe_arms};
+use crate::planned_trial::{RecordingCopy, missing_trials};
 use crate::study_part::AnalysedRecording;
-use crate::tables::concept_table::concepts;
-use crate::tables::participants::{ParticipantRow, participants};
+use crate::tables::communications::concepts;
+use crate::tables::participants::{
+    AnswerRow, ParticipantRow, TutorialQuestionRow, TutorialSummary, answers, participants,
+};
 use crate::tables::probe_table::probes;
-use crate::tables::questionnaires::{AnswerRow, answers};
-use crate::tables::tutorial_answers::TutorialQuestionRow;
-use crate::trial_statistics::{TrialStatistics, arrange};
+use crate::trial_statistics::{DetailTotals, TrialStatistics, arrange};
+use crate::{parallel, report};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, header_digest, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
 
-/// Error of analysing a study.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StudyError {
     /// A file cannot be read.
@@ -69,22 +57,18 @@ impl From<FileError> for StudyError {
     }
 }
 
-/// Inputs and outputs of the analysis of a study.
 #[derive(Clone, Debug)]
 pub struct AnalysisRequest {
     /// Paths of recordings, or of folders that contain recordings; or files with the parts of a study that are joined.
     pub paths: Vec<PathBuf>,
     /// The folder for tables and report, or the file of a part of the study.
     pub out: PathBuf,
-    /// Which optional parts of the analysis are computed.
     pub extent: AnalysisScope,
     /// The two raters whose codes are used; `None`: the only two, or for each recording the two with the most complete codes.
     pub raters: Option<[String; 2]>,
-    /// File of the frozen (preregistered) plan with which the recordings are compared.
     pub frozen: Option<PathBuf>,
 }
 
-/// The recordings of an analysis, each with the name that identifies the recording in tables.
 #[derive(Clone, Debug)]
 pub struct NamedRecordings {
     found: Vec<(PathBuf, String)>,
@@ -94,9 +78,6 @@ pub struct NamedRecordings {
 impl NamedRecordings {
     /// Finds the recordings at these paths, each once, ordered by name, so that the order does not depend on how
     /// recordings are spread over folders.
-    ///
-    /// # Errors
-    /// The errors of [`GatheredRecordings::find`].
     pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
         let GatheredRecordings { paths, copies } = GatheredRecordings::find(paths)?;
         let mut found: Vec<(PathBuf, String)> = paths.into_iter().map(|path| (path.clone(), name(&path))).collect();
@@ -130,13 +111,11 @@ impl NamedRecordings {
         }
     }
 
-    /// Number of recordings that were found.
     pub fn number(&self) -> usize {
         self.found.len()
     }
 }
 
-/// Name of a recording's folder.
 fn name(recording: &Path) -> String {
     let typed = recording.file_name().map(|name| name.to_string_lossy().into_owned());
     typed.unwrap_or_else(|| recording.display().to_string())
@@ -182,7 +161,7 @@ fn analyse(
     let log = LogReader::open(path)?;
     let (plan, correction) = (RecordedPlan::from_header(&log.header), log.header.correction.clone());
     let digest = header_digest(log.path_of_last_part())?;
-    let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
+    let (tutorial, consent) = (reading::tutorial_answers(log, name)?, reading::consent(path)?);
     let (mut trial, mut rows) = (None, Default::default());
     if let Some((own, read)) = reading::read(path, name, extent, raters, kept)? {
         same_kitchen(first, (path, &own))?;
@@ -205,23 +184,19 @@ fn keep(
     if extent.events && analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
-/// What all analysed recordings of a study hand to its summary, but for the details of their trials.
 #[derive(Debug, Default)]
 struct CollectedRecordings {
     trials: Vec<TrialStatistics>,
     /// Settings and circumstances of all trials together. Those of single trials would take most of the memory.
     facts: RecordingFacts,
-    /// By the name of each trial's recording, the number under which the recording is kept.
     kept: BTreeMap<String, usize>,
     plans: Vec<RecordedPlan>,
     corrections: Vec<CorrectedRecording>,
-    /// Consents, each with its recording's name.
     consents: Vec<(String, RecordedConsent)>,
     tutorials: Vec<TutorialQuestionRow>,
 }
 
 impl CollectedRecordings {
-    /// Reads the kept recordings with the numbers below `number`.
     fn read(export: &AnalysisFolder, number: usize) -> Result<CollectedRecordings, AnalysisWriteError> {
         let mut collected = CollectedRecordings::default();
         for index in 0..number {
@@ -230,7 +205,6 @@ impl CollectedRecordings {
         Ok(collected)
     }
 
-    /// Adds the recording that is kept under this number.
     fn add(&mut self, index: usize, recording: AnalysedRecording) {
         self.plans.push(recording.plan);
         let name = recording.recording.clone();
@@ -265,13 +239,14 @@ fn conclude(
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
-    let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
-    let figures = StudySummary::from_trials(&trials, details, &facts, practice).with_tutorials(&tutorials);
-    let figures = figures
-        .with_preregistration(preregistration)
-        .with_missing_trials(missing_trials(&plans))
-        .with_copies(copies)
-        .with_corrections(corrections);
+    let figures = StudySummary {
+        preregistration: frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans)),
+        missing_trials: missing_trials(&plans),
+        copies,
+        corrections,
+        tutorial: TutorialSummary::from_answers(&tutorials),
+        ..StudySummary::from_trials(&trials, details, &facts, practice)
+    };
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     export.remove_kept()?;

@@ -1,28 +1,28 @@
-//! Replays one recording of a study once, and reduces the recording to the statistics that the analysis keeps.
+//! Replays one recording of a study once, and reduces the recording to the statistics that the analysis keeps. Reads
+//! also the consent and the answers to tutorials, which can stand in practice recordings.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use super::coded_errors::CodedErrors;
-use super::questionnaire_answers;
-use super::replay_pass::ReplayPass;
-use super::rows::{RowCollector, TrialPressAnalyses};
-use super::twin::useful_signals;
-use crate::acting_arm::SignalSenderWithParameter;
+use serde::{Deserialize, Serialize};
+
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
-use crate::analysis::order_work::{RegretSum, order_times};
-use crate::analysis::probe_collector::ProbeCollector;
-use crate::analysis::probe_record::ProbedTrial;
-use crate::belief_trace::BeliefEvidence;
+use crate::analysis::probe_record::{ProbeCollector, ProbedTrial};
+use crate::analysis::trial_summary::{RegretSum, order_times};
 use crate::facts::RecordingFacts;
 use crate::kept_cost::KeptCost;
-use crate::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
+use crate::pass::rows::{CodedErrors, RowCollector, TrialPressAnalyses};
+use crate::pass::sweep::{ConceptSweep, useful_signals};
 use crate::prevention::TrialGroundTruth;
+use crate::rater_episodes::{BeliefEvidence, KnownFalseBeliefs, RaterFalseBeliefAgreement};
 use crate::robot_tally::{RobotEventSummary, RobotEventTally};
 use crate::standing::exclusion_status;
-use crate::trial_details::TrialDetails;
-use crate::trial_statistics::{FalseBeliefErrors, TrialStatistics};
+use crate::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
+use crate::trial_statistics::{
+    FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails, TrialStatistics,
+};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
@@ -33,34 +33,30 @@ use tomcom_core::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequen
 use tomcom_core::measures::{JudgedPress, median};
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_session::apply::ApplyError;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::comparison::CommunicationContent;
 use tomcom_session::log::{LogEnding, LogReader, rater_codes};
-use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
+use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
+use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::{WizardLog, clock_at};
 use tomcom_session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 
-/// Result of analysing one recording.
 #[derive(Debug)]
 pub struct RecordingAnalysis {
-    /// Statistics of the recording's trial.
     pub trial: TrialStatistics,
-    /// Details of the recording's trial.
     pub details: TrialDetails,
-    /// Settings and circumstances of the recording, for the report.
     pub facts: RecordingFacts,
-    /// Rows of the recording in the CSV tables of events, a text for each table.
     pub rows: [Vec<u8>; 5],
 }
 
-/// Which optional parts of the analysis are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnalysisScope {
-    /// Whether hypothetical signals of communication concepts are computed.
     pub concepts: bool,
-    /// Whether rows of the CSV tables of events are written.
     pub events: bool,
 }
 
@@ -92,7 +88,6 @@ impl ByEstimate {
     }
 }
 
-/// A belief state whose probabilities are the expected probabilities of the estimate.
 fn expected(kitchen: &Kitchen, state: tomcom_core::kitchen::State, estimate: &DirichletBelief) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {
@@ -153,7 +148,7 @@ pub fn read(
             rows.note(&line.stamped, &change, follower, was_running);
         }
         if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
-            answers.extend(questionnaire_answers::confirmed(&follower.session));
+            answers.extend(confirmed_answers(&follower.session));
         }
     }
     let standing = exclusion_status(&pass.follower().session, &log)?;
@@ -246,7 +241,6 @@ fn contents(entry: &TimelineEntry) -> u64 {
     }
 }
 
-/// Signals that were shown to the participant, as communications.
 fn sent(session: &Session) -> Vec<CommunicationEvent> {
     let mut press = 0;
     let mut sent = Vec::new();
@@ -367,4 +361,163 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: O
 /// Time between two session times, without pauses, in seconds.
 fn since(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
     clock_at(session, to).secs_since(clock_at(session, from))
+}
+
+fn confirmed_answers(session: &Session) -> Vec<QuestionnaireAnswer> {
+    let (Some(questionnaire), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return Vec::new() };
+    let before = session.phase == TrialPhase::Ready;
+    let score = score(questionnaire, protocol);
+    let answered = |(index, item): (usize, &QuestionnaireItem)| {
+        let form = questionnaire.form(index);
+        QuestionnaireAnswer {
+            questionnaire: questionnaire.name.clone(),
+            item: item.id.clone(),
+            text: item.text.clone(),
+            about: item.about.clone(),
+            reversed: item.reversed,
+            kind: item.kind.unwrap_or(QuestionnaireItemKind::Scale),
+            answer: protocol.given(index).cloned(),
+            points: match form {
+                Some(AnswerFormat::Scale(scale)) => Some(scale.points),
+                _ => None,
+            },
+            options: item.options.clone(),
+            share: share(questionnaire, protocol, index),
+            before,
+            score,
+        }
+    };
+    questionnaire.items.iter().enumerate().map(answered).collect()
+}
+
+/// Answer to an item as a number from 0 to 1 on the item's scale, reversed if the item is reverse coded.
+fn share(questionnaire: &Questionnaire, protocol: &StudyProtocolState, index: usize) -> Option<f64> {
+    let [least, most] = questionnaire.form(index)?.ends()?;
+    let share = (protocol.given(index)?.number()? - least) as f64 / (most - least).max(1) as f64;
+    Some(if questionnaire.items.get(index)?.reversed { 1.0 - share } else { share })
+}
+
+/// Score of the questionnaire; `None` if the questionnaire has no scoring rule, or if an item was left out.
+fn score(questionnaire: &Questionnaire, protocol: &StudyProtocolState) -> Option<f64> {
+    let count = questionnaire.items.len();
+    let shares: Option<Vec<f64>> = (0..count).map(|index| share(questionnaire, protocol, index)).collect();
+    let shares = shares.filter(|shares| !shares.is_empty())?;
+    match questionnaire.score? {
+        ScoreRule::Mean => {
+            let on_scale = |(index, share): (usize, &f64)| {
+                let [least, most] = questionnaire.form(index)?.ends()?;
+                Some(least as f64 + share * (most - least) as f64)
+            };
+            let sum: Option<f64> = shares.iter().enumerate().map(on_scale).sum();
+            Some(sum? / count as f64)
+        }
+        // System Usability Scale: each item adds 0 to 4 points, and the sum of points is multiplied by 2.5 (Brooke
+        // 1996).
+        ScoreRule::Sus => Some(2.5 * shares.iter().map(|share| (4.0 * share).round()).sum::<f64>()),
+    }
+}
+
+/// The participant's answers in a log of which nothing was read yet; `name` is the recording's name in tables. None if
+/// the recording has no tutorial.
+pub(super) fn tutorial_answers(mut log: LogReader, name: &str) -> FileResult<Vec<TutorialQuestionRow>> {
+    let spec = log.header.session.clone();
+    let Some(mut answers) = TutorialAnswerCollector::new(name, &spec) else { return Ok(Vec::new()) };
+    while let Some(line) = log.next_line()? {
+        answers.note(&line.stamped);
+    }
+    Ok(answers.finish())
+}
+
+#[derive(Debug)]
+pub enum ReplayPass {
+    /// Replay without hypothetical signals.
+    Plain(Box<SessionFollower>),
+    Beside(Box<SenderComparisonFollower>),
+    Swept(Box<ConceptSweep>),
+}
+
+impl ReplayPass {
+    /// The replay for this session. `concepts`: whether hypothetical signals are wanted. `is_known`: whether the
+    /// participant's beliefs are recorded, or may follow from raters' codes.
+    pub fn new(session: Session, concepts: bool, is_known: bool, cost: CostToGo) -> ReplayPass {
+        let (spec, mut session) = (&session.spec.clone(), session);
+        match spec.trial.condition {
+            Condition::Wizard if concepts => {
+                let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
+                session.spec.assistant.concept = ConceptName::TomCom;
+                ReplayPass::Beside(Box::new(SenderComparisonFollower::new(session, cost, &request)))
+            }
+            // Prevented errors can be counted only where false beliefs are known.
+            Condition::None if concepts && is_known => ReplayPass::Swept(Box::new(ConceptSweep::new(session, cost))),
+            _ => ReplayPass::Plain(Box::new(SessionFollower::new(session, cost))),
+        }
+    }
+
+    /// Applies the next event of the recording.
+    ///
+    /// # Errors
+    /// The event does not fit the session.
+    pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
+        match self {
+            ReplayPass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
+            ReplayPass::Beside(watcher) => watcher.apply(stamped),
+            ReplayPass::Swept(sweeper) => sweeper.apply(stamped),
+        }
+    }
+
+    fn into_cost(self) -> CostToGo {
+        match self {
+            ReplayPass::Plain(follower) => follower.cost,
+            ReplayPass::Beside(watcher) => watcher.follower.cost,
+            ReplayPass::Swept(sweeper) => sweeper.cost,
+        }
+    }
+
+    pub fn follower(&self) -> &SessionFollower {
+        match self {
+            ReplayPass::Plain(follower) => follower,
+            ReplayPass::Beside(watcher) => &watcher.follower,
+            ReplayPass::Swept(sweeper) => &sweeper.follower,
+        }
+    }
+}
+
+/// The consent with which the recording begins (in its first part); `None` if the recording does not begin with a
+/// consent.
+pub(crate) fn consent(recording: &Path) -> FileResult<Option<RecordedConsent>> {
+    let mut log = LogReader::open(recording)?;
+    let participant = log.header.session.participant.code.clone();
+    if let [first, _, ..] = &log.logs()[..] {
+        log = LogReader::open(first)?;
+    }
+    while let Some(line) = log.next_line()? {
+        match line.stamped.event {
+            Event::Protocol(ProtocolEvent::ConsentGiven { on, digest, .. }) => {
+                return Ok(Some(RecordedConsent { participant, on, started: log.header.started.clone(), digest }));
+            }
+            // Consent is given before the first phase of the recording, or not at all.
+            Event::Protocol(ProtocolEvent::PhaseStarted { .. }) | Event::TrialStarted => return Ok(None),
+            _ => {}
+        }
+    }
+    Ok(None)
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordedConsent {
+    pub participant: String,
+    pub on: AnswerDevice,
+    /// Wall clock time at which the recording that begins with the consent began (UTC, RFC 3339).
+    pub started: Option<String>,
+    pub digest: String,
+}
+
+impl RecordedConsent {
+    pub fn place(&self) -> &'static str {
+        match self.on {
+            AnswerDevice::Console => "console",
+            AnswerDevice::Display => "display",
+        }
+    }
 }

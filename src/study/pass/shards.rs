@@ -9,15 +9,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::reading::AnalysisScope;
-use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
 use crate::figures::StudySummary;
 use crate::files::export::AnalysisFolder;
 use crate::files::study_part_file::{PartReader, PartWriter};
+use crate::frozen_plan::RecordedPlan;
 use crate::kept_cost::KeptCost;
 use crate::parallel::{self, WorkerPool};
+use crate::pass::reading::AnalysisScope;
+use crate::pass::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
 use crate::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
-use crate::preregistration::RecordedPlan;
 use crate::study_part::{AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
@@ -28,9 +28,7 @@ use tomcom_session::replay::SameKitchenCheck;
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;
 
-/// What a recording's header says about its place in a study.
 struct RecordingPlace {
-    /// Whether the recording belongs to the shard that is analysed.
     is_own: bool,
     plan: Option<(String, String)>,
 }
@@ -161,7 +159,6 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
 /// The recordings of a study's parts. Parts of different folders can have copies, or the same trial.
 #[derive(Debug, Default)]
 struct JoinedRecordings {
-    /// Number of recordings that are joined.
     number: usize,
     names: BTreeSet<String>,
     /// By the digest of a log: the number under which the first recording with this log is kept, and its place.
@@ -169,7 +166,6 @@ struct JoinedRecordings {
     /// By trial: the place of the recording that counts for it.
     trials: BTreeMap<PlannedTrialKey, String>,
     copies: BTreeSet<RecordingCopy>,
-    /// Raters with codes, among those who were named.
     raters: BTreeSet<String>,
 }
 

@@ -1,23 +1,19 @@
 //! Text summary of a study for the terminal.
 
-use crate::analysis::probe_lines;
+use crate::analysis::probe_figures;
 use crate::arm_comparison::StudyArmComparison;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::{StudySummary, pairs_in_words};
 use crate::live_arms::SignalSenderResults;
-use crate::missing_trials::in_words;
-use crate::planned_trial::copies_in_words;
+use crate::planned_trial::{copies_in_words, in_words};
 use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{count, decimal, percent};
 use tomcom_core::measures::matching::{MatchShares, Similarity};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
 
-/// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
-    let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let mut text = format!(
         "{}\n{} of {}, {}: {} of the human, {} of the robot\n\
          errors: {} ({} of the presses of both, {} of the human's)\n",
@@ -153,7 +149,7 @@ pub fn describe(figures: &StudySummary) -> String {
             text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
     }
-    text += &figures.probes.as_ref().map_or(String::new(), probe_lines::describe);
+    text += &figures.probes.as_ref().map_or(String::new(), probe_figures::describe);
     text += &of_live(&figures.live);
     let compared = [
         ("wizard and ToM-Com", &figures.similarity),
@@ -168,10 +164,8 @@ pub fn describe(figures: &StudySummary) -> String {
     text
 }
 
-/// Results of concepts that sent signals by themselves, as one line of text each.
 fn of_live(arms: &[SignalSenderResults]) -> String {
     let Some(first) = arms.first() else { return String::new() };
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let mut text = format!(
         "acting by themselves on the same {}: belief related errors and signals per 100 presses of the human\n",
         count(first.trials, "simulated trial", "simulated trials")
@@ -197,7 +191,6 @@ fn of_live(arms: &[SignalSenderResults]) -> String {
 /// Similarity of wizard and assistant at each of its three levels, as text. The paper does not say to which level its
 /// 74 % belong.
 fn of_similarity(who: &str, found: &Similarity) -> String {
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));
     format!(
         "{who}: {} of {} signals of the wizard matched, precision {}, kappa {}\n  recall of the same signal {}, of \
@@ -223,7 +216,7 @@ fn of_effect(effect: &AssistanceEffect) -> String {
             ),
         };
     };
-    let p = effect.permutation_p.map_or("-".to_string(), |p| format!("{p:.4}"));
+    let p = decimal(effect.permutation_p, 4);
     let bounded = effect.reduction.filter(|found| found.low.is_finite() && found.high.is_finite());
     let reduction = bounded.map_or(String::new(), |found| {
         format!(
@@ -257,7 +250,6 @@ fn p_value(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_string() } else { format!("p = {p:.3}") }
 }
 
-/// Contrasts of the primary outcome between study arms, as text.
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
         "{} per press of the human, by condition (linear mixed model of {} of {}{}):\n",
@@ -290,4 +282,8 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
         );
     }
     text
+}
+
+fn number(value: Option<f64>) -> String {
+    decimal(value, 2)
 }

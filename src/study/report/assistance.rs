@@ -1,15 +1,18 @@
-//! Section of the study report on the effect of assistance.
+//! Sections of the study report on the effect of assistance, and on the comparison of arms.
 
 use maud::{Markup, Render, html};
 
-use super::elements::{
-    Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
-    with_interval,
+use crate::arm_comparison::{
+    ArmAnalysis, ArmDeviation, GroupOrder, NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts,
+    StudyConditionSummary,
 };
-use crate::arm_analysis::StudyConditionSummary;
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;
+use crate::report::elements::{
+    Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
+    with_interval,
+};
 use crate::statistics::FTest;
 use crate::trial_statistics::TrialStatistics;
 
@@ -43,7 +46,6 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
 }
 
-/// Charts for a study of two conditions.
 fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
@@ -63,8 +65,7 @@ fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStat
     }
 }
 
-/// Table of means by condition.
-pub(super) fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Markup {
+fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Markup {
     let columns: [PageColumn<StudyConditionSummary>; 15] = [
         ("condition", |one| one.condition.title().render()),
         ("trials", |one| one.trials.render()),
@@ -88,7 +89,6 @@ pub(super) fn conditions(captions: &mut Captions, found: &[StudyConditionSummary
     captions.table_of_columns(caption, &columns, found.iter())
 }
 
-/// Sentence on the effect of assistance on the main measure.
 fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
@@ -126,7 +126,7 @@ fn experience(figures: &StudySummary) -> Markup {
 }
 
 /// Table of statistical tests, with one row per compared measure, and the participants whom the tests leave out.
-pub(super) fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
+fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 13] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
@@ -168,7 +168,7 @@ pub(super) fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Ma
 }
 
 /// Sentence on the participants whom the tests of something leave out; empty if nobody is left out.
-pub(super) fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
+fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
     let Some(who) = left_out_in_words(left_out) else { return nothing() };
     html! { p class="note" { "Left out of the tests of " (what) ": " (who) "." } "\n" }
 }
@@ -200,5 +200,143 @@ fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
             "Mixed ANOVA of " (effect.groups.iter().sum::<usize>()) " participants, in the coding of a crossover and in the paper\u{2019}s; \
              sums of squares of type III."
         }, &heads, &rows))
+    }
+}
+
+/// Section with the arms' rates, their contrasts, the non-inferiority of the assistant to the wizard, and the deviations
+/// from the planned arms.
+pub(super) fn arms(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    let content = html! {
+        @if let Some(found) = &figures.arms { (comparison(captions, found)) }
+        @if let Some(found) = &figures.as_carried_out { (carried_out(captions, &figures.deviations, found)) }
+    };
+    section("How do the conditions compare?", content)
+}
+
+/// The deviations from the planned arms, and the analysis by the arms as carried out.
+fn carried_out(captions: &mut Captions, deviations: &[ArmDeviation], found: &ArmAnalysis) -> Markup {
+    html! {
+        h3 { "Deviations from the plan" } "\n"
+        p class="warning" {
+            "Each trial counts in the condition to which the plan assigned it. Carried out otherwise: "
+            (deviations.iter().map(ArmDeviation::describe).collect::<Vec<_>>().join("; "))
+            ". The same analysis by the conditions as carried out follows."
+        }
+        "\n"
+        (scroll(conditions(captions, &found.conditions)))
+        @if found.effects.iter().any(AssistanceEffect::has_pairs) { (tests(captions, &found.effects)) }
+        @if let Some(arms) = &found.arms {
+            (scroll(rates(captions, arms)))
+            (scroll(contrasts(captions, arms)))
+            (left_out("the contrasts", &arms.left_out))
+        }
+    }
+}
+
+fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
+    let outcome = found.outcome.title();
+    let [between, within] = found.standard_deviations;
+    html! {
+        p {
+            "Primary outcome: " (outcome) " per press of the human, in " (found.trials) " trials of " (found.participants)
+            " participants. Linear mixed model of log((count\u{a0}+\u{a0}0.5)\u{a0}/\u{a0}presses): participant random, condition and trial \
+            number fixed; REML, Satterthwaite\u{2019}s degrees of freedom. Standard deviations of the logarithms: "
+            (number(Some(between), 2)) " between participants, " (number(Some(within), 2)) " within."
+        }
+        "\n"
+        @if !found.groups.is_empty() {
+            p {
+                "Starting groups, with the order of their conditions and the number of participants: "
+                (found.groups.iter().map(GroupOrder::describe).collect::<Vec<_>>().join("; ")) "."
+            }
+            "\n"
+        }
+        (scroll(rates(captions, found)))
+        div class="figures" {
+            (captions.figure(charts::ratios(&found.contrasts), "Ratio of the rates of two conditions, with its interval of 95 %. Below \
+                1 the first one has fewer."))
+        }
+        "\n"
+        (scroll(contrasts(captions, found)))
+        (left_out("the contrasts", &found.left_out))
+        @for one in &found.non_inferiority { (arms_in_words(one, outcome)) }
+        @if found.arms.len() > 2 && found.with_carry_over.is_empty() {
+            p class="note" { "The effect of the condition before (carry-over) cannot be estimated from these trials." } "\n"
+        }
+    }
+}
+
+fn rates(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
+    let columns: [PageColumn<StudyArmCounts>; 5] = [
+        ("condition", |one| one.arm.title().render()),
+        ("trials", |one| one.trials.render()),
+        ("events", |one| one.events.render()),
+        ("presses of the human", |one| one.presses.render()),
+        ("per 100 presses", |one| number(Some(one.per_100()), 2).render()),
+    ];
+    let caption = format!("Events ({}) by condition, all trials of a condition pooled.", found.outcome.title());
+    captions.table_of_columns(&caption, &columns, found.arms.iter())
+}
+
+/// A contrast of study arms in the primary model, with the same contrast in the two other models.
+struct ContrastRow<'a> {
+    own: &'a StudyArmContrast,
+    carried: Option<&'a StudyArmContrast>,
+    of_counts: Option<(f64, f64)>,
+}
+
+fn contrasts(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
+    let counts = || found.negative_binomial.iter().flat_map(|model| &model.contrasts);
+    let rows: Vec<ContrastRow> = found
+        .contrasts
+        .iter()
+        .map(|own| ContrastRow {
+            own,
+            carried: found.with_carry_over.iter().find(|other| (other.arm, other.against) == (own.arm, own.against)),
+            of_counts: counts()
+                .find(|other| (other.arm, other.against) == (own.arm, own.against))
+                .map(|other| (other.ratio, other.p_holm)),
+        })
+        .collect();
+    let columns: [PageColumn<ContrastRow>; 8] = [
+        ("condition", |row| row.own.arm.title().render()),
+        ("against", |row| row.own.against.title().render()),
+        ("ratio of rates", |row| with_interval(Some(row.own.ratio), Some(row.own.interval), 2)),
+        ("t (degrees of freedom)", |row| {
+            format!("{} ({})", number(Some(row.own.contrast.t), 2), number(Some(row.own.contrast.df), 1)).render()
+        }),
+        ("p", |row| p_value(Some(row.own.contrast.p)).render()),
+        ("p, Holm", |row| p_value(Some(row.own.p_holm)).render()),
+        ("negative binomial: ratio, p (Holm)", |row| {
+            row.of_counts
+                .map_or_else(
+                    || number(None, 2),
+                    |(ratio, p)| format!("{}, {}", number(Some(ratio), 2), p_value(Some(p))),
+                )
+                .render()
+        }),
+        ("with carry-over: ratio, p (Holm)", |row| {
+            row.carried
+                .map_or_else(
+                    || number(None, 2),
+                    |one| format!("{}, {}", number(Some(one.ratio), 2), p_value(Some(one.p_holm))),
+                )
+                .render()
+        }),
+    ];
+    let caption = "Contrasts of the primary model, and beside them those of a mixed negative binomial model (log presses as offset) and of \
+                   the primary model with the effect of the condition before. Holm: corrected over all contrasts of a model.";
+    captions.table_of_columns(caption, &columns, rows.iter())
+}
+
+fn arms_in_words(one: &NonInferiority, outcome: &str) -> Markup {
+    let verdict = if one.holds { "is not worse than" } else { "is not shown to be not worse than" };
+    html! {
+        p {
+            (one.arm.title()) " " (verdict) " the " (one.against.title()) ": ratio of " (outcome) " " (number(Some(one.ratio), 2))
+            ", upper end of the one-sided interval of 97.5 % " (number(Some(one.upper), 2)) ", margin "
+            (number(Some(one.margin), 2)) " (p\u{a0}=\u{a0}" (p_value(Some(one.p))) ")."
+        }
+        "\n"
     }
 }

@@ -45,7 +45,6 @@ impl Captions {
         self.table(caption, &heads, &rows)
     }
 
-    /// A numbered table in which all columns are text.
     pub(super) fn table_of_text(
         &mut self,
         caption: impl Render,
@@ -79,12 +78,10 @@ impl Captions {
 /// Column of a table on the report's page: its heading, and the function that makes its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
-/// Empty HTML markup.
 pub(super) fn nothing() -> Markup {
     PreEscaped(String::new())
 }
 
-/// Cells of one row of an HTML table.
 pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
     cells.into_iter().map(Render::render).collect()
 }
@@ -97,7 +94,6 @@ pub(super) fn section(heading: &str, content: Markup) -> Markup {
     html! { section { h2 { (heading) } "\n" (content) } "\n" }
 }
 
-/// Content of the page that scrolls sideways if it is too wide.
 pub(super) fn scroll(content: Markup) -> Markup {
     html! { div class="scroll" { (content) } "\n" }
 }
@@ -114,7 +110,6 @@ pub(super) fn number(value: Option<f64>, digits: usize) -> String {
     value.filter(|value| value.is_finite()).map_or(UNKNOWN.to_string(), |value| minus(&format!("{value:.digits$}")))
 }
 
-/// A number with its interval below the number, if it has an interval.
 pub(super) fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, digits: usize) -> Markup {
     html! { (number(value, digits)) @if let Some(ends) = interval { small { (range(ends, digits)) } } }
 }
@@ -123,7 +118,6 @@ pub(super) fn percent(value: Option<f64>) -> String {
     value.map_or(UNKNOWN.to_string(), |value| format!("{:.1} %", 100.0 * value))
 }
 
-/// The p value of a test in the format of journals.
 pub(super) fn p_value(p: Option<f64>) -> String {
     match p {
         None => UNKNOWN.to_string(),
@@ -158,7 +152,6 @@ pub(super) fn count(value: Option<u64>) -> String {
     value.map_or(UNKNOWN.to_string(), |value| value.to_string())
 }
 
-/// Name of a kind of robot arm in the report.
 pub(super) fn arm(kind: ArmKind) -> &'static str {
     match kind {
         ArmKind::Timed => "timed",

@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::elements::{arm, section};
-use crate::arm_group::RobotArmTotals;
 use crate::facts::RecordingFacts;
 use crate::figures::StudySummary;
+use crate::report::elements::{arm, section};
+use crate::robot_tally::RobotArmTotals;
 use tomcom_core::base::text;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
@@ -26,7 +26,6 @@ pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup 
     section("Methods", content)
 }
 
-/// All values of a setting or circumstance, as text.
 fn all(facts: &RecordingFacts, key: &str) -> String {
     facts.all(key).unwrap_or_else(|| "unknown".to_string())
 }
@@ -59,7 +58,6 @@ fn conduct(figures: &StudySummary, facts: &RecordingFacts) -> String {
     )
 }
 
-/// Sentence about the wizard and the information shown to the wizard.
 fn wizard(facts: &RecordingFacts) -> Markup {
     html! {
         @if facts.has("scripted wizard") {
@@ -116,7 +114,6 @@ fn analysis(figures: &StudySummary) -> String {
     )
 }
 
-/// Sentence with the number of trials by the reason why they ended.
 fn endings(figures: &StudySummary) -> String {
     let one = |(reason, &count): (&TrialEndReason, &u64)| {
         let how = match reason {
@@ -139,7 +136,6 @@ fn endings(figures: &StudySummary) -> String {
     }
 }
 
-/// Sentence about the kinds of robot arm.
 fn arms(figures: &StudySummary) -> String {
     let trials =
         |group: &RobotArmTotals| format!("{} in {}", arm(group.kind), text::count(group.trials, "trial", "trials"));

@@ -1,44 +1,46 @@
 //! The study report: one self-contained HTML page for screen and print.
 
-mod arm_section;
 mod assistance;
-mod awareness;
 mod concept_comparison;
 mod elements;
 mod methods;
-pub mod page_head;
 mod results;
-mod robot_counts;
-mod sections;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::collections::BTreeSet;
 
-use self::elements::Captions;
-use super::column::CsvTable;
-use super::facts::RecordingFacts;
-use super::figures::StudySummary;
-use super::trial_statistics::TrialStatistics;
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
+
+use crate::column::CsvTable;
+use crate::definitions::DEFINITIONS;
+use crate::facts::RecordingFacts;
+use crate::figures::{StudySummary, pairs_in_words};
+use crate::planned_trial::{copies_in_words, in_words};
+use crate::report::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
+use crate::trial_statistics::TrialStatistics;
+use tomcom_core::base::text;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::RaterAgreement;
+use tomcom_session::event::TrialEndReason;
 
 /// Style sheet of the report's page and its charts.
 pub const STYLE: &str = include_str!("style.css");
 
-/// The study report as an HTML page, with links to the files of these tables.
 pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &RecordingFacts, tables: &[CsvTable]) -> String {
     let captions = &mut Captions::default();
     let sections = [
-        sections::summary(figures),
+        summary(figures),
         results::beside_the_paper(captions, figures),
         assistance::assistance(captions, figures, trials),
-        awareness::awareness(captions, figures),
-        arm_section::arms(captions, figures),
+        results::awareness(captions, figures),
+        assistance::arms(captions, figures),
         concept_comparison::concepts(captions, figures),
         results::similarity(captions, figures),
-        robot_counts::robot(captions, figures),
+        results::robot(captions, figures),
         results::people(captions, figures),
-        sections::trials(captions, figures, trials),
+        trials_section(captions, figures, trials),
         methods::methods(figures, facts),
-        sections::definitions(),
-        sections::files(tables),
+        definitions(),
+        files(tables),
     ];
     let page = html! {
         (DOCTYPE) "\n"
@@ -53,7 +55,6 @@ pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &Recordin
     page.into_string()
 }
 
-/// HTML head of the report's page.
 fn head(figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     html! {
         head {
@@ -66,8 +67,200 @@ fn head(figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     }
 }
 
-/// Metadata of the report's page as (name, content).
 fn metadata(trials: &[TrialStatistics]) -> [(&'static str, String); 3] {
-    let [generator, participants] = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
+    let [generator, participants] = head_fields(trials.iter().map(|trial| trial.participant.as_str()));
     [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]
+}
+
+/// Name of the metadata field that contains program and version.
+const GENERATOR: &str = "generator";
+const PARTICIPANTS: &str = "participants";
+const PROGRAM: &str = "tomcom ";
+
+/// Metadata in the HTML head of a report, as pairs (name, content): program version and participants' codes, by which
+/// `tomcom forget` finds the reports about a participant. Codes consist of letters, digits, - and _, as in tables.
+fn head_fields<'a>(participants: impl Iterator<Item = &'a str>) -> [(&'static str, String); 2] {
+    let participants: Vec<&str> = participants.collect::<BTreeSet<&str>>().into_iter().collect();
+    [(GENERATOR, format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION"))), (PARTICIPANTS, participants.join(" "))]
+}
+
+/// Participants of a report that this program wrote; `None` for any other HTML page.
+pub fn participants_of_page(page: &str) -> Option<Vec<&str>> {
+    let (head, _) = page.split_once("</head>")?;
+    head.contains(&meta_tag(GENERATOR, PROGRAM)).then_some(())?;
+    let (_, content) = head.split_once(&meta_tag(PARTICIPANTS, ""))?;
+    let (content, _) = content.split_once('"')?;
+    Some(content.split_whitespace().collect())
+}
+
+/// Start of an HTML metadata tag up to and including the first characters of the tag's content.
+fn meta_tag(name: &str, begins: &str) -> String {
+    format!("<meta name=\"{name}\" content=\"{begins}")
+}
+
+/// Least number of participants with both trials from which on r and p are shown among the main results.
+const FEWEST_PARTICIPANTS: usize = 8;
+
+fn summary(figures: &StudySummary) -> Markup {
+    let totals = &figures.totals;
+    let pairs: usize = figures.effects.first().map_or(0, |effect| effect.groups.iter().sum());
+    let effect = match (figures.pearson, &figures.similarity) {
+        (Some(_), _) if pairs < FEWEST_PARTICIPANTS => card(
+            UNKNOWN,
+            &format!(
+                "no r and no p here: {pairs} participants with both trials are fewer than {FEWEST_PARTICIPANTS}, and r would be chance"
+            ),
+        ),
+        (Some(pearson), _) => card(
+            &format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
+            &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
+        ),
+        (None, Some(found)) => card(&percent(found.signal.recall), "of the wizard's signals have a match"),
+        (None, None) => card(&text::count(totals.signals, "signal", "signals"), "shown to participants"),
+    };
+    html! {
+        p class="lead" {
+            (text::count(figures.trials, "trial", "trials")) " of "
+            (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
+        }
+        "\n"
+        @if figures.simulated_participants {
+            p class="warning" {
+                "Participants are simulated. Their errors, beliefs and presses are those of a program for testing apparatus and \
+                 parameters. Nothing here is evidence about people."
+            }
+            "\n"
+        }
+        @if totals.beliefs_from == Some(BeliefSource::Estimate) {
+            p class="warning" {
+                "Beliefs of participants are known only as the assistant's estimate. Results that rest on them, such as the share of \
+                 belief related errors, are tentative until two raters have coded the errors."
+            }
+            "\n"
+        }
+        @if let Some(found) = &figures.preregistration {
+            p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
+        }
+        @if let Some(missing) = in_words(&figures.missing_trials) { p class="note" { (missing) } "\n" }
+        @for one in &figures.corrections { p class="note" { (one.in_words()) "." } "\n" }
+        @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
+        @if let Some(found) = &figures.raters { (raters(found, figures)) }
+        @for one in &figures.identical_codes { p class="warning" { (one.in_words()) "." } "\n" }
+        @for one in &figures.stale_consensus {
+            p class="warning" { "Stale consensus, not used: " (one.recording) ": " (one.reason) "." } "\n"
+        }
+        div class="cards" {
+            "\n"
+            (card(&percent(totals.error_rate), "of the presses of both agents are errors of the human"))
+            (card(&percent(totals.belief_related_share), "of the errors are caused by false beliefs"))
+            (card(&number(totals.mean_sequence_length, 1), "errors per sequence on average"))
+            (effect)
+        }
+        "\n"
+    }
+}
+
+fn raters(found: &RaterAgreement, figures: &StudySummary) -> Markup {
+    html! {
+        p {
+            "Two raters (" (pairs_in_words(&figures.rater_pairs)) ") coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
+            " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "). Of " (found.beliefs) " errors that both \
+            attribute to a false belief, they agree on its location for " (found.same_aspect) " (kappa "
+            (number(found.kappa_aspect, 2)) "). Without a consensus an error counts as belief related if both coded a false belief."
+            @if let Some(shared) = &figures.shared_beliefs {
+                " False belief episodes, and with them errors prevented, hits and omissions, follow from the errors for which both name \
+                 the same false belief (" (shared.same) "), or from the consensus; for " (shared.differing) " errors they name different \
+                 ones, for " (shared.of_one) " one of them alone names one."
+            }
+            @for (pair, trials) in &figures.consensus {
+                " Codes of " (text::count(*trials, "trial", "trials")) ": consensus of " (pair.replace('+', " and "))
+                ", settled together after each had coded alone; agreement is that of their own codes."
+            }
+        }
+        "\n"
+    }
+}
+
+fn card(value: &str, what: &str) -> Markup {
+    html! { div class="card" { b { (value) } span { (what) } } "\n" }
+}
+
+const MOST_TRIALS: usize = 60;
+
+/// Section of the report with all trials, and with the reasons for excluding some of them.
+fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
+    let content = html! {
+        div class="scroll long" { (counting(captions, trials)) } "\n"
+        h3 { "Excluded" } "\n"
+        (left_out(captions, figures))
+        @if figures.practice > 0 {
+            p class="note" {
+                (text::count(figures.practice, "recording is", "recordings are")) " of practice and not analysed."
+            }
+            "\n"
+        }
+    };
+    section("Trials", content)
+}
+
+fn counting(captions: &mut Captions, trials: &[TrialStatistics]) -> Markup {
+    let columns: [PageColumn<TrialStatistics>; 14] = [
+        ("participant", |trial| trial.participant.render()),
+        ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
+        ("trial", |trial| count(trial.period.map(u64::from)).render()),
+        ("condition", |trial| trial.planned_arm.title().render()),
+        ("ended by", |trial| trial.ended.map_or(UNKNOWN, TrialEndReason::name).render()),
+        ("presses, human", |trial| trial.human_presses.render()),
+        ("robot", |trial| trial.robot_presses.render()),
+        ("errors", |trial| trial.errors.render()),
+        ("per press of the human", |trial| percent(trial.error_rate_human()).render()),
+        ("belief related", |trial| count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors)).render()),
+        ("per sequence", |trial| number(trial.sequence_length(), 1).render()),
+        ("signals", |trial| trial.signals.render()),
+        ("orders", |trial| trial.orders.render()),
+        ("s per press", |trial| number(trial.press_s, 2).render()),
+    ];
+    let number = trials.iter().filter(|trial| trial.counts()).count();
+    let caption = html! {
+        @if number > MOST_TRIALS {
+            "The first " (MOST_TRIALS) " of " (number) " trials that count; all are in " code { "trials.csv" } "."
+        } @else {
+            "Analysed trials."
+        }
+    };
+    let printed = trials.iter().filter(|trial| trial.counts()).take(MOST_TRIALS);
+    captions.table_of_columns(caption, &columns, printed)
+}
+
+fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    if figures.left_out.is_empty() {
+        return html! { p { "No trial is excluded." } "\n" };
+    }
+    let rows: Vec<Vec<Markup>> =
+        figures.left_out.iter().map(|one| cells([&one.recording, &one.participant, &one.reason])).collect();
+    captions.table_of_text("Excluded trials.", &["recording", "participant", "reason"], &rows)
+}
+
+fn definitions() -> Markup {
+    let content = html! {
+        dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
+    };
+    section("Definitions", content)
+}
+
+/// Section of the report that lists the non-empty tables beside the report.
+fn files(tables: &[CsvTable]) -> Markup {
+    let content = html! {
+        p {
+            "Beside this page: "
+            @for (index, table) in tables.iter().enumerate() {
+                @if index > 0 { ", " }
+                code { (table.name()) ".csv" }
+            }
+            ". The last one defines every column of the others. Empty cells are unknown values; the recording's name is the key \
+            that joins the tables."
+        }
+        "\n"
+    };
+    section("Tables", content)
 }

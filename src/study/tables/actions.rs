@@ -1,20 +1,16 @@
 //! Table of the presses of both agents, for the CSV file of actions.
 
 use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use tomcom_core::kitchen::{Agent, Kitchen, Press};
+use tomcom_core::kitchen::{Kitchen, Press};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_core::mind::rounded;
 
-/// A recorded press of either agent with its time and number.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPress {
-    /// Sequence number of the press in the log.
     pub seq: u64,
-    /// Time of the press on the trial's clock, in seconds.
     pub time_s: f64,
-    /// The press with the states before and after it.
     pub press: Press,
     /// Number of the press among the presses of its agent, from 1.
     pub number: u32,
@@ -31,11 +27,8 @@ pub struct PressAnalysis<'a> {
     pub judged: &'a JudgedPress,
     /// Number of the error sequence to which the press belongs, in the trial, from 1.
     pub sequence: Option<usize>,
-    /// Cause of a person's error according to the assistant's belief estimate.
     pub by_estimate: Option<ErrorCause>,
-    /// Codes that two raters gave to the error.
     pub codes: [Option<&'a ErrorCauseCode>; 2],
-    /// Consensus code of the two raters, where that code determines the cause of the error.
     pub shared: Option<&'a ErrorCauseCode>,
     /// Beginning of the false belief behind the error, on the trial's clock in seconds, where it is known.
     pub false_since_s: Option<f64>,
@@ -47,11 +40,8 @@ pub struct PressAnalysis<'a> {
 /// Row of the table of actions: a press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
-    /// Name of the recording in tables.
     pub recording: &'a str,
-    /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// The recorded press.
     pub recorded: &'a RecordedPress,
     /// Analysis of a human press; `None` for presses of the robot.
     pub analysis: Option<PressAnalysis<'a>>,
@@ -105,13 +95,6 @@ fn cause_name(cause: ErrorCause) -> &'static str {
     }
 }
 
-fn agent_name(agent: Agent) -> &'static str {
-    match agent {
-        Agent::Human => "human",
-        Agent::Robot => "robot",
-    }
-}
-
 impl CsvRow for ActionRow<'_> {
     const TABLE: CsvTable = CsvTable::Actions;
 
@@ -122,7 +105,7 @@ impl CsvRow for ActionRow<'_> {
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", "number of the event in the log", |row| row.recorded.seq.into()),
             Self::column("time_s", "s", "time on the trial's clock", |row| rounded(row.recorded.time_s).into()),
-            Self::column("agent", "", "human or robot", |row| agent_name(row.recorded.press.agent).into()),
+            Self::column("agent", "", "human or robot", |row| row.recorded.press.agent.name().into()),
             Self::column("press", "presses", "number of the press among this agent's presses, from 1", |row| {
                 row.recorded.number.into()
             }),

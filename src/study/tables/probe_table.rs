@@ -3,8 +3,7 @@
 use crate::analysis::probe_record::{AspectAtFreeze, ProbeResponse, ProbedQuestion};
 use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::effect::StudyMeasure;
-use crate::trial_details::TrialDetails;
-use crate::trial_statistics::TrialStatistics;
+use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_core::mind::WORTH_TELLING;
 use tomcom_core::mind::rounded;
 
@@ -26,7 +25,6 @@ pub struct ProbeRow<'a> {
     question: &'a ProbedQuestion,
 }
 
-/// Rows for the questions of a trial's freeze probes.
 pub fn probes<'a>(trial: &'a TrialStatistics, details: &'a TrialDetails) -> impl Iterator<Item = ProbeRow<'a>> {
     details.probes.iter().flat_map(|probes| &probes.questions).map(move |question| ProbeRow { trial, question })
 }

@@ -1,14 +1,14 @@
 //! Table of trials, and the measures among its columns that are compared between conditions.
 
-use super::trial_column::TrialColumn::{self, Compared};
-use super::trial_column::plain;
+use std::borrow::Cow;
+
 use crate::analysis::offer_summary::OfferSummary;
 use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::effect::StudyMeasure;
-use crate::known_beliefs::RaterFalseBeliefAgreement;
+use crate::rater_episodes::RaterFalseBeliefAgreement;
 use crate::robot_tally::ArmSafetySummary;
-use crate::tables::arm_columns;
 use crate::tables::probe_table::PROBES_WRONG;
+use crate::tables::trials::TrialColumn::Compared;
 use crate::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean_length};
 use tomcom_core::base::text::GUARDED;
 use tomcom_core::measures::sequences::BeliefErrorCounts;
@@ -87,7 +87,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(shown())
         .chain(false_beliefs())
         .chain(probed())
-        .chain(arm_columns::arms())
+        .chain(arms())
         .chain(coded())
         .chain(model_and_initiative())
 }
@@ -245,7 +245,6 @@ fn robot() -> Vec<TrialColumn> {
     ]
 }
 
-/// One column for each reason for which the robot aborts a press.
 fn presses_given_up() -> Vec<TrialColumn> {
     let why = |reason: AbortReason| match reason {
         AbortReason::NoLongerUseful => ("no_longer_useful", "the press was no longer useful when the arm arrived"),
@@ -330,7 +329,6 @@ fn work() -> Vec<TrialColumn> {
     ]
 }
 
-/// Columns about offers that a wizard could see.
 fn offered() -> Vec<TrialColumn> {
     fn offers(
         name: &'static str,
@@ -398,7 +396,6 @@ fn false_beliefs() -> Vec<TrialColumn> {
     ]
 }
 
-/// Columns about raters' codes.
 fn coded() -> Vec<TrialColumn> {
     vec![plain(
         "raters",
@@ -408,7 +405,6 @@ fn coded() -> Vec<TrialColumn> {
     )]
 }
 
-/// Columns about answers to freeze probes.
 fn probed() -> Vec<TrialColumn> {
     vec![
         plain(
@@ -434,6 +430,59 @@ fn model_and_initiative() -> Vec<TrialColumn> {
             "presses",
             "of robot_presses: those that the robot set out for by its own initiative, since the participant did not press",
             |t| t.initiative_presses.into(),
+        ),
+    ]
+}
+
+enum TrialColumn {
+    Plain(CsvColumn<TrialStatistics>),
+    Compared(StudyMeasure),
+}
+
+/// Declares a column of the table of trials that the report does not compare.
+fn plain(
+    name: &'static str,
+    unit: &'static str,
+    meaning: impl Into<Cow<'static, str>>,
+    value: fn(&TrialStatistics) -> CsvCell<'_>,
+) -> TrialColumn {
+    TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, value))
+}
+
+/// Columns for the arm as carried out, the planned arm, what the wizard could see, the contents of signals, and presses
+/// whose judgement is not proven.
+fn arms() -> Vec<TrialColumn> {
+    vec![
+        plain(
+            "study_arm",
+            "",
+            "arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
+            |t| t.study_arm.name().into(),
+        ),
+        plain(
+            "planned_arm",
+            "",
+            "arm under which the trial counts: that of the plan, without a plan that of the settings; differs from study_arm \
+             where the trial was carried out otherwise",
+            |t| t.planned_arm.name().into(),
+        ),
+        plain(
+            "wizard_sees",
+            "",
+            "what the console may show: state (kitchen and gaze), belief (also the estimate) or recommendation (also advice)",
+            |t| t.wizard_sees.name().into(),
+        ),
+        plain(
+            "signal_contents",
+            "contents",
+            "contents of the signals: a proposal of k presses has k, any other signal one",
+            |t| t.signal_contents.into(),
+        ),
+        plain(
+            "unproven",
+            "presses",
+            "human presses whose judgement rests on a cost to go that is not proven to be the least",
+            |t| t.unproven.into(),
         ),
     ]
 }

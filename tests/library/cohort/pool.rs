@@ -6,7 +6,7 @@ use tomcom_session::files::SessionSetup;
 use tomcom_session::headless::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::pool::{PoolRequest, simulate};
-use tomcom_study::simulation_pool::{PoolTrialPair, SimulationPool};
+use tomcom_study::pool::{PoolTrialPair, SimulationPool};
 
 use super::{folder, paper, run};
 

@@ -10,7 +10,7 @@ use tomcom_core::kitchen::{Agent, KitchenChange, LocationId};
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin};
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 use tomcom_study::analysis::seen_contents::LastSeenContents;
-use tomcom_study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
+use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent};
 
 /// A session with what was last seen in it, event by event.
 struct Look {

@@ -4,8 +4,8 @@
 use rand::RngExt;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::mind::fitting::HumanModelParameter;
+use tomcom_study::analysis::fitting::ascent::BoundReached;
 use tomcom_study::analysis::fitting::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
-use tomcom_study::analysis::fitting::surface_search::BoundReached;
 
 const BUTTONS: usize = 8;
 /// Combinations of three facts that are known or not.

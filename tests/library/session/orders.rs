@@ -6,7 +6,7 @@ use tomcom::edge::files::read_session;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, State};
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
-use tomcom_study::analysis::order_work::{RegretSum, order_times};
+use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
 use super::{at, kitchen};
 

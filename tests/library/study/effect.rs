@@ -2,7 +2,6 @@
 
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
-use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::effect::{effect, left_out_in_words, pairs};
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
@@ -10,6 +9,7 @@ use tomcom_study::pass::describe;
 use tomcom_study::report;
 use tomcom_study::statistics::{hodges_lehmann, permutation_p};
 use tomcom_study::tables::trials::HEADLINE;
+use tomcom_study::trial_statistics::DetailTotals;
 use tomcom_study::trial_statistics::{TrialStatistics, arrange};
 
 use super::{near, trial, trials};

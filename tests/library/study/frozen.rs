@@ -7,13 +7,13 @@ use tomcom::edge::files::read_session;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::column::CsvTable;
-use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
-use tomcom_study::files::frozen_file::{freeze, read_frozen};
+use tomcom_study::files::pool_file::{freeze, read_frozen};
 use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan};
-use tomcom_study::preregistration::{PreregistrationCheck, RecordedPlan};
+use tomcom_study::frozen_plan::{PreregistrationCheck, RecordedPlan};
 use tomcom_study::report;
+use tomcom_study::trial_statistics::DetailTotals;
 
 use super::trials;
 
@@ -106,8 +106,10 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
     let trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     let page = |recordings: &[RecordedPlan]| {
         let found = PreregistrationCheck::new("abc123".to_string(), &plan, recordings);
-        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0)
-            .with_preregistration(Some(found));
+        let summary = StudySummary {
+            preregistration: Some(found),
+            ..StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0)
+        };
         report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL)
     };
     let all = recordings(&plan);

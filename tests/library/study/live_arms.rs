@@ -1,8 +1,8 @@
 //! Concepts that acted by themselves on the same seeds.
 
 use tomcom_session::study_arm::StudyArm;
-use tomcom_study::acting_arm::SignalSenderWithParameter;
 use tomcom_study::live_arms::live_arms;
+use tomcom_study::trial_statistics::SignalSenderWithParameter;
 use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::{near, trial};

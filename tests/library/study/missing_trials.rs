@@ -1,7 +1,7 @@
 //! Trials of the plan that have no recording.
 
-use tomcom_study::missing_trials::{MissingTrials, in_words, missing_trials};
-use tomcom_study::preregistration::{PlaceInPlan, RecordedPlan};
+use tomcom_study::frozen_plan::{PlaceInPlan, RecordedPlan};
+use tomcom_study::planned_trial::{MissingTrials, in_words, missing_trials};
 
 /// A recording of a participant, by index in the plan, and its trial; `None` for practice. `periods` trials are planned.
 fn recording(plan: &str, participant: u32, period: Option<u32>, periods: u32) -> RecordedPlan {

@@ -21,9 +21,9 @@ use tomcom_core::measures::sequences::BeliefErrorCounts;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use tomcom_session::study_arm::StudyArm;
-use tomcom_study::acting_arm::SignalSenderWithParameter;
 use tomcom_study::analysis::offer_summary::OfferSummary;
 use tomcom_study::robot_tally::RobotEventSummary;
+use tomcom_study::trial_statistics::SignalSenderWithParameter;
 use tomcom_study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
 
 fn near(found: f64, wanted: f64) {

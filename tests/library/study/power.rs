@@ -12,15 +12,15 @@ use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::arm_comparison::compare_arms;
 use tomcom_study::arm_table::StudyArmTable;
+use tomcom_study::charts;
 use tomcom_study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampler, results, tests};
 use tomcom_study::effect::{effect, pairs};
+use tomcom_study::files::pool_file::{check_table, write_table};
 use tomcom_study::files::pool_file::{read_pool, write_pool};
-use tomcom_study::files::power_files::{check_table, write_table};
+use tomcom_study::pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
+use tomcom_study::power::{PowerRequest, measure};
+use tomcom_study::power::{PowerSummary, describe};
 use tomcom_study::power::{RejectionCount, RejectionShare, least_ratio, ratios};
-use tomcom_study::power_answer::{PowerSummary, describe};
-use tomcom_study::power_chart;
-use tomcom_study::power_measurement::{PowerRequest, measure};
-use tomcom_study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::TrialStatistics;
 
@@ -290,7 +290,7 @@ fn table_and_picture_take_the_place_of_their_own_kind_alone() {
         check_table(&table).expect("free, or its own");
         check_picture(&picture, "a picture of power").expect("free, or its own");
         write_table(&table, &found).expect("written");
-        write_picture(&picture, &power_chart::power(&found)).expect("written");
+        write_picture(&picture, &charts::power(&found)).expect("written");
     }
     let rows = fs::read_to_string(&table).expect("text");
     assert_eq!(rows.lines().count(), 1 + 2 * 3, "{rows}");

@@ -2,11 +2,11 @@
 
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::AspectId;
-use tomcom_study::concept_totals::{ConceptPreventionCounts, ConceptTotals};
 use tomcom_study::prevention::{
     FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
 };
 use tomcom_study::roc::compare;
+use tomcom_study::roc::{ConceptPreventionCounts, ConceptTotals};
 
 use super::{at, near};
 

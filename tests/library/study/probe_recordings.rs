@@ -10,8 +10,8 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
-use tomcom_study::analysis::probe_collector::ProbeCollector;
 use tomcom_study::analysis::probe_figures::ProbeSummary;
+use tomcom_study::analysis::probe_record::ProbeCollector;
 use tomcom_study::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
 
 use super::near;

@@ -10,19 +10,18 @@ use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
-use tomcom_study::analysis::probe_accuracy::ProbeAccuracyGrouping;
 use tomcom_study::analysis::probe_detection::{ProbeDetection, WeightedProbeBelief};
+use tomcom_study::analysis::probe_figures::ProbeAccuracyGrouping;
 use tomcom_study::analysis::probe_figures::ProbeSummary;
 use tomcom_study::analysis::probe_record::{
     AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
 use tomcom_study::column::CsvRow;
-use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::report;
 use tomcom_study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
-use tomcom_study::trial_details::TrialDetails;
+use tomcom_study::trial_statistics::{DetailTotals, TrialDetails};
 
 use super::{near, trial};
 

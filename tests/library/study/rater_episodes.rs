@@ -8,12 +8,10 @@ use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::FalseBeliefTarget;
 use tomcom_core::measures::errors::PressJudge;
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
-use tomcom_study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
-use tomcom_study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
+use tomcom_core::measures::raters::{BeliefSource, ErrorCauseCode, RaterCodes};
 use tomcom_study::prevention::TrialGroundTruth;
 use tomcom_study::rater_episodes::rater_episodes;
+use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent, KnownFalseBeliefs, RaterFalseBeliefAgreement};
 
 use super::at;
 use crate::kitchen;

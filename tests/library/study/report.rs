@@ -23,17 +23,16 @@ use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom_study::analysis::offer_summary::TimedOffer;
 use tomcom_study::codes::CodedRecording;
 use tomcom_study::column::{CsvCell, CsvRow, CsvTable};
-use tomcom_study::concept_totals::ConceptPreventionCounts;
-use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::pass::describe;
 use tomcom_study::pass::reading::{self, AnalysisScope};
 use tomcom_study::prevention::PreventionCounts;
-use tomcom_study::report::{self, page_head};
+use tomcom_study::report;
 use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
-use tomcom_study::trial_details::TrialDetails;
+use tomcom_study::roc::ConceptPreventionCounts;
+use tomcom_study::trial_statistics::{DetailTotals, TrialDetails};
 use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::{at, near, trial, trials};
@@ -67,8 +66,8 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     let mut names: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(page_head::participants(&page), Some(names), "the head says whom it is about");
-    assert_eq!(page_head::participants("<html><head></head></html>"), None);
+    assert_eq!(report::participants_of_page(&page), Some(names), "the head says whom it is about");
+    assert_eq!(report::participants_of_page("<html><head></head></html>"), None);
     assert!(page.contains("excluded: &lt;b&gt; &amp; &quot;quoted&quot;"), "reasons are told, and no markup");
     for outside in ["<script", "http:", "https:", "url(", "<link", "<img"] {
         assert!(!page.contains(outside), "{outside}");

@@ -10,8 +10,7 @@ use tomcom_session::settings::ParticipantKind;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_session::{Event, SessionSpec, TimestampedEvent};
 use tomcom_study::column::{CsvCell, CsvRow};
-use tomcom_study::tables::tutorial_answers::{TutorialAnswerCollector, TutorialQuestionRow};
-use tomcom_study::tutorial_summary::TutorialSummary;
+use tomcom_study::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow, TutorialSummary};
 
 /// The settings of the first recording of a participant of the study, in which the tutorial is.
 fn settings(kind: ParticipantKind) -> SessionSpec {

@@ -1,17 +1,24 @@
-//! Files at the root of a BIDS data set.
+//! Files of a whole BIDS data set: those at its root, tables of sessions and questionnaires, and labels in file names.
 
-use serde_json::json;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::tsv::{self, BidsColumn, BidsFile, or_nothing};
+use serde_json::{Map, Value, json};
+
+use crate::analysis::bids::events;
+use crate::analysis::bids::tsv::{self, BidsColumn, BidsFile, YES_NO, or_nothing, seconds, yes};
+use tomcom_core::base::text::GUARDED;
+use tomcom_core::base::time::SessionTime;
+use tomcom_session::event::TrialEndReason;
+use tomcom_session::plan::{AnswerFormat, PlanPosition, Questionnaire, QuestionnaireItem};
+use tomcom_session::questionnaire::AnswerValue;
+use tomcom_session::{LogHeader, Session};
 
 /// Name of the file that describes the BIDS data set.
-pub const DESCRIPTION_NAME: &str = "dataset_description.json";
-/// Name of the file with the table of participants.
-pub const PARTICIPANTS_NAME: &str = "participants.tsv";
-/// Name of the column with the participants' codes in the table of participants.
-pub const CODE_COLUMN: &str = "code";
+pub(crate) const DESCRIPTION_NAME: &str = "dataset_description.json";
+pub(crate) const PARTICIPANTS_NAME: &str = "participants.tsv";
+pub(crate) const CODE_COLUMN: &str = "code";
 /// Program that the description of the BIDS data set names as its generator.
-pub const PROGRAM_NAME: &str = "tomcom";
+pub(crate) const PROGRAM_NAME: &str = "tomcom";
 /// Version of BIDS that the data set follows; BIDS has eye-tracking data since 1.10.
 const BIDS_VERSION: &str = "1.10.1";
 
@@ -26,29 +33,35 @@ const CONSENTS: &[(&str, &str)] = &[
     ("display", "The participant held a button on the display"),
 ];
 
-const COLUMNS: [BidsColumn; 8] = [
-    BidsColumn::new("participant_id", "The participant: sub- and the letters and digits of the code"),
-    BidsColumn::new(CODE_COLUMN, "The participant's code in the recordings"),
-    BidsColumn::of_levels("kind", KINDS, "Who took part"),
-    BidsColumn::new("group", "Starting group of the plan: the order of conditions"),
-    BidsColumn::new("recordings", "Number of recordings"),
-    BidsColumn::of_levels("consent_on", CONSENTS, "Where consent was given"),
-    BidsColumn::new("consent_at", "Wall clock time (UTC) at which the recording that begins with the consent began"),
-    BidsColumn::new("consent_digest", "Digest of the text that was agreed to"),
+const PARTICIPANT_COLUMNS: [BidsColumn<BidsParticipant>; 8] = [
+    BidsColumn::new("participant_id", "The participant: sub- and the letters and digits of the code", |row| {
+        format!("sub-{}", row.label)
+    }),
+    BidsColumn::new(CODE_COLUMN, "The participant's code in the recordings", |row| row.code.clone()),
+    BidsColumn::of_levels("kind", KINDS, "Who took part", |row| row.kind.clone()),
+    BidsColumn::new("group", "Starting group of the plan: the order of conditions", |row| {
+        or_nothing(row.group.as_deref())
+    }),
+    BidsColumn::new("recordings", "Number of recordings", |row| row.recordings.to_string()),
+    BidsColumn::of_levels("consent_on", CONSENTS, "Where consent was given", |row| {
+        or_nothing(row.consent[0].as_deref())
+    }),
+    BidsColumn::new(
+        "consent_at",
+        "Wall clock time (UTC) at which the recording that begins with the consent began",
+        |row| or_nothing(row.consent[1].as_deref()),
+    ),
+    BidsColumn::new("consent_digest", "Digest of the text that was agreed to", |row| {
+        or_nothing(row.consent[2].as_deref())
+    }),
 ];
 
-/// A participant of a BIDS data set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BidsParticipant {
-    /// The participant's label in file and folder names of the data set.
     pub label: String,
-    /// The participant's code in the recordings.
     pub code: String,
-    /// Kind of participant (person or simulation), as the log names it.
     pub kind: String,
-    /// The participant's starting group, if there is a study plan.
     pub group: Option<String>,
-    /// Number of the participant's recordings in the data set.
     pub recordings: usize,
     /// The participant's consent, as far as a recording says it: where it was given, when, and the digest of its text.
     pub consent: [Option<String>; 3],
@@ -56,7 +69,7 @@ pub struct BidsParticipant {
 
 /// The files at the root of the data set: its description, the table of participants, a README. `plans`: the names of
 /// the studies' plans.
-pub fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_words: bool) -> Vec<BidsFile> {
+pub(crate) fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_words: bool) -> Vec<BidsFile> {
     let name = if plans.is_empty() { "tomcom recordings".to_string() } else { plans.join(", ") };
     let description = json!({
         "Name": name,
@@ -68,17 +81,11 @@ pub fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_wo
             "Description": "tomcom export --bids",
         }],
     });
-    let row = |one: &BidsParticipant| {
-        let label = format!("sub-{}", one.label);
-        let group = or_nothing(one.group.as_deref());
-        let [on, at, digest] = one.consent.each_ref().map(|cell| or_nothing(cell.as_deref()));
-        tsv::line([label, one.code.clone(), one.kind.clone(), group, one.recordings.to_string(), on, at, digest])
-    };
-    let rows: String = participants.iter().map(row).collect();
+    let rows: String = participants.iter().map(|one| tsv::row(&PARTICIPANT_COLUMNS, one)).collect();
     vec![
         BidsFile::json(DESCRIPTION_NAME, &description),
-        BidsFile::new(PARTICIPANTS_NAME, tsv::line(tsv::names(&COLUMNS)) + &rows),
-        BidsFile::json("participants.json", &tsv::described(&COLUMNS).into()),
+        BidsFile::new(PARTICIPANTS_NAME, tsv::line(tsv::names(&PARTICIPANT_COLUMNS)) + &rows),
+        BidsFile::json("participants.json", &tsv::described(&PARTICIPANT_COLUMNS).into()),
         BidsFile::new("README.md", readme(&name, participants.len(), with_words)),
     ]
 }
@@ -107,4 +114,289 @@ fn readme(name: &str, participants: usize, with_words: bool) -> String {
          it. {words}\n\n\
          To be filled in before the data set is published: authors, license and ethics in `dataset_description.json`.\n"
     )
+}
+
+const CONDITIONS: &[(&str, &str)] = &[
+    ("none", "Nobody sent signals"),
+    ("wizard", "The wizard could send signals"),
+    ("assistant", "The assistant sent signals by itself"),
+];
+const ENDS: &[(&str, &str)] = &[
+    ("presses", "The set number of presses was reached"),
+    ("time", "The set time was reached"),
+    ("orders", "The set number of orders was served"),
+    ("wizard", "The wizard ended it"),
+    ("aborted", "It was aborted and does not count"),
+];
+
+/// A recording that was read to its end, in the table of sessions.
+pub(crate) struct BidsSession<'a> {
+    /// BIDS label of the session.
+    pub label: &'a str,
+    /// Name of the recording's folder.
+    pub recording: &'a str,
+    pub header: &'a LogHeader,
+    pub session: &'a Session,
+    pub ended: Option<TrialEndReason>,
+    pub is_complete: bool,
+    /// Whether analyses include the trial.
+    pub counts: bool,
+}
+
+impl BidsSession<'_> {
+    fn step(&self) -> Option<&PlanPosition> {
+        self.session.spec.step.as_ref()
+    }
+
+    /// The line of the session in the table of sessions.
+    pub(crate) fn line(&self) -> String {
+        tsv::row(&session_columns(), self)
+    }
+}
+
+fn session_columns<'a>() -> [BidsColumn<BidsSession<'a>>; 21] {
+    [
+        BidsColumn::new("session_id", "The recording's session", |row| format!("ses-{}", row.label)),
+        BidsColumn::new("acq_time", "When the recording began (UTC); n/a: simulated", |row| {
+            or_nothing(row.header.started.clone())
+        }),
+        BidsColumn::new("recording", "Name of the recording's folder", |row| row.recording.to_string()),
+        BidsColumn::new("kitchen", "Name of the kitchen", |row| row.session.kitchen.name.clone()),
+        BidsColumn::of_levels("condition", CONDITIONS, "Who could send signals", |row| {
+            row.session.spec.trial.condition.name().to_string()
+        }),
+        BidsColumn::new("concept", "Communication concept of the assistant", |row| {
+            row.session.spec.assistant.concept.name().to_string()
+        }),
+        BidsColumn::new(
+            "study_arm",
+            "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
+            |row| row.session.study_arm().name().to_string(),
+        ),
+        BidsColumn::new(
+            "planned_arm",
+            "Arm under which the trial counts: that of the plan, without a plan that of the settings",
+            |row| row.session.planned_arm().name().to_string(),
+        ),
+        BidsColumn::of_levels("practice", YES_NO, "Whether it is practice, which no analysis takes", |row| {
+            yes(row.step().is_some_and(|step| step.period.is_none()))
+        }),
+        BidsColumn::new("period", "Number of the trial in the plan, from 1", |row| {
+            or_nothing(row.step().and_then(|step| step.period))
+        }),
+        BidsColumn::new("attempt", "Number of the attempt, from 1", |row| {
+            or_nothing(row.step().map(|step| step.attempt))
+        }),
+        BidsColumn::new("gaze", "Where gaze came from", |row| events::name(&row.session.spec.participant.gaze)),
+        BidsColumn::new("arm", "Kind of the robot's arm", |row| events::name(&row.session.spec.robot.arm)),
+        BidsColumn::of_unit("trial_time", "s", "Length of the trial by its own clock", |row| {
+            or_nothing(
+                Some(row.session.trial_clock(row.session.time)).filter(|clock| *clock > SessionTime::ZERO).map(seconds),
+            )
+        }),
+        BidsColumn::of_levels("ended", ENDS, "Why the trial ended; n/a: it did not", |row| {
+            or_nothing(row.ended.map(TrialEndReason::name))
+        }),
+        BidsColumn::of_levels("complete", YES_NO, "Whether the recording has its end", |row| yes(row.is_complete)),
+        BidsColumn::of_levels(
+            "excluded",
+            YES_NO,
+            "Whether the trial was aborted or is left out of the analysis; the reason is in the recording",
+            |row| yes(!row.counts),
+        ),
+        BidsColumn::new("seed", "Seed of all random numbers", |row| row.session.seed().to_string()),
+        BidsColumn::new("trial", "Index of the trial: with the same seed, another index gives other orders", |row| {
+            row.header.trial.to_string()
+        }),
+        BidsColumn::new("log_version", "Version of the log's format", |row| row.header.version.to_string()),
+        BidsColumn::new("program", "Version of tomcom that made the recording", |row| row.header.program.clone()),
+    ]
+}
+
+pub(crate) fn sessions_files(participant: &str, rows: &[String]) -> [BidsFile; 2] {
+    let path = format!("sub-{participant}/sub-{participant}_sessions");
+    let columns = session_columns();
+    let text = tsv::line(tsv::names(&columns)) + &rows.concat();
+    let about = tsv::described(&columns);
+    [BidsFile::new(format!("{path}.tsv"), text), BidsFile::json(format!("{path}.json"), &about.into())]
+}
+
+/// The letters and digits of a name; a BIDS label may contain nothing else.
+pub(crate) fn letters_and_digits(name: &str) -> String {
+    let kept: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
+    if kept.is_empty() { "x".to_string() } else { kept }
+}
+
+/// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be the same folder on some
+/// disks.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BidsLabelMap(BTreeMap<String, String>);
+
+impl BidsLabelMap {
+    /// The BIDS labels of these names: the label consists of the letters and digits of the name. A label that another
+    /// name has already is followed by `x2`, `x3` and so on.
+    pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> BidsLabelMap {
+        let all: BTreeSet<&str> = names.into_iter().collect();
+        let (plain, others): (Vec<&str>, Vec<&str>) =
+            all.into_iter().partition(|name| letters_and_digits(name) == *name);
+        let mut taken = BTreeSet::new();
+        let mut labels = BTreeMap::new();
+        for name in plain.into_iter().chain(others) {
+            labels.insert(name.to_string(), free(&letters_and_digits(name), "x", &mut taken));
+        }
+        BidsLabelMap(labels)
+    }
+
+    pub fn label(&self, name: &str) -> Option<&str> {
+        self.0.get(name).map(String::as_str)
+    }
+
+    pub fn changed(&self) -> Vec<(String, String)> {
+        self.0.iter().filter(|(name, label)| name != label).map(|(name, label)| (name.clone(), label.clone())).collect()
+    }
+}
+
+/// A free label: `label`, with a number behind it if that label is taken; the returned label counts as taken.
+fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> String {
+    let tried = |number: usize| match number {
+        1 => label.to_string(),
+        number => format!("{label}{between}{number}"),
+    };
+    let mut number = 1;
+    while !taken.insert(tried(number).to_ascii_lowercase()) {
+        number += 1;
+    }
+    tried(number)
+}
+
+/// The session label of a recording of a participant: its place in the study plan, or else its number. `taken` are the
+/// session labels of the participant's earlier recordings.
+pub fn session_label(step: Option<&PlanPosition>, taken: &mut BTreeSet<String>) -> String {
+    let attempt = |step: &PlanPosition| match step.attempt {
+        0 | 1 => String::new(),
+        attempt => format!("attempt{attempt}"),
+    };
+    let label = match step {
+        Some(step) => match step.period {
+            Some(period) => format!("trial{period}{}", attempt(step)),
+            None => format!("practice{}", attempt(step)),
+        },
+        None => format!("{:02}", taken.len() + 1),
+    };
+    free(&label, "again", taken)
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct FilledIn {
+    participant: String,
+    session: String,
+    asked: Questionnaire,
+    answers: BTreeMap<String, AnswerValue>,
+}
+
+/// All questionnaires that participants filled in, in the order of the recordings, for BIDS phenotype tables.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct QuestionnairePhenotypes(Vec<FilledIn>);
+
+impl QuestionnairePhenotypes {
+    /// Adds the questionnaire that the participant has just confirmed. `participant`, `session_label`: BIDS labels of
+    /// the participant and the session.
+    pub fn note(&mut self, participant: &str, session_label: &str, session: &Session) {
+        let (Some(asked), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return };
+        let given =
+            |(index, item): (usize, &QuestionnaireItem)| Some((item.id.clone(), protocol.given(index)?.clone()));
+        self.0.push(FilledIn {
+            participant: participant.to_string(),
+            session: session_label.to_string(),
+            asked: asked.clone(),
+            answers: asked.items.iter().enumerate().filter_map(given).collect(),
+        });
+    }
+
+    /// The phenotype tables with their sidecar files. `with_words`: whether answers in the participants' own words are
+    /// exported, too.
+    pub fn files(&self, with_words: bool) -> Vec<BidsFile> {
+        let mut tables: BTreeMap<(&str, usize), Vec<&FilledIn>> = BTreeMap::new();
+        for (index, filled) in self.0.iter().enumerate() {
+            let same =
+                |other: &&FilledIn| other.participant == filled.participant && other.asked.name == filled.asked.name;
+            let before = self.0[..index].iter().filter(same).count();
+            tables.entry((&filled.asked.name, before + 1)).or_default().push(filled);
+        }
+        let (mut taken, mut files) = (BTreeSet::new(), Vec::new());
+        for ((name, time), filled) in tables {
+            let name = if time == 1 { name.to_string() } else { format!("{name}_{time}") };
+            files.extend(phenotype_table(&free(&name, "_again", &mut taken), time, &filled, with_words));
+        }
+        files
+    }
+}
+
+/// One phenotype table with its sidecar file: the participants' answers when they answered the questionnaire for the
+/// `time`th time.
+fn phenotype_table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [BidsFile; 2] {
+    let mut columns: Vec<&str> = Vec::new();
+    let mut about = Map::new();
+    let told = format!("{} Filled in by each participant for the {time}. time.", filled[0].asked.title);
+    about.insert("MeasurementToolMetadata".to_string(), json!({ "Description": told }));
+    about.insert("session_id".to_string(), json!({ "Description": "The session in which it was filled in" }));
+    for FilledIn { asked, .. } in filled {
+        for (index, item) in asked.items.iter().enumerate() {
+            let Some(form) = asked.form(index).filter(|form| with_words || !matches!(form, AnswerFormat::Text { .. }))
+            else {
+                continue;
+            };
+            if !columns.contains(&item.id.as_str()) {
+                columns.push(&item.id);
+                about.insert(item.id.clone(), described_item(item, &form));
+            }
+        }
+    }
+    let head = ["participant_id", "session_id"].into_iter().chain(columns.iter().copied());
+    let mut text = tsv::line(head);
+    for one in filled {
+        let cell = |id: &&str| one.answers.get(*id).map_or_else(|| tsv::NOTHING.to_string(), AnswerValue::cell);
+        let ids = [format!("sub-{}", one.participant), format!("ses-{}", one.session)];
+        text += &tsv::line(ids.into_iter().chain(columns.iter().map(cell)));
+    }
+    let path = format!("phenotype/{name}");
+    [BidsFile::new(format!("{path}.tsv"), text), BidsFile::json(format!("{path}.json"), &about.into())]
+}
+
+fn described_item(item: &QuestionnaireItem, form: &AnswerFormat) -> Value {
+    let mut about = json!({ "Description": item.text });
+    match form {
+        AnswerFormat::Scale(scale) => {
+            let meaning = |point: u8| match point {
+                1 => scale.low.clone(),
+                point if point == scale.points => scale.high.clone(),
+                point => format!("{point} of {}", scale.points),
+            };
+            // Every point of the rating scale is listed, since BIDS counts a value that is not listed as invalid.
+            let levels: Map<String, Value> =
+                (1..=scale.points).map(|point| (point.to_string(), json!(meaning(point)))).collect();
+            about["Levels"] = Value::Object(levels);
+        }
+        AnswerFormat::Choice { options, several } => {
+            let levels: Map<String, Value> =
+                options.iter().map(|option| (option.id.clone(), json!(option.text))).collect();
+            about["Levels"] = Value::Object(levels);
+            if *several {
+                about["Delimiter"] = json!(" ");
+            }
+        }
+        AnswerFormat::Number { unit, .. } if !unit.is_empty() => about["Units"] = json!(unit),
+        AnswerFormat::Slider { low, high, .. } => {
+            about["Description"] = json!(format!("{} (0: {low}; 100: {high})", item.text));
+        }
+        AnswerFormat::Text { .. } => about["Description"] = json!(format!("{} ({GUARDED})", item.text)),
+        AnswerFormat::Number { .. } => {}
+    }
+    if let Some(construct) = &item.about {
+        about["Construct"] = json!(construct);
+    }
+    if item.reversed {
+        about["Reversed"] = json!(true);
+    }
+    about
 }

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::event_cells;
-use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, device_seconds, or_nothing, seconds};
+use crate::analysis::bids::events;
+use crate::analysis::bids::tsv::{self, BidsColumn, BidsFile, TaskFacts, device_seconds, or_nothing, seconds};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::robot::ArmSample;
@@ -14,28 +14,45 @@ use tomcom_session::{Session, TimestampedEvent};
 /// Intervals between samples that are longer than this count as gaps and are left out of the sampling rate, in seconds.
 const GAP_S: f64 = 0.5;
 
-const GAZE: [BidsColumn; 7] = [
-    BidsColumn::of_unit(
-        "timestamp",
-        "s",
-        "Session time at which the sample was taken, by the tracker's clock set against the session's; where the tracker tells no time, \
+/// An event of the log with the sample in it.
+type LoggedSample<'a, Sample> = (&'a TimestampedEvent, &'a Sample);
+
+fn gaze_columns<'a>() -> [BidsColumn<LoggedSample<'a, GazeSample>>; 7] {
+    [
+        BidsColumn::of_unit(
+            "timestamp",
+            "s",
+            "Session time at which the sample was taken, by the tracker's clock set against the session's; where the tracker tells no time, \
          when it arrived. Samples are in its order",
-    ),
-    BidsColumn::of_unit(
-        "x_coordinate",
-        "1",
-        "Fraction of the display's width, from its left edge, as recorded: without the offset that a gaze check found",
-    ),
-    BidsColumn::of_unit(
-        "y_coordinate",
-        "1",
-        "Fraction of the display's height, from its upper edge downwards, as recorded",
-    ),
-    BidsColumn::of_unit("confidence", "1", "The tracker's confidence, 0 to 1; below 0.6 the sample is not used"),
-    BidsColumn::of_unit("arrival", "s", "Session time at which the sample arrived"),
-    BidsColumn::of_unit("device_time", "s", "Time on the tracker's own clock"),
-    BidsColumn::new("seq", "Number of the sample in the log"),
-];
+            |(stamped, sample)| seconds(sample.taken_ns.unwrap_or(stamped.time)),
+        ),
+        BidsColumn::of_unit(
+            "x_coordinate",
+            "1",
+            "Fraction of the display's width, from its left edge, as recorded: without the offset that a gaze check found",
+            |(_, sample)| sample.x.to_string(),
+        ),
+        BidsColumn::of_unit(
+            "y_coordinate",
+            "1",
+            "Fraction of the display's height, from its upper edge downwards, as recorded",
+            |(_, sample)| sample.y.to_string(),
+        ),
+        BidsColumn::of_unit(
+            "confidence",
+            "1",
+            "The tracker's confidence, 0 to 1; below 0.6 the sample is not used",
+            |(_, sample)| sample.confidence.to_string(),
+        ),
+        BidsColumn::of_unit("arrival", "s", "Session time at which the sample arrived", |(stamped, _)| {
+            seconds(stamped.time)
+        }),
+        BidsColumn::of_unit("device_time", "s", "Time on the tracker's own clock", |(_, sample)| {
+            or_nothing(sample.device_ns.map(device_seconds))
+        }),
+        BidsColumn::new("seq", "Number of the sample in the log", |(stamped, _)| stamped.seq.to_string()),
+    ]
+}
 
 const FOUND: &[(&str, &str)] = &[
     ("fixation", "A fixation, as the tracker finds them"),
@@ -43,15 +60,23 @@ const FOUND: &[(&str, &str)] = &[
     ("eyes_opened", "Offset of a blink"),
 ];
 
-const EYE_EVENTS: [BidsColumn; 8] = [
-    BidsColumn::of_unit("onset", "s", "Session time, as the timestamps of the samples"),
-    BidsColumn::of_unit("duration", "s", "Of fixations; n/a where the tracker does not tell it"),
-    BidsColumn::of_levels("trial_type", FOUND, "What the tracker found"),
-    BidsColumn::of_unit("x_coordinate", "1", "Place of a fixation, in fractions of the display's width"),
-    BidsColumn::of_unit("y_coordinate", "1", "The same, in fractions of its height"),
-    BidsColumn::of_unit("dispersion", "deg", "How far the samples of a fixation are spread"),
-    BidsColumn::of_unit("confidence", "1", "The tracker's confidence, 0 to 1"),
-    BidsColumn::new("seq", "Number of the event in the log"),
+const EYE_EVENT_COLUMNS: [BidsColumn<EyeEvent>; 8] = [
+    BidsColumn::of_unit("onset", "s", "Session time, as the timestamps of the samples", |row| seconds(row.onset)),
+    BidsColumn::of_unit("duration", "s", "Of fixations; n/a where the tracker does not tell it", |row| {
+        or_nothing(row.duration_s)
+    }),
+    BidsColumn::of_levels("trial_type", FOUND, "What the tracker found", |row| row.kind.to_string()),
+    BidsColumn::of_unit("x_coordinate", "1", "Place of a fixation, in fractions of the display's width", |row| {
+        or_nothing(row.at.map(|[x, _]| x))
+    }),
+    BidsColumn::of_unit("y_coordinate", "1", "The same, in fractions of its height", |row| {
+        or_nothing(row.at.map(|[_, y]| y))
+    }),
+    BidsColumn::of_unit("dispersion", "deg", "How far the samples of a fixation are spread", |row| {
+        or_nothing(row.dispersion_deg)
+    }),
+    BidsColumn::of_unit("confidence", "1", "The tracker's confidence, 0 to 1", |row| row.confidence.to_string()),
+    BidsColumn::new("seq", "Number of the event in the log", |row| row.seq.to_string()),
 ];
 
 const PHASES: &[(&str, &str)] = &[
@@ -62,54 +87,59 @@ const PHASES: &[(&str, &str)] = &[
     ("presses", "Down on its button"),
 ];
 
-const ARM: [BidsColumn; 14] = [
-    BidsColumn::of_unit("timestamp", "s", "Session time"),
-    BidsColumn::of_levels("phase", PHASES, "What the arm does"),
-    BidsColumn::of_unit("joint_1", "rad", "Angle of the first joint, from the base on"),
-    BidsColumn::of_unit("joint_2", "rad", "Angle of the second joint"),
-    BidsColumn::of_unit("joint_3", "rad", "Angle of the third joint"),
-    BidsColumn::of_unit("joint_4", "rad", "Angle of the fourth joint"),
-    BidsColumn::of_unit("joint_5", "rad", "Angle of the fifth joint"),
-    BidsColumn::of_unit("joint_6", "rad", "Angle of the sixth joint"),
-    BidsColumn::of_unit("force", "N", "The greatest contact force since the sample before"),
-    BidsColumn::of_unit("hand_x", "m", "The middle of the participant's hand, in the frame of the arm's base"),
-    BidsColumn::of_unit("hand_y", "m", "The same, y"),
-    BidsColumn::of_unit("hand_z", "m", "The same, z"),
-    BidsColumn::of_unit("hand_distance", "m", "Distance of the participant's hand from the arm"),
-    BidsColumn::new("seq", "Number of the sample in the log"),
-];
+fn arm_columns<'a>() -> [BidsColumn<LoggedSample<'a, ArmSample>>; 14] {
+    [
+        BidsColumn::of_unit("timestamp", "s", "Session time", |(stamped, _)| seconds(stamped.time)),
+        BidsColumn::of_levels("phase", PHASES, "What the arm does", |(_, sample)| events::name(&sample.phase)),
+        BidsColumn::of_unit("joint_1", "rad", "Angle of the first joint, from the base on", |(_, sample)| {
+            sample.joints[0].to_string()
+        }),
+        BidsColumn::of_unit("joint_2", "rad", "Angle of the second joint", |(_, sample)| sample.joints[1].to_string()),
+        BidsColumn::of_unit("joint_3", "rad", "Angle of the third joint", |(_, sample)| sample.joints[2].to_string()),
+        BidsColumn::of_unit("joint_4", "rad", "Angle of the fourth joint", |(_, sample)| sample.joints[3].to_string()),
+        BidsColumn::of_unit("joint_5", "rad", "Angle of the fifth joint", |(_, sample)| sample.joints[4].to_string()),
+        BidsColumn::of_unit("joint_6", "rad", "Angle of the sixth joint", |(_, sample)| sample.joints[5].to_string()),
+        BidsColumn::of_unit("force", "N", "The greatest contact force since the sample before", |(_, sample)| {
+            sample.force_n.to_string()
+        }),
+        BidsColumn::of_unit(
+            "hand_x",
+            "m",
+            "The middle of the participant's hand, in the frame of the arm's base",
+            |(_, sample)| sample.hand_m[0].to_string(),
+        ),
+        BidsColumn::of_unit("hand_y", "m", "The same, y", |(_, sample)| sample.hand_m[1].to_string()),
+        BidsColumn::of_unit("hand_z", "m", "The same, z", |(_, sample)| sample.hand_m[2].to_string()),
+        BidsColumn::of_unit("hand_distance", "m", "Distance of the participant's hand from the arm", |(_, sample)| {
+            sample.hand_away_m.to_string()
+        }),
+        BidsColumn::new("seq", "Number of the sample in the log", |(stamped, _)| stamped.seq.to_string()),
+    ]
+}
 
 /// A table with too many rows to keep in memory: each row is written at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LongTable {
-    /// Gaze samples, in the order in which they were taken.
     Gaze,
-    /// Samples of the robot's arm.
     Arm,
-    /// Beliefs, an aspect a row.
     Beliefs,
 }
 
 impl LongTable {
-    /// All long tables.
     pub const ALL: [LongTable; 3] = [LongTable::Gaze, LongTable::Arm, LongTable::Beliefs];
 }
 
-/// A row of a long table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LongTableRow {
-    /// The table to which the row belongs.
     pub table: LongTable,
     /// Time by which the rows of the table are ordered; rows of equal times keep their order.
     pub time: SessionTime,
-    /// Text of the row, including the line end.
     pub line: String,
 }
 
 /// What the sidecar file of a long table says of its rows, counted row by row in the order of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LongTableFacts {
-    /// Number of rows.
     pub rows: u64,
     first: Option<SessionTime>,
     last: Option<SessionTime>,
@@ -118,7 +148,6 @@ pub struct LongTableFacts {
 }
 
 impl LongTableFacts {
-    /// Counts the next row of the table.
     pub fn add(&mut self, time: SessionTime) {
         self.rows += 1;
         self.first = self.first.or(Some(time));
@@ -135,53 +164,63 @@ impl LongTableFacts {
     }
 }
 
+/// A fixation, or the begin or end of a blink.
+#[derive(Debug)]
+struct EyeEvent {
+    onset: SessionTime,
+    duration_s: Option<f64>,
+    kind: &'static str,
+    /// In fractions of the display.
+    at: Option<[f64; 2]>,
+    dispersion_deg: Option<f64>,
+    confidence: f64,
+    seq: u64,
+}
+
 /// Rows of the BIDS tables of gaze samples, of fixations and blinks, and of arm samples.
 #[derive(Debug, Default)]
 pub(super) struct SampleRows {
-    eye_events: Vec<(SessionTime, String)>,
+    eye_events: Vec<EyeEvent>,
 }
 
 impl SampleRows {
     pub(super) fn gaze(stamped: &TimestampedEvent, sample: &GazeSample) -> LongTableRow {
-        let taken = sample.taken_ns.unwrap_or(stamped.time);
-        let device = or_nothing(sample.device_ns.map(device_seconds));
-        let (x, y, confidence) = (sample.x.to_string(), sample.y.to_string(), sample.confidence.to_string());
-        let cells = [seconds(taken), x, y, confidence, seconds(stamped.time), device, stamped.seq.to_string()];
-        LongTableRow { table: LongTable::Gaze, time: taken, line: tsv::line(cells) }
+        let line = tsv::row(&gaze_columns(), &(stamped, sample));
+        LongTableRow { table: LongTable::Gaze, time: sample.taken_ns.unwrap_or(stamped.time), line }
     }
 
     pub(super) fn arm(stamped: &TimestampedEvent, sample: &ArmSample) -> LongTableRow {
-        let joints = sample.joints.iter().map(f64::to_string);
-        let hand = sample.hand_m.iter().map(f64::to_string);
-        let cells = [seconds(stamped.time), event_cells::name(&sample.phase)].into_iter().chain(joints);
-        let cells = cells.chain([sample.force_n.to_string()]).chain(hand);
-        let cells = cells.chain([sample.hand_away_m.to_string(), stamped.seq.to_string()]);
-        LongTableRow { table: LongTable::Arm, time: stamped.time, line: tsv::line(cells) }
+        LongTableRow { table: LongTable::Arm, time: stamped.time, line: tsv::row(&arm_columns(), &(stamped, sample)) }
     }
 
     /// Adds a fixation or a blink that the eye tracker found; returns `false` for every other event of the tracker.
     pub(super) fn note_found(&mut self, stamped: &TimestampedEvent, event: &TrackerEvent) -> bool {
-        let (onset, cells) = match event {
-            TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, began_ns, .. } => {
-                let [x, y] = [at.map(|at| at[0]), at.map(|at| at[1])].map(or_nothing);
-                let duration = (duration_ms / 1000.0).to_string();
-                let numbers = [dispersion_deg.to_string(), confidence.to_string()];
-                let [dispersion, confidence] = numbers;
-                (*began_ns, [duration, "fixation".to_string(), x, y, dispersion, confidence])
-            }
-            TrackerEvent::Blink { closed, confidence, taken_ns, .. } => {
-                let kind = if *closed { "eyes_closed" } else { "eyes_opened" }.to_string();
-                let none = || tsv::NOTHING.to_string();
-                (*taken_ns, [none(), kind, none(), none(), none(), confidence.to_string()])
-            }
+        let seq = stamped.seq;
+        let found = match *event {
+            TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, began_ns, .. } => EyeEvent {
+                onset: began_ns,
+                duration_s: Some(duration_ms / 1000.0),
+                kind: "fixation",
+                at,
+                dispersion_deg: Some(dispersion_deg),
+                confidence,
+                seq,
+            },
+            TrackerEvent::Blink { closed, confidence, taken_ns, .. } => EyeEvent {
+                onset: taken_ns,
+                duration_s: None,
+                kind: if closed { "eyes_closed" } else { "eyes_opened" },
+                at: None,
+                dispersion_deg: None,
+                confidence,
+                seq,
+            },
             _ => return false,
         };
-        let cells = [seconds(onset)].into_iter().chain(cells).chain([stamped.seq.to_string()]);
-        self.eye_events.push((onset, tsv::line(cells)));
+        self.eye_events.push(found);
         true
     }
 
-    /// Number of fixations and blinks.
     pub(super) fn found(&self) -> u64 {
         self.eye_events.len() as u64
     }
@@ -196,21 +235,21 @@ impl SampleRows {
         long: &[LongTableFacts; 3],
     ) -> Vec<BidsFile> {
         let [gaze, arm, _] = long;
-        self.eye_events.sort_by_key(|(time, _)| *time);
+        self.eye_events.sort_by_key(|found| found.onset);
         let mut files = Vec::new();
         if gaze.rows > 0 {
             let mut sidecar = about.sidecar(session);
             task.tell(&mut sidecar);
-            add_table(&mut sidecar, gaze, &GAZE);
+            add_table(&mut sidecar, gaze, &gaze_columns());
             files.push(BidsFile::json(format!("{}.json", about.stem(LongTable::Gaze)), &sidecar.into()));
             if !self.eye_events.is_empty() {
-                let mut sidecar = tsv::described(&EYE_EVENTS);
+                let mut sidecar = tsv::described(&EYE_EVENT_COLUMNS);
                 task.tell(&mut sidecar);
-                sidecar.insert("Columns".to_string(), json!(tsv::names(&EYE_EVENTS)));
+                sidecar.insert("Columns".to_string(), json!(tsv::names(&EYE_EVENT_COLUMNS)));
                 sidecar.insert("Description".to_string(), json!("Fixations and blinks, as the eye tracker found them"));
                 sidecar.insert("OnsetSource".to_string(), json!("timestamp"));
                 let name = format!("{}events", about.stem(LongTable::Gaze));
-                let text: String = self.eye_events.iter().map(|(_, line)| line.as_str()).collect();
+                let text: String = self.eye_events.iter().map(|found| tsv::row(&EYE_EVENT_COLUMNS, found)).collect();
                 files.push(BidsFile::new(format!("{name}.tsv.gz"), text));
                 files.push(BidsFile::json(format!("{name}.json"), &sidecar.into()));
             }
@@ -218,7 +257,7 @@ impl SampleRows {
         if arm.rows > 0 {
             let mut sidecar = Map::new();
             task.tell(&mut sidecar);
-            add_table(&mut sidecar, arm, &ARM);
+            add_table(&mut sidecar, arm, &arm_columns());
             let told = "Motion of the robot's arm, which the participant sees; sampled while it moves";
             sidecar.insert("Description".to_string(), json!(told));
             files.push(BidsFile::json(format!("{}.json", about.stem(LongTable::Arm)), &sidecar.into()));
@@ -230,11 +269,9 @@ impl SampleRows {
 /// What is known of the participant's view of the display and of the gaze data, for sidecar files.
 #[derive(Clone, Debug)]
 pub(super) struct ViewingFacts {
-    /// Whether the gaze is the position of a mouse pointer, not of an eye.
     pub is_pointer: bool,
     /// Size of the display's page in pixels.
     pub resolution: Option<[u32; 2]>,
-    /// Number of gaze accuracy checks.
     pub gaze_checks: u64,
 }
 
@@ -302,7 +339,7 @@ impl ViewingFacts {
 }
 
 /// Adds the sampling rate, the first time and the columns of a table of samples to the table's sidecar file.
-fn add_table(sidecar: &mut Map<String, Value>, facts: &LongTableFacts, columns: &[BidsColumn]) {
+fn add_table<Row>(sidecar: &mut Map<String, Value>, facts: &LongTableFacts, columns: &[BidsColumn<Row>]) {
     sidecar.insert("SamplingFrequency".to_string(), json!(facts.rate_hz()));
     sidecar.insert("StartTime".to_string(), json!(facts.first.map_or(0.0, SessionTime::as_secs_f64)));
     sidecar.insert("Columns".to_string(), json!(tsv::names(columns)));

@@ -7,16 +7,13 @@ use serde_json::{Map, Value, json};
 use tomcom_core::base::text::without_formula;
 use tomcom_core::base::time::SessionTime;
 
-/// Text of a cell in a BIDS table that has no value.
 pub(super) const NOTHING: &str = "n/a";
 
-/// A file of a BIDS data set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BidsFile {
     /// Path of the file below the data set's root, or the end of a recording's file name, as in `events.tsv`. Files
     /// whose name ends with `.gz` are to be compressed by the caller.
     pub name: String,
-    /// Text of the file before compression.
     pub text: String,
 }
 
@@ -31,7 +28,6 @@ impl BidsFile {
     }
 }
 
-/// The experimental task, as BIDS sidecar files describe it.
 #[derive(Clone, Debug)]
 pub(super) struct TaskFacts {
     pub name: String,
@@ -47,32 +43,38 @@ impl TaskFacts {
     }
 }
 
-/// A column of a BIDS table, as a sidecar file describes it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct BidsColumn {
-    pub name: &'static str,
-    pub description: &'static str,
-    /// Unit of the column's values; empty if the values have no unit.
-    pub units: &'static str,
+/// A column of a BIDS table: how a sidecar file describes it, and the text of its cell in a row.
+pub(super) struct BidsColumn<Row> {
+    name: &'static str,
+    description: &'static str,
+    /// Empty if the values have no unit.
+    units: &'static str,
     /// Possible values of the column with their meanings; empty if the values are not from a list.
-    pub levels: &'static [(&'static str, &'static str)],
+    levels: &'static [(&'static str, &'static str)],
+    cell: fn(&Row) -> String,
 }
 
-impl BidsColumn {
-    pub(super) const fn new(name: &'static str, description: &'static str) -> BidsColumn {
-        BidsColumn { name, description, units: "", levels: &[] }
+impl<Row> BidsColumn<Row> {
+    pub(super) const fn new(name: &'static str, description: &'static str, cell: fn(&Row) -> String) -> Self {
+        BidsColumn { name, description, units: "", levels: &[], cell }
     }
 
-    pub(super) const fn of_unit(name: &'static str, units: &'static str, description: &'static str) -> BidsColumn {
-        BidsColumn { name, description, units, levels: &[] }
+    pub(super) const fn of_unit(
+        name: &'static str,
+        units: &'static str,
+        description: &'static str,
+        cell: fn(&Row) -> String,
+    ) -> Self {
+        BidsColumn { name, description, units, levels: &[], cell }
     }
 
     pub(super) const fn of_levels(
         name: &'static str,
         levels: &'static [(&'static str, &'static str)],
         description: &'static str,
-    ) -> BidsColumn {
-        BidsColumn { name, description, units: "", levels }
+        cell: fn(&Row) -> String,
+    ) -> Self {
+        BidsColumn { name, description, units: "", levels, cell }
     }
 
     fn described(&self) -> Value {
@@ -90,14 +92,17 @@ impl BidsColumn {
     }
 }
 
-/// BIDS columns with their descriptions, as the fields of a sidecar file.
-pub(super) fn described(columns: &[BidsColumn]) -> Map<String, Value> {
+pub(super) fn described<Row>(columns: &[BidsColumn<Row>]) -> Map<String, Value> {
     columns.iter().map(|column| (column.name.to_string(), column.described())).collect()
 }
 
-/// The names of a BIDS table's columns.
-pub(super) fn names(columns: &[BidsColumn]) -> Vec<&'static str> {
+pub(super) fn names<Row>(columns: &[BidsColumn<Row>]) -> Vec<&'static str> {
     columns.iter().map(|column| column.name).collect()
+}
+
+/// The row as a line of the table with these columns.
+pub(super) fn row<Row>(columns: &[BidsColumn<Row>], row: &Row) -> String {
+    line(columns.iter().map(|column| (column.cell)(row)))
 }
 
 /// A line of a tab-separated table, including the line end.
@@ -133,7 +138,6 @@ pub(super) fn or_nothing<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| NOTHING.to_string(), |value| value.to_string())
 }
 
-/// Values of a BIDS column of truth values, with their meanings.
 pub(super) const YES_NO: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 
 /// BIDS cell of a truth value: 1 for yes, 0 for no.

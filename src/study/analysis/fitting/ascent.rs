@@ -1,21 +1,25 @@
-//! Maximises a noisy log likelihood within bounds ([`super::surface_search`]), with standard errors and intervals.
-//! Surfaces from scores lead to the maximum; the curvature of a response surface there and the scores give the standard
-//! errors.
+//! Search for the maximum of a noisy log likelihood within bounds, with standard errors and intervals. Each step leads
+//! to the maximum of a quadratic surface. Single comparisons of values are unreliable under noise; a surface averages
+//! the noise over its points and estimates the size of the noise.
 //!
-//! A variable whose maximum lies at a bound is held there. Such a variable gets one end of a profile likelihood interval
-//! instead of a standard error (Venzon and Moolgavkar 1988).
+//! Surfaces are of two kinds. Those from the scores of single presses ([`super::score_surface`], the method of scoring) take
+//! few points and lead to the maximum quickly, but noise that neighbouring points share counts as curvature. Those from
+//! the values alone ([`super::response_surface`]; Box and Wilson 1951) take many points, and their curvature is right in the
+//! mean: the search ends with them. The curvature of the last one and the scores give the standard errors.
+//!
+//! A variable whose maximum lies at a bound is held there. Such a variable gets one end of a profile likelihood
+//! interval instead of a standard error (Venzon and Moolgavkar 1988).
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
-use super::response_surface::QuadraticSurface;
-use super::surface_search::{BoundReached, REJECTED_NATS, SurfaceSearch, SurfaceSource};
+use crate::analysis::fitting::response_surface::{self, QuadraticSurface, REACH};
+use crate::analysis::fitting::score_surface::{self, ScoreRegression, TriedPoint};
 
 /// First step of the search for the end of a profile interval. The end is interpolated between two values of the
 /// variable that lie closer together than this.
 const PROFILE_STEP: f64 = 0.3;
 /// Part of the distance between two values at the ends of which no value is tried between the two.
 const PROFILE_MARGIN: f64 = 0.2;
-/// Largest number of surfaces for one value of a profile likelihood.
 const PROFILE_SURFACES: usize = 3;
 /// A value of a variable is rejected, without optimising the other variables, if it lowers the log likelihood by more
 /// than this (plus the noise).
@@ -28,7 +32,6 @@ const NOISE_MARGIN: f64 = 2.0;
 /// A step that lowers the loss by less than this ends the optimisation of the other variables.
 const SETTLED_NATS: f64 = 0.5;
 
-/// The least loss that the search has found.
 #[derive(Clone, Copy, Debug)]
 struct LeastLoss {
     /// Loss in nats.
@@ -45,37 +48,27 @@ impl LeastLoss {
     }
 }
 
-/// How a search ended.
 struct SettledSearch {
-    /// The variables that are not held at a bound.
     free: Vec<usize>,
     /// Variances of the free variables' values, in steps; `None` where the likelihood does not determine them.
     variances: Option<DVector<f64>>,
-    /// The least loss, if there are free variables.
     least: Option<LeastLoss>,
 }
 
-/// Estimate of one variable of a likelihood, with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VariableEstimate {
-    /// Value of the variable at which the likelihood is greatest.
     pub at: f64,
     /// Standard error of the variable; `None` at a bound, and where the log likelihood is not concave.
     pub standard_error: Option<f64>,
-    /// The bound at which the variable has its maximum, if any.
     pub end: Option<BoundReached>,
     /// Other end of the 95 % profile likelihood interval of a variable at a bound; `None` if that end was not found.
     pub limit: Option<f64>,
 }
 
-/// Result of a search for the maximum of a log likelihood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LikelihoodMaximum {
-    /// Estimates of the variables, in the order in which they were passed.
     pub variables: Vec<VariableEstimate>,
-    /// Number of evaluations of the log likelihood during the search.
     pub evaluations: usize,
-    /// Whether the search converged before the allowed evaluations were used up.
     pub converged: bool,
 }
 
@@ -133,7 +126,6 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
         }
     }
 
-    /// Holds variables at bounds.
     fn hold(&mut self, ends: Vec<(usize, BoundReached)>, held: &mut [Option<BoundReached>]) {
         for (index, end) in ends {
             self.at[index] = self.bound(index, end);
@@ -197,6 +189,252 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
             }
         }
         Some(excess)
+    }
+}
+
+const FIRST_STEP: f64 = 0.4;
+/// Steps of the search are chosen so that one step lowers the log likelihood by this much: least and most in nats, and
+/// in standard deviations of the noise.
+const STEP_NATS: [f64; 2] = [1.0, 6.0];
+const STEP_NOISE: f64 = 0.5;
+/// Least and largest size of a step of the search, and the largest factor between the sizes of successive steps.
+const STEPS: [f64; 2] = [0.02, 1.6];
+const STEP_CHANGE: f64 = 2.5;
+/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of
+/// freedom.
+const REJECTED_NATS: f64 = 1.92;
+/// Distance to a bound below which a variable counts as lying at the bound.
+const CLOSE: f64 = 1e-9;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoundReached {
+    Low,
+    High,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum SurfaceSource {
+    Scores,
+    Values,
+}
+
+impl SurfaceSource {
+    fn points(self, variables: usize) -> usize {
+        match self {
+            SurfaceSource::Scores => score_surface::points(variables),
+            SurfaceSource::Values => response_surface::points(variables),
+        }
+    }
+
+    /// Standard deviation of the difference between two surfaces' minima, as a multiple of the noise of single values.
+    fn share_of_noise(self, variables: usize) -> f64 {
+        let count = variables as f64;
+        let terms = match self {
+            SurfaceSource::Scores => 1.0 + count,
+            SurfaceSource::Values => 1.0 + count + count * (count + 1.0) / 2.0,
+        };
+        (2.0 * terms / self.points(variables) as f64).sqrt()
+    }
+}
+
+/// A search for the maximum of a log likelihood, and what it has found so far.
+struct SurfaceSearch<'a, F> {
+    losses: F,
+    pub(super) bounds: &'a [[f64; 2]],
+    tried: Vec<(Vec<f64>, Vec<f64>)>,
+    /// The current point: where the latest surface, or half a step to it, has led.
+    pub(super) at: Vec<f64>,
+    centre: Vec<f64>,
+    pub(super) steps: Vec<f64>,
+    pub(super) evaluations: usize,
+    most: usize,
+}
+
+impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
+    /// A search from `start`, which is moved inside the bounds, with about `most` evaluations of `losses`: the
+    /// negative log likelihood of each press in nats.
+    pub(super) fn begin(losses: F, start: &[f64], bounds: &'a [[f64; 2]], most: usize) -> SurfaceSearch<'a, F> {
+        let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
+        let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
+        SurfaceSearch {
+            losses,
+            bounds,
+            tried: Vec::new(),
+            centre: at.clone(),
+            steps: vec![FIRST_STEP; at.len()],
+            at,
+            evaluations: 0,
+            most,
+        }
+    }
+
+    /// Maximises the likelihood over the free variables. Returns the surface around the maximum (`Some(None)` without
+    /// free variables), or `None` if the search did not converge.
+    pub(super) fn climb(&mut self, source: SurfaceSource, free: &[usize]) -> Option<Option<QuadraticSurface>> {
+        if free.is_empty() {
+            return Some(None);
+        }
+        // Least value at the centre of a surface, and that centre.
+        let mut best = None::<(f64, Vec<f64>)>;
+        loop {
+            let before = self.at.clone();
+            let (surface, by) = self.step(source, free)?;
+            // Where the curvature changes much, a step can lead too far: then it is halved.
+            if let Some((value, at)) = &best
+                && surface.value > value + surface.noise * source.share_of_noise(free.len())
+            {
+                let is_close = free.iter().all(|&index| (before[index] - at[index]).abs() < self.steps[index] / 2.0);
+                self.at = before.iter().zip(at).map(|(before, at)| (before + at) / 2.0).collect();
+                if is_close {
+                    best = None;
+                }
+                continue;
+            }
+            if best.as_ref().is_none_or(|(value, _)| surface.value < *value) {
+                best = Some((surface.value, before));
+            }
+            // The search stops here: poorly determined variables only move with the noise, and further steps gain
+            // nothing.
+            let gain = surface.value - surface.at(&by);
+            let is_noise =
+                surface.is_convex() && gain <= REJECTED_NATS + surface.noise * source.share_of_noise(free.len());
+            let is_near = free.iter().zip(&by).all(|(&index, by)| by.abs() <= 1.0 || self.end(index).is_some());
+            let wanted = self.wanted_steps(free, &surface);
+            let is_telling = free.iter().zip(&wanted).all(|(&index, wanted)| {
+                let change = wanted / self.steps[index];
+                (0.5..=2.0).contains(&change) || self.end(index).is_some()
+            });
+            if (is_near || is_noise) && is_telling {
+                return Some(Some(surface));
+            }
+            free.iter().zip(wanted).for_each(|(&index, wanted)| self.steps[index] = wanted);
+        }
+    }
+
+    /// Goes to the least value of a surface around the current point. Returns the surface, and how far that was, in steps from
+    /// the surface's centre; `None` if too few evaluations are left.
+    pub(super) fn step(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(QuadraticSurface, Vec<f64>)> {
+        let (centre, surface) = self.survey(source, free)?;
+        let by = self.least(free, &centre, &surface);
+        for ((&index, centre), by) in free.iter().zip(&centre).zip(&by) {
+            self.at[index] = (centre + by * self.steps[index]).clamp(self.bounds[index][0], self.bounds[index][1]);
+        }
+        Some((surface, by))
+    }
+
+    /// A surface over the free variables around the current point, inside the bounds, with the surface's centre;
+    /// `None` if too few evaluations are left.
+    fn survey(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
+        if self.evaluations + source.points(free.len()) > self.most {
+            return None;
+        }
+        for &index in free {
+            let [low, high] = self.bounds[index];
+            self.steps[index] = self.steps[index].min((high - low) / 2.0);
+        }
+        let inside = |&index: &usize| {
+            let ([low, high], step) = (self.bounds[index], self.steps[index]);
+            self.at[index].clamp(low + step, (high - step).max(low + step))
+        };
+        let centre: Vec<f64> = free.iter().map(inside).collect();
+        let steps: Vec<f64> = free.iter().map(|&index| self.steps[index]).collect();
+        self.centre = self.with(free, &centre);
+        let surface = match source {
+            SurfaceSource::Scores => {
+                score_surface::points_around(&centre, &steps).iter().for_each(|at| {
+                    self.try_point(free, at);
+                });
+                ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.surface())
+            }
+            SurfaceSource::Values => response_surface::surface(|at| self.try_point(free, at), &centre, &steps),
+        };
+        surface.map(|surface| (centre, surface))
+    }
+
+    /// Covariance of the log likelihood's slope around the centre of the latest surface, per step of each free variable.
+    pub(super) fn score_products(&self, free: &[usize]) -> Option<DMatrix<f64>> {
+        let [centre, steps] = [&self.centre, &self.steps].map(|of| free.iter().map(|&index| of[index]).collect());
+        let [centre, steps]: [Vec<f64>; 2] = [centre, steps];
+        ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.score_products())
+    }
+
+    fn tried_with(&self, free: &[usize]) -> Vec<TriedPoint<'_>> {
+        let is_held = |index: &usize| !free.contains(index);
+        let has_held =
+            |at: &[f64]| (0..at.len()).filter(is_held).all(|index| (at[index] - self.at[index]).abs() <= CLOSE);
+        let of_free = |at: &[f64]| -> Vec<f64> { free.iter().map(|&index| at[index]).collect() };
+        self.tried.iter().filter(|(at, _)| has_held(at)).map(|(at, losses)| (of_free(at), &losses[..])).collect()
+    }
+
+    fn with(&self, free: &[usize], values: &[f64]) -> Vec<f64> {
+        let mut whole = self.at.clone();
+        free.iter().zip(values).for_each(|(&index, &value)| whole[index] = value);
+        whole
+    }
+
+    /// Loss at the current point with other values of the free variables, in nats; infinite without a likelihood.
+    fn try_point(&mut self, free: &[usize], values: &[f64]) -> f64 {
+        let at = self.with(free, values);
+        self.evaluations += 1;
+        let Some(losses) = (self.losses)(&at) else { return f64::INFINITY };
+        let loss = losses.iter().sum();
+        self.tried.push((at, losses));
+        loss
+    }
+
+    fn least(&self, free: &[usize], centre: &[f64], surface: &QuadraticSurface) -> Vec<f64> {
+        let in_steps = |end: usize, reach: f64| -> Vec<f64> {
+            let of = |(&index, centre): (&usize, &f64)| (self.bounds[index][end] - centre) / self.steps[index];
+            free.iter()
+                .zip(centre)
+                .map(of)
+                .map(|by: f64| if end == 0 { by.max(reach) } else { by.min(reach) })
+                .collect()
+        };
+        surface.least(&in_steps(0, -REACH), &in_steps(1, REACH))
+    }
+
+    /// Step sizes of the variables whose effect on the likelihood just exceeds the noise.
+    fn wanted_steps(&self, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
+        let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
+        let wanted = |(place, &index): (usize, &usize)| {
+            let rise = surface.curvature[(place, place)] / 2.0;
+            let change = match rise {
+                _ if rise > most || rise > 0.0 && rise < least => ((least * most).sqrt() / rise).sqrt(),
+                _ if rise > 0.0 => 1.0,
+                _ => STEP_CHANGE,
+            };
+            let [low, high] = self.bounds[index];
+            let step = self.steps[index] * change.clamp(1.0 / STEP_CHANGE, STEP_CHANGE);
+            // A surface lies within the bounds: a step beyond the nearer bound would move the surface's centre away from it.
+            let room = (self.at[index] - low).min(high - self.at[index]);
+            let step = step.min(room.max(self.steps[index]));
+            step.clamp(STEPS[0], STEPS[1].min((high - low) / 2.0))
+        };
+        free.iter().enumerate().map(wanted).collect()
+    }
+
+    /// The bound at which a variable lies; `None` if the variable lies inside its bounds.
+    fn end(&self, index: usize) -> Option<BoundReached> {
+        let [low, high] = self.bounds[index];
+        match self.at[index] {
+            at if at <= low + CLOSE => Some(BoundReached::Low),
+            at if at >= high - CLOSE => Some(BoundReached::High),
+            _ => None,
+        }
+    }
+
+    pub(super) fn ends(&self, free: &[usize]) -> Vec<(usize, BoundReached)> {
+        free.iter().filter_map(|&index| Some((index, self.end(index)?))).collect()
+    }
+
+    pub(super) fn bound(&self, index: usize, end: BoundReached) -> f64 {
+        self.bounds[index][end as usize]
+    }
+
+    /// Loss at the current point, in nats; infinite without a likelihood.
+    pub(super) fn loss(&mut self) -> f64 {
+        self.try_point(&[], &[])
     }
 }
 

@@ -3,27 +3,22 @@
 //! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if freeze probes are
 //! used, over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale
 //! and searched within bounds. The belief filter's random numbers make the log likelihood noisy by some nats, so the
-//! search uses a sequence of quadratic surfaces ([`surface_search`]): first from the scores of presses ([`score_surface`]),
+//! search uses a sequence of quadratic surfaces ([`ascent`]): first from the scores of presses ([`score_surface`]),
 //! at the end from the values alone ([`response_surface`]). Standard errors follow from the curvature of the last surface and
 //! the outer products of the scores (the "sandwich" of Huber 1967 and White 1982). A parameter whose maximum lies at a
 //! bound, or whose interval reaches one, is not identified; the interval of such a parameter is one-sided.
 
 pub mod ascent;
-pub mod fitted_answers;
-pub mod parameter_scale;
 pub mod response_surface;
 pub mod score_surface;
-pub mod surface_search;
 
 use serde::Serialize;
 
-use self::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
-pub use self::fitted_answers::ProbeAnswerFit;
-use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
-use self::surface_search::BoundReached;
+use crate::analysis::fitting::ascent::{BoundReached, LikelihoodMaximum, VariableEstimate, ascend};
 use tomcom_core::base::text::{count, short};
 use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use tomcom_core::mind::model::HumanModel;
+use tomcom_session::ranges;
 
 /// Half width of a 95 % interval, in standard errors or standard deviations.
 const HALF_WIDTH: f64 = 1.96;
@@ -31,9 +26,7 @@ const HALF_WIDTH: f64 = 1.96;
 /// Recordings of a fit that were made with one human model, which is not that of the first recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OtherModel {
-    /// The human model in words.
     pub model: String,
-    /// The recordings that were made with it.
     pub recordings: Vec<String>,
 }
 
@@ -72,54 +65,40 @@ pub fn choose(named: &[HumanModelParameter], model: &HumanModel) -> Result<Vec<H
 /// The recordings of a fit: their number, their human model, and those that have another one.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
-    /// Number of recordings in the fit.
     pub number: u64,
-    /// Human model in the header of the first recording of the fit.
     pub model: &'a HumanModel,
-    /// The recordings that have another human model in their headers.
     pub others: &'a [OtherModel],
 }
 
 /// Which parameters of the human model to fit, from which start, and with how many evaluations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitSettings {
-    /// The parameters of the human model to fit.
     pub parameters: Vec<HumanModelParameter>,
     /// Start of the search, which also gives the values of parameters that are not fitted. `None`: the parameters in
     /// the recordings.
     pub start: Option<HumanModel>,
-    /// Largest number of evaluations of the likelihood.
     pub most_tries: usize,
 }
 
 /// Result of fitting the human model: the output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
-    /// Number of recordings that the fit used.
     pub recordings: u64,
-    /// Number of presses of the human in the fitted recordings.
     pub human_actions: u64,
     /// Log likelihood per press with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,
     /// Log likelihood per press with the fitted parameters, in nats.
     pub log_likelihood: f64,
-    /// Number of parameter sets whose likelihood was evaluated.
     pub tries: u64,
-    /// Largest number of evaluations of the likelihood that the fit was allowed.
     pub most_tries: u64,
     /// Whether the search began with the parameters in the recordings rather than with those of a file.
     pub begins_with_recordings: bool,
-    /// Human model with which the search began, in words.
     pub begins_with: String,
-    /// Recordings that were made with other human models than the first one.
     pub others: Vec<OtherModel>,
     /// Why usual parameters were not fitted: the model does not use them, or they begin outside of the search.
     pub not_fitted: Vec<String>,
-    /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
-    /// Results for each parameter that was fitted.
     pub parameters: Vec<FittedParameter>,
-    /// The human model with the fitted values of its parameters.
     #[serde(skip)]
     pub model: HumanModel,
     /// Effect of the answers to freeze probes on the fit; `None` if the fit did not use answers.
@@ -135,16 +114,12 @@ impl FitSummary {
     }
 }
 
-/// Result of a fit for one parameter of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedParameter {
     /// The parameter's name in a parameter file: "tau".
     pub name: &'static str,
-    /// Unit of the parameter.
     pub unit: &'static str,
-    /// Value of the parameter before the fit.
     pub before: f64,
-    /// Fitted value of the parameter.
     pub value: f64,
     /// Whether the parameter's interval is finite on both sides within the bounds of the search.
     pub identified: bool,
@@ -182,7 +157,6 @@ impl FittedParameter {
         }
     }
 
-    /// The interval of the fitted parameter in words.
     fn span(&self) -> String {
         match self.interval {
             None => "-".to_string(),
@@ -244,7 +218,6 @@ pub fn fit(
 /// Beginning of the comment at the top of a file of fitted parameters.
 pub const FITTED: &str = "Parameters of the human model, fitted to";
 
-/// Comment at the top of a file with fitted parameters.
 pub fn comment(fit: &FitSummary) -> String {
     let values = fit.parameters.iter().map(|one| match (one.standard_error, one.interval) {
         (Some(error), _) => format!("{} = {}, standard error {}", one.name, short(one.value, 4), short(error, 4)),
@@ -270,7 +243,6 @@ pub fn comment(fit: &FitSummary) -> String {
     )
 }
 
-/// The result of the fit as text for the terminal.
 pub fn describe(fit: &FitSummary) -> String {
     let lost = fit.lost();
     let end = match fit.converged {
@@ -313,7 +285,7 @@ pub fn describe(fit: &FitSummary) -> String {
         let [before, value] = [one.before, one.value].map(|value| short(value, 4));
         text.push_str(&format!("{name:<24}{before:>10}{value:>12}{error:>10}{interval:>22}\n"));
     }
-    text += &fit.answers.as_ref().map_or(String::new(), fitted_answers::describe);
+    text += &fit.answers.as_ref().map_or(String::new(), describe_answers);
     text + &untold(fit)
 }
 
@@ -324,13 +296,11 @@ fn beside(fit: &FitSummary) -> String {
     left_out.chain(others).collect()
 }
 
-/// Why usual parameters are not among those that are fitted to this model, in words.
 fn left_out(fitted: &[HumanModelParameter], model: &HumanModel) -> Vec<String> {
     let others = HumanModelParameter::USUAL.into_iter().filter(|usual| !fitted.contains(usual));
     others.filter_map(|usual| Some(usual.obstacle(model)?.0)).collect()
 }
 
-/// Sentences of text about parameters that are not identified.
 fn untold(fit: &FitSummary) -> String {
     let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
     if untold.is_empty() {
@@ -344,4 +314,104 @@ fn untold(fit: &FitSummary) -> String {
         "\n{why}: {}. These values are not findings, but the file (--out) contains them. {remedy}, or keep them as they are: leave them out of --parameters.\n",
         untold.join(", ")
     )
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeAnswerFit {
+    pub answers: u64,
+    /// Log likelihood per answer with the parameters before the fit, in nats.
+    pub log_likelihood_before: f64,
+    /// Log likelihood per answer with the fitted parameters, in nats.
+    pub log_likelihood: f64,
+    pub shrinkage: Vec<IntervalNarrowing>,
+}
+
+/// How far the answers to freeze probes narrow a parameter's interval, compared with presses alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct IntervalNarrowing {
+    pub name: &'static str,
+    pub value: f64,
+    /// 95 % interval of the parameter when fitted to presses alone, computed as in the main fit.
+    pub interval: Option<[Option<f64>; 2]>,
+    /// Width of the interval from presses and answers divided by the width from presses alone, on the scale of the fit;
+    /// below 1 if answers have narrowed the interval. Null where one of the two intervals has no finite end.
+    pub ratio: Option<f64>,
+}
+
+impl ProbeAnswerFit {
+    /// Log likelihood of the answers under the parameters before the fit and under the fitted parameters.
+    fn from_likelihoods(before: &TrialLikelihood, after: &TrialLikelihood) -> ProbeAnswerFit {
+        let answers = before.answers.max(1) as f64;
+        ProbeAnswerFit {
+            answers: before.answers,
+            log_likelihood_before: before.log_p_answers / answers,
+            log_likelihood: after.log_p_answers / answers,
+            shrinkage: Vec::new(),
+        }
+    }
+
+    /// By how much less likely the answers are than before the fit, in nats.
+    pub fn lost(&self) -> f64 {
+        (self.log_likelihood_before - self.log_likelihood) * self.answers as f64
+    }
+}
+
+impl IntervalNarrowing {
+    /// Compares two intervals of a parameter: from presses alone (with the value from that fit), and from presses and
+    /// answers to freeze probes.
+    pub fn between(
+        parameter: HumanModelParameter,
+        value: f64,
+        alone: Option<[Option<f64>; 2]>,
+        with: Option<[Option<f64>; 2]>,
+    ) -> IntervalNarrowing {
+        let width = |interval: Option<[Option<f64>; 2]>| match interval {
+            Some([Some(from), Some(to)]) => Some(parameter.to_scale(to) - parameter.to_scale(from)),
+            _ => None,
+        };
+        let ratio = width(with).zip(width(alone)).map(|(with, alone)| with / alone);
+        IntervalNarrowing { name: parameter.name(), value, interval: alone, ratio }
+    }
+}
+
+fn describe_answers(answers: &ProbeAnswerFit) -> String {
+    let mut text = format!(
+        "\n{} to probes: log likelihood per answer {:.4}, before {:.4}\n{:<24}{:>16}{:>24}\n",
+        count(answers.answers, "answer", "answers"),
+        answers.log_likelihood,
+        answers.log_likelihood_before,
+        "parameter",
+        "presses alone",
+        "width of the interval",
+    );
+    for one in &answers.shrinkage {
+        let identified = matches!(one.interval, Some([Some(_), Some(_)]));
+        let width = match one.ratio {
+            Some(ratio) => format!("{:.0} % of that alone", 100.0 * ratio),
+            None if !identified => "alone not told".to_string(),
+            None => "-".to_string(),
+        };
+        text.push_str(&format!("{:<24}{:>16.4}{width:>24}\n", one.name, one.value));
+    }
+    text
+}
+
+/// The human model whose `parameters` have the values of a point on the unbounded scale of the fit; other parameters as
+/// in `base`.
+fn model_at(base: &HumanModel, parameters: &[HumanModelParameter], at: &[f64]) -> HumanModel {
+    let mut model = base.clone();
+    parameters.iter().zip(at).for_each(|(parameter, &scaled)| parameter.set(&mut model, parameter.from_scale(scaled)));
+    model
+}
+
+fn point_of(model: &HumanModel, parameters: &[HumanModelParameter]) -> Vec<f64> {
+    parameters.iter().map(|one| one.to_scale(one.get(model))).collect()
+}
+
+fn bounds_of(parameters: &[HumanModelParameter]) -> Vec<[f64; 2]> {
+    parameters.iter().map(|one| one.bounds().map(|end| one.to_scale(end))).collect()
+}
+
+fn is_possible(model: &HumanModel) -> bool {
+    ranges::check_human_model(model).is_ok() && model.fault().is_none()
 }

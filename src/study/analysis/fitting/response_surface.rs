@@ -13,23 +13,19 @@ const SINGULAR: f64 = 1e-12;
 /// A quadratic surface that approximates a noisy function; variables are in steps from its centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuadraticSurface {
-    /// Value of the surface at its centre.
     pub value: f64,
-    /// First derivatives of the surface at its centre.
     pub slope: DVector<f64>,
-    /// Second derivatives of the surface.
     pub curvature: DMatrix<f64>,
     /// Standard deviation of the residuals between function values and surface.
     pub noise: f64,
 }
 
-/// Number of function values that [`surface`] needs for this number of variables.
 pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
 /// The points at which [`surface`] evaluates its function, in the order of evaluation.
-pub fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
     design(centre.len()).into_iter().map(at).collect()
 }
@@ -69,7 +65,6 @@ pub(super) fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 impl QuadraticSurface {
-    /// Value of the surface at a distance `by` from the surface's centre, in steps.
     pub fn at(&self, by: &[f64]) -> f64 {
         let by = DVector::from_column_slice(by);
         self.value + self.slope.dot(&by) + by.dot(&(&self.curvature * &by)) / 2.0
@@ -109,8 +104,7 @@ impl QuadraticSurface {
         by
     }
 
-    /// Whether the surface is convex beyond rounding.
-    pub fn is_convex(&self) -> bool {
+    pub(crate) fn is_convex(&self) -> bool {
         inverse(self.curvature.clone()).is_some()
     }
 

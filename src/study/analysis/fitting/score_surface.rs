@@ -20,13 +20,12 @@ const WIDTH: f64 = 1.0 + 1e-6;
 /// A point at which a log likelihood was evaluated, and the negative log likelihood of each press there, in nats.
 pub type TriedPoint<'a> = (Vec<f64>, &'a [f64]);
 
-/// Number of points of the design for this number of variables.
 pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
 /// The points of the design for a surface around `centre`, with steps of the given sizes along each variable.
-pub fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+pub(crate) fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
     design(centre.len()).into_iter().map(at).collect()
 }
@@ -38,7 +37,6 @@ pub struct ScoreRegression {
     design: DMatrix<f64>,
     /// Losses: a row for each point, a column for each press.
     losses: DMatrix<f64>,
-    /// Inverse of the product of the transposed design with the design.
     inverse: DMatrix<f64>,
     /// Regression coefficients: a column for each press, with the value at the centre above the scores.
     lines: DMatrix<f64>,
@@ -65,19 +63,17 @@ impl ScoreRegression {
         Some(ScoreRegression { design, losses, inverse, lines })
     }
 
-    /// Degrees of freedom of the residuals of one press.
     fn freedom(&self) -> f64 {
         self.design.nrows().saturating_sub(self.design.ncols()).max(1) as f64
     }
 
     /// Covariance of the slope of the log likelihood: the sum over presses of the outer products of their scores, with the
     /// noise of single presses, which moves the slope as well.
-    pub fn score_products(&self) -> DMatrix<f64> {
+    pub(crate) fn score_products(&self) -> DMatrix<f64> {
         let scores = self.lines.rows(1, self.lines.nrows() - 1);
         scores * scores.transpose()
     }
 
-    /// The part of `inverse` that concerns the slopes.
     fn of_slopes(&self) -> DMatrix<f64> {
         let variables = self.design.ncols() - 1;
         self.inverse.view((1, 1), (variables, variables)).into_owned()

@@ -27,7 +27,7 @@ use tomcom_session::header::RecordedFile;
 use tomcom_session::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, ruling};
 use tomcom_session::plan::{Questionnaire, Study};
 use tomcom_session::tracker::TrackerSpec;
-use tomcom_study::files::{training, written_tables};
+use tomcom_study::files::{export, training};
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
 const RECIPES: &str = include_str!("../../../../recipes/sushi.toml");
@@ -151,7 +151,7 @@ fn trained(bytes: &[u8]) {
 
 fn table(bytes: &[u8]) {
     // An error of reading is shown by whoever asked for the table.
-    let _ = written_tables::records(&file("trials.csv", bytes));
+    let _ = export::records(&file("trials.csv", bytes));
 }
 
 fn gaze_export(bytes: &[u8]) {

@@ -1,8 +1,9 @@
-//! The cells of the BIDS table of events that follow from a logged event.
+//! The BIDS table of events: its columns, and what an event puts into them.
 
 use serde::Serialize;
 
-use super::tsv::{or_nothing, seconds};
+use crate::analysis::bids::recording_tables::PressOutcome;
+use crate::analysis::bids::tsv::{BidsColumn, YES_NO, or_nothing, seconds, yes};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
@@ -15,6 +16,121 @@ use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::wall_display::DisplayEvent;
+
+/// Values of the column that says who did something (wizard, participant, robot), with their meanings.
+const AGENTS: &[(&str, &str)] = &[
+    ("human", "The participant"),
+    ("participant", "The participant, in the tutorial"),
+    ("robot", "The robot that cooks with the participant"),
+    ("wizard", "The person at the console, or the script in its place"),
+    ("assistant", "The communication concept that acts by itself"),
+];
+const SIGNALS: &[(&str, &str)] = &[
+    ("show_recipe", "The recipe of the dish that the order at the place wants"),
+    ("highlight", "Directs attention to the place and what lies there"),
+    ("propose", "Proposes the next presses of the participant"),
+];
+
+pub(super) const EVENT_COLUMNS: [BidsColumn<EventRow>; 21] = [
+    BidsColumn::of_unit(
+        "onset",
+        "s",
+        "Session time: since the beginning of the recording, by a monotonic clock",
+        |row| seconds(row.onset),
+    ),
+    BidsColumn::of_unit(
+        "duration",
+        "s",
+        "Until what the event began is over; 0 for what happens at a moment; n/a where the recording ends before",
+        |row| {
+            or_nothing(row.duration.map(|time| if time == SessionTime::ZERO { "0".to_string() } else { seconds(time) }))
+        },
+    ),
+    BidsColumn::of_levels("trial_type", LEVELS, "Kind of the event, as in the log", |row| row.kind.to_string()),
+    BidsColumn::new("seq", "Number of the event in the log, from 0", |row| row.seq.to_string()),
+    BidsColumn::of_unit(
+        "trial_time",
+        "s",
+        "The trial's clock, which stands still in pauses; n/a before and after the trial",
+        |row| or_nothing(row.trial_time.map(seconds)),
+    ),
+    BidsColumn::new("what", "What exactly happened, for kinds that have several", |row| row.cells.what.clone()),
+    BidsColumn::of_levels("agent", AGENTS, "Who did it", |row| row.cells.agent.clone()),
+    BidsColumn::new(
+        "button",
+        "Name of the button; several are separated by commas: proposed ones, or those of the participant for which the robot waits",
+        |row| row.cells.button.clone(),
+    ),
+    BidsColumn::of_levels("effective", YES_NO, "Presses: whether the button did anything", |row| {
+        or_nothing(row.outcome.map(|outcome| yes(outcome.effective)))
+    }),
+    BidsColumn::of_levels(
+        "error",
+        YES_NO,
+        "Presses of the participant in the trial: whether the press was an error, by the number of presses that it loses",
+        |row| or_nothing(row.outcome.and_then(|outcome| outcome.error).map(yes)),
+    ),
+    BidsColumn::new("location", "The place that it is about, by its name in the layout", |row| {
+        row.cells.location.clone()
+    }),
+    BidsColumn::new("dish", "The wanted dish, or the one whose recipe a probe asks for", |row| row.cells.dish.clone()),
+    BidsColumn::new("content", "What lies at the place", |row| row.cells.content.clone()),
+    BidsColumn::of_levels("signal", SIGNALS, "Kind of the signal that is shown, offered or recommended", |row| {
+        row.cells.signal.clone()
+    }),
+    BidsColumn::new("refers_to", "Number (seq) of the event that this one is about, answers or follows from", |row| {
+        or_nothing(row.cells.refers_to)
+    }),
+    BidsColumn::of_unit(
+        "at",
+        "s",
+        "Session time that the event tells: when the button went down at the display, when the robot will touch the button, when \
+         the display drew it, when a fixation began",
+        |row| or_nothing(row.cells.at.map(seconds)),
+    ),
+    BidsColumn::of_unit("force", "N", "Contact force", |row| or_nothing(row.cells.force_n)),
+    BidsColumn::new(
+        "item",
+        "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the display, probe and question as in 2.1",
+        |row| row.cells.item.clone(),
+    ),
+    BidsColumn::new(
+        "answer",
+        "Answer to the item: a number, or the ids of the chosen options; of a probe the value, or unsure",
+        |row| row.cells.answer.clone(),
+    ),
+    BidsColumn::new(
+        "value",
+        "The number that the event tells: of robot_safety the faulty joint, clock_jumped milliseconds, tracker seconds or dropped \
+         samples (fixations: milliseconds), calibration targets or accuracy in degrees, belief_estimated the log probability of the \
+         press, advised and offer_opened the net benefit in presses, probe the number of questions, or how sure an answer is from 1 to 3",
+        |row| or_nothing(row.cells.value),
+    ),
+    BidsColumn::new("reason", "Why, as the log names it", |row| row.cells.reason.clone()),
+];
+
+/// Column with text that somebody typed, for exports that include such text.
+pub(super) const WORDS: BidsColumn<EventRow> = BidsColumn::new(
+    "words",
+    "Words that somebody typed, or that a device calls itself by; a ' stands before words that begin with = + - or @, so that no spreadsheet computes them",
+    |row| row.cells.words.clone(),
+);
+
+/// A row of the table of events.
+#[derive(Debug)]
+pub(super) struct EventRow {
+    pub onset: SessionTime,
+    /// `None` until what the event began is over.
+    pub duration: Option<SessionTime>,
+    pub kind: &'static str,
+    pub seq: u64,
+    /// `None` before and after the trial.
+    pub trial_time: Option<SessionTime>,
+    pub outcome: Option<PressOutcome>,
+    pub cells: EventCells,
+    /// Whether the row belongs into the table of fixations and blinks instead, if the recording has gaze.
+    pub is_of_eyes: bool,
+}
 
 /// The cells of an event's row in the BIDS table that follow from the event alone; a cell is empty where the event says
 /// nothing about the column.
@@ -34,7 +150,6 @@ pub(super) struct EventCells {
     pub answer: String,
     pub value: Option<f64>,
     pub reason: String,
-    /// Text that somebody typed, such as a note of the wizard.
     pub words: String,
 }
 
@@ -75,23 +190,6 @@ impl EventCells {
             ProbeSubject::Recipe { dish } => self.dish = dish.clone(),
             ProbeSubject::NextOrder | ProbeSubject::NextPress => self.reason = tag(about, "asks"),
         }
-    }
-
-    /// The cells of the event's row from the column `location` on, in the order of the columns.
-    pub(super) fn rest(&self) -> [String; 11] {
-        [
-            self.location.clone(),
-            self.dish.clone(),
-            self.content.clone(),
-            self.signal.clone(),
-            or_nothing(self.refers_to),
-            or_nothing(self.at.map(seconds)),
-            or_nothing(self.force_n),
-            self.item.clone(),
-            self.answer.clone(),
-            or_nothing(self.value),
-            self.reason.clone(),
-        ]
     }
 
     fn take_signal(&mut self, signal: &Signal) {
@@ -335,3 +433,61 @@ fn tag(event: &impl Serialize, key: &str) -> String {
     let record = serde_json::to_value(event).unwrap_or_default();
     record.get(key).and_then(|value| value.as_str()).unwrap_or_default().to_string()
 }
+
+/// The kinds of events that have a row in the table of events, as the log names them, with their meanings. Samples of
+/// gaze and arm have tables of their own.
+pub const LEVELS: &[(&str, &str)] = &[
+    ("advised", "The assistant computed a recommendation; seen only if an offer follows"),
+    (
+        "belief_estimated",
+        "The participant's belief before a press was estimated; the probabilities stand in the table of beliefs",
+    ),
+    ("calibration", "A step of the gaze accuracy check"),
+    ("clock_jumped", "The wall clock moved against session time: the computer stood still, or its clock was set"),
+    ("display", "A report of the participant's display"),
+    ("focus_lost", "The wizard's terminal lost the keyboard"),
+    ("focus_regained", "The wizard's terminal has the keyboard again"),
+    ("human_waits", "The participant has not pressed for unusually long by its own intervals"),
+    ("kitchen_corrected", "The wizard corrected what the program thought of a place"),
+    ("marker", "The wizard marked this moment"),
+    ("offer_closed", "An offer to the wizard closed"),
+    ("offer_opened", "A recommendation was offered to the wizard"),
+    ("order_cleared", "A served order disappeared"),
+    ("order_shown", "An order appeared"),
+    (
+        "participant_believes",
+        "What a simulated participant believed before its press; the probabilities stand in the table of beliefs",
+    ),
+    ("preflight", "The checks before the trial"),
+    ("press", "The participant or the robot pressed a button"),
+    ("probe", "A freeze probe: the task stands still, and the participant is asked what it believes"),
+    ("protocol", "A step of the study around the trial: consent, phases, tutorial, questionnaires"),
+    ("robot_aborts", "The robot gave up its press"),
+    ("robot_driven", "Somebody chose the robot's next press"),
+    ("robot_held", "Somebody holds the robot before its next press"),
+    (
+        "robot_idles",
+        "The robot has nothing useful to do: there is no order, or it waits for a press of the participant",
+    ),
+    ("robot_intends", "The robot sets out for a button"),
+    ("robot_released", "The held robot goes on"),
+    ("robot_resumed", "The wizard lets the stopped robot go on"),
+    ("robot_safety", "The safety mode of the arm changed"),
+    ("robot_skipped", "Somebody skipped the robot's press"),
+    ("robot_stopped", "The wizard stopped the robot"),
+    ("robot_touched", "Somebody touched the arm"),
+    ("screen", "What the wizard sees changed"),
+    ("session_ended", "The recording is complete"),
+    ("signal_drawn", "The first frame with a signal was drawn at the console"),
+    ("signal_ended", "A signal disappeared"),
+    ("signal_shown", "A signal was shown to the participant"),
+    ("tracker", "An event of the eye tracker"),
+    ("trial_aborted", "The trial was aborted and does not count"),
+    ("trial_ended", "The trial is over"),
+    ("trial_excluded", "The trial is left out of the analysis"),
+    ("trial_included", "The trial counts again"),
+    ("trial_paused", "The trial's clock stands still"),
+    ("trial_resumed", "The trial's clock goes on"),
+    ("trial_started", "The trial starts with an empty kitchen"),
+    ("unblinded", "The wizard sees from now on what concepts would send"),
+];

@@ -11,7 +11,7 @@ pub enum Panel {
     Belief,
     /// Signals that the assistant advises.
     Recommendation,
-    /// Map of the places where the participant looked lately.
+    /// Map of the places where the participant looked lately; shown at full size only.
     GazeMap,
     /// List of the newest events.
     Events,

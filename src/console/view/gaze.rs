@@ -1,4 +1,4 @@
-//! The gaze panel (place, age and quality of the gaze), and the gaze map.
+//! The gaze panel (place and age of the gaze, alarms), the gaze map, and the mark of the gaze in the kitchen.
 
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -20,10 +20,12 @@ use tomcom_session::gaze_samples::faults;
 const GAZE_S: f64 = 3.0;
 /// Longest time since the last gaze sample for which the participant counts as looking there now, in seconds.
 const NOW_S: f64 = 0.2;
+/// Time since the last usable gaze sample from which the gaze counts as unusable, in seconds.
+pub(super) const USABLE_S: f64 = 1.0;
 /// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
-/// Draws the gaze panel: place, age and quality of the gaze.
+/// Draws the gaze panel: place and age of the gaze, and what is wrong with its samples.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.gaze;
     if area.area() == 0 {
@@ -32,7 +34,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if regions.room == ScreenSize::Small {
         brush.parts(area.x, area.y, area.width, &[(" gaze     ", TextRole::Quiet)]);
         let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
-        quality(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
+        alarm(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
         return;
     }
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
@@ -45,7 +47,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    quality(brush, x, inside.y + 1, columns, session, model);
+    alarm(brush, x, inside.y + 1, columns, session, model);
 }
 
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) -> u16 {
@@ -76,15 +78,17 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     )
 }
 
-fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+/// Draws why the gaze is of no use now; nothing while usable samples arrive.
+fn alarm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let gaze = &session.gaze;
-    let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
-    let text = match (session.gaze_hz(model.now), gaze.last) {
-        (Some(hz), Some((_, sample))) => {
-            format!("{hz:.0} Hz, conf {:.2}, {unusable:.0}% unusable", sample.confidence)
+    let is_usable = gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);
+    let text = match session.gaze_hz(model.now) {
+        Some(_) if is_usable => return,
+        Some(_) => {
+            let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
+            format!("unusable now; {unusable:.0} % of all samples are")
         }
-        (Some(hz), None) => format!("{hz:.0} Hz, conf -, {unusable:.0}% unusable"),
-        (None, _) => {
+        None => {
             let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
             pairing.unwrap_or("no samples arrive now".to_string())
         }

@@ -2,6 +2,7 @@
 
 use ratatui::style::Style;
 
+use super::gaze::USABLE_S;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
@@ -152,10 +153,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
         Some(playback) => {
             let state = if playback.playing { "play" } else { "paused" };
             let follows = if playback.follows { " live" } else { "" };
-            let what = if room == ScreenSize::Small { "" } else { " event" };
-            let (speed, event, events) = (playback.speed_label(), playback.event, playback.events);
-            let label = format!("{state} {speed}{follows} {what} {event}/{events}");
-            healths.push((label, TextRole::Strong));
+            healths.push((format!("{state} {}{follows}", playback.speed_label()), TextRole::Strong));
             match (playback.follows, playback.running) {
                 (false, true) => healths.push(("recording goes on: --follow".to_string(), TextRole::Strong)),
                 (false, false) if playback.cut => healths.push(("recording cut".to_string(), TextRole::Alarm)),
@@ -213,7 +211,7 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         (TrackerConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
         _ => {}
     }
-    let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
+    let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);
     match (session.gaze_hz(model.now), session.gaze.arrived) {
         (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), TextRole::Alarm),
         (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), TextRole::Text),

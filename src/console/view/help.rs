@@ -69,7 +69,6 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.by_hand, "manual intervention of the experimenter"),
         (signs.stopped, "robot stopped"),
         (signs.touched, "a person touched the robot's arm"),
-        (signs.levels[3], "joint angles of the robot's arm, base first"),
         (signs.pause, "trial paused; robot held"),
         ("*", "note that the wizard typed"),
         (signs.cursor, "selected row of a list"),

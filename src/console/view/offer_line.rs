@@ -173,7 +173,7 @@ pub fn draw(
 }
 
 /// Why no signal is offered to the wizard, in words: the signal on the participant's display; else how many beliefs are
-/// false, and the best signal or, as far as it is known, why none is offered.
+/// false and, as far as it is known, why none is offered.
 fn silence(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
     let only = |words: &str| vec![words.to_string()];
     if session.spec.trial.condition == Condition::Assistant {
@@ -196,7 +196,7 @@ fn silence(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]
     if let Some(shown) = &session.shown {
         return vec![format!("On the display: {}", wording::signal(&shown.signal)), first];
     }
-    let why = best_signal(session).or_else(|| withheld(session, model, &wrong));
+    let why = too_costly(session).or_else(|| withheld(session, model, &wrong));
     [first].into_iter().chain(why).collect()
 }
 
@@ -224,21 +224,12 @@ fn withheld(session: &Session, model: &ConsoleModel, wrong: &[AspectId]) -> Opti
     can_be_sent.then(|| format!("{} was sent and is not repeated yet", wording::signal(sent)))
 }
 
-/// The best signal in words, where it would save something, but less than it costs.
-fn best_signal(session: &Session) -> Option<String> {
-    let assistant = &session.spec.assistant;
+/// That signals are known, but that none saves as much as it costs.
+fn too_costly(session: &Session) -> Option<String> {
+    let is_estimated = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
     let options = session.advice.iter().flat_map(|advice| &advice.options);
-    let best = options.max_by(|one, other| one.net.total_cmp(&other.net))?;
-    if best.net > 0.0 || best.benefit < NOTHING {
-        return None;
-    }
-    let (signal, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
-    let why = match assistant.concept {
-        ConceptName::TomCom => format!("saves {benefit:.1}, costs {price:.1}"),
-        ConceptName::Tom => format!("deviation {benefit:.2} of {price:.2}"),
-        ConceptName::Dev | ConceptName::None => return None,
-    };
-    Some(format!("best signal: {signal} ({why}): not worth it"))
+    let best = options.max_by(|one, other| one.net.total_cmp(&other.net)).filter(|_| is_estimated)?;
+    (best.net <= 0.0 && best.benefit >= NOTHING).then(|| "no signal is worth its cost".to_string())
 }
 
 /// The value that the participant falsely believes about a location, if any.

@@ -1,5 +1,5 @@
-//! The list of signals, ranked by what each would save, with the cost of a signal. The offer itself stands in a line of
-//! its own.
+//! The list of signals, ranked by what each would save, with the cost of a signal. Signals that are not worth their cost
+//! are listed only where the list has the whole screen. The offer itself stands in a line of its own.
 
 use ratatui::layout::Rect;
 
@@ -8,8 +8,8 @@ use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
+use crate::console::panel::Panel;
 use crate::console::text_columns::wrap;
-use tomcom_core::base::words::count;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
@@ -52,22 +52,14 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let mut y = inside.y + above;
     cost_line(brush, inside, y, session, advice, model);
     y += 1;
-    let (useless, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
-        not_worth_it.into_iter().partition(|option| option.benefit.abs().max(option.standard_error) < NOTHING);
-    for option in not_worth_it {
+    let is_shown = |option: &&SignalOption| option.benefit.abs().max(option.standard_error) >= NOTHING;
+    let is_alone = model.alone == Some(Panel::Recommendation);
+    for option in not_worth_it.into_iter().filter(|option| is_alone && is_shown(option)) {
         if y >= inside.bottom() {
             return;
         }
         option_line(brush, inside, y, option, session, model);
         y += 1;
-    }
-    if !useless.is_empty() && y < inside.bottom() {
-        let signals = count(useless.len() as u64, "signal", "signals");
-        let text = match session.spec.assistant.concept {
-            ConceptName::Tom => format!("{signals} would change no belief"),
-            _ => format!("{signals} would save no press"),
-        };
-        quietly(brush, Rect { y, height: 1, ..inside }, &text);
     }
 }
 

@@ -21,7 +21,7 @@ pub const ROOMY_COLUMNS: u16 = 112;
 pub enum ScreenSize {
     /// Small terminal (80x24): panels shrink to lines.
     Small,
-    /// Medium terminal (120x40): all panels, without the list of events.
+    /// Medium terminal (120x40): all panels; the list of events only in place of beliefs that the wizard may not see.
     Medium,
     /// Large terminal (200x60): all panels and the list of events.
     Large,
@@ -42,7 +42,7 @@ pub struct PanelAreas {
     pub belief: Rect,
     /// Screen area of the recommendation panel.
     pub recommendation: Rect,
-    /// Area of the gaze map, which replaces beliefs and recommendations where the wizard may not see those.
+    /// Area of the gaze map, which is shown at full size only: the kitchen panel marks the gaze, too.
     pub gaze_map: Rect,
     /// Area of the panel that tells which signal the participant sees.
     pub shown: Rect,
@@ -74,14 +74,14 @@ pub struct PanelAreas {
 const OFFER_COLUMNS: u16 = 140;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
-/// Least width of the list of events on large terminals, in columns, and how many it gets more where the kitchen does not
-/// need them.
-const EVENT_COLUMNS: u16 = 44;
-const MORE_EVENT_COLUMNS: u16 = 8;
 /// Height of the timeline with its title, in rows.
 const TIMELINE_ROWS: u16 = 7;
 /// Height of the list of signals on large terminals, in rows.
-const RECOMMENDATION_ROWS: u16 = 9;
+const RECOMMENDATION_ROWS: u16 = 7;
+/// Least heights of the panels of display, gaze and robot, in rows.
+const SHOWN_ROWS: u16 = 4;
+const GAZE_ROWS: u16 = 3;
+const ROBOT_ROWS: u16 = 4;
 
 /// Height in rows of a rater's error list without a panel of its own: progress, and three errors.
 const ERROR_LINES: u16 = 4;
@@ -120,17 +120,17 @@ impl PanelAreas {
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
-    /// Adds the wizard training's panel: below the gaze map, or else above the timeline.
+    /// Adds the wizard training's panel: below the list of events, or else above the timeline.
     fn teaching(self) -> PanelAreas {
-        match self.gaze_map.area() {
+        match self.events.area() {
             0 if self.kitchen.area() == 0 => self,
             0 => {
                 let (kitchen, lesson) = bottom(self.kitchen, if self.room == ScreenSize::Small { 3 } else { 7 });
                 PanelAreas { kitchen, lesson, ..self }
             }
             _ => {
-                let (gaze_map, lesson) = bottom(self.gaze_map, self.gaze_map.height / 2);
-                PanelAreas { gaze_map, lesson, ..self }
+                let (events, lesson) = bottom(self.events, self.events.height / 2);
+                PanelAreas { events, lesson, ..self }
             }
         }
     }
@@ -209,15 +209,13 @@ impl PanelAreas {
                 PanelAreas { kitchen, robot, gaze, timeline, shown: blank, ..self }
             }
             ScreenSize::Medium => {
-                let (codebook, errors) = codes_and_errors(self.gaze_map.union(self.shown), codebook_rows);
-                PanelAreas { codebook, errors, gaze_map: blank, shown: blank, ..self }
+                let (codebook, errors) = codes_and_errors(self.events.union(self.shown), codebook_rows);
+                PanelAreas { codebook, errors, events: blank, shown: blank, ..self }
             }
             ScreenSize::Large => {
-                let (codebook, errors) = codes_and_errors(self.gaze_map, codebook_rows);
-                let gaze = self.shown.union(self.gaze);
-                let gaze_map =
-                    Rect { x: gaze.right(), width: self.kitchen.right().saturating_sub(gaze.right()), ..gaze };
-                PanelAreas { codebook, errors, gaze, gaze_map, shown: blank, ..self }
+                let (column, events) = bottom(self.events, self.events.height / 3);
+                let (codebook, errors) = codes_and_errors(column, codebook_rows);
+                PanelAreas { codebook, errors, events, gaze: self.shown.union(self.gaze), shown: blank, ..self }
             }
         }
     }
@@ -271,41 +269,40 @@ impl PanelAreas {
     fn medium(self, visibility: WizardVisibility) -> PanelAreas {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
-        let (side, robot) = bottom(side, 4);
-        let (side, gaze) = bottom(side, 3);
-        let (side, shown) = bottom(side, 4);
-        PanelAreas { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
+        let (side, robot) = bottom(side, ROBOT_ROWS);
+        let (side, gaze) = bottom(side, GAZE_ROWS);
+        let (side, shown) = bottom(side, SHOWN_ROWS);
+        let regions = PanelAreas { kitchen, shown, robot, gaze, timeline, ..self };
+        match visibility {
+            WizardVisibility::State => PanelAreas { events: side, ..regions },
+            WizardVisibility::Belief | WizardVisibility::Recommendation => PanelAreas { belief: side, ..regions },
+        }
     }
 
-    /// Arrangement for large terminals in three columns: kitchen and gaze map, beliefs and recommendations, events.
+    /// Arrangement for large terminals in two columns: at the left the kitchen, and below it display, gaze, robot and
+    /// the list of events; at the right beliefs and recommendations or, where the wizard may not see them, the events.
     fn large(self, visibility: WizardVisibility) -> PanelAreas {
         // The timeline has one more row where offers are shown.
         let rows = TIMELINE_ROWS + u16::from(visibility == WizardVisibility::Recommendation);
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
-        let kitchen_columns = (rest.width.saturating_sub(EVENT_COLUMNS) * 11 / 20).max(KITCHEN_COLUMNS);
-        let more = (kitchen_columns - KITCHEN_COLUMNS).min(MORE_EVENT_COLUMNS);
-        let (rest, events) = right(rest, EVENT_COLUMNS + more);
-        let (kitchen, side) = left(rest, kitchen_columns - more);
-        let (kitchen, below) = bottom(kitchen, kitchen.height * 2 / 5);
-        let (participant, map) = left(below, below.width * 2 / 5);
-        let (shown, gaze) = top(participant, 5);
-        let (side, robot) = bottom(side, 6);
+        let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
+        if visibility == WizardVisibility::State {
+            let (kitchen, below) = bottom(kitchen, SHOWN_ROWS + 1);
+            let (shown, below) = left(below, below.width / 3);
+            let (gaze, robot) = left(below, below.width / 2);
+            return PanelAreas { kitchen, shown, gaze, robot, events: side, timeline, ..self };
+        }
+        let (kitchen, below) = bottom(kitchen, (kitchen.height * 2 / 5).max(SHOWN_ROWS + GAZE_ROWS + ROBOT_ROWS));
+        let (devices, events) = left(below, below.width * 2 / 5);
+        let (devices, robot) = bottom(devices, devices.height / 3);
+        let (shown, gaze) = bottom(devices, robot.height);
         let regions = PanelAreas { kitchen, shown, gaze, robot, events, timeline, ..self };
         match visibility {
-            WizardVisibility::State => PanelAreas { gaze_map: side, ..regions },
-            WizardVisibility::Belief => PanelAreas { gaze_map: map, ..regions.judge(side, visibility) },
             WizardVisibility::Recommendation => {
-                let (side, recommendation) = bottom(side, RECOMMENDATION_ROWS);
-                PanelAreas { gaze_map: map, recommendation, ..regions.judge(side, visibility) }
+                let (belief, recommendation) = bottom(side, RECOMMENDATION_ROWS);
+                PanelAreas { belief, recommendation, ..regions }
             }
-        }
-    }
-
-    /// Gives the side area to the belief panel, or to the gaze map where the wizard may not see beliefs.
-    fn judge(self, side: Rect, visibility: WizardVisibility) -> PanelAreas {
-        match visibility {
-            WizardVisibility::State => PanelAreas { gaze_map: side, ..self },
-            WizardVisibility::Belief | WizardVisibility::Recommendation => PanelAreas { belief: side, ..self },
+            _ => PanelAreas { belief: side, ..regions },
         }
     }
 

@@ -1,6 +1,4 @@
-//! The robot panel: ongoing press, progress of the arm, reason for being idle, and joint angles of the arm.
-
-use std::f64::consts::TAU;
+//! The robot panel: ongoing press, progress of the arm, reason for being idle, and what the robot holds.
 
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
@@ -53,16 +51,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let inside = brush.panel_with(area, title, if is_crowded { &parts[..1] } else { &parts });
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    // In a low panel the pose of the arm has priority over the content of the robot's hand, which the kitchen panel
-    // also shows.
-    match session.robot.arm.last {
-        Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
-        Some((_, moment)) => {
-            holds(brush, x, inside.y + 1, columns, session);
-            arm(brush, x, inside.y + 2, columns, session, &moment);
-            joints(brush, x, inside.y + 3, columns, &moment);
-        }
-        None => holds(brush, x, inside.y + 1, columns, session),
+    holds(brush, x, inside.y + 1, columns, session);
+    if let Some((_, sample)) = session.robot.arm.last {
+        arm(brush, x, inside.y + 2, columns, session, &sample);
     }
 }
 
@@ -75,32 +66,22 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-/// Draws the arm's motion phase, joint angles as bars, distance of the human's hand, and contact force.
-fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmSample) {
-    let signs = brush.theme.signs();
-    let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
-    let bars: String = moment.joints.iter().map(bar).collect();
+/// Draws the arm's motion phase, distance of the human's hand, and contact force.
+fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, sample: &ArmSample) {
     let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
-    let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(moment.phase) };
+    let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(sample.phase) };
     let phase = format!("{phase:<10} ");
-    let hand = match moment.hand_away_m {
+    let hand = match sample.hand_away_m {
         away_m if away_m < 0.005 => " hand at arm".to_string(),
         away_m => format!(" hand {away_m:>4.2} m"),
     };
-    let force = match moment.force_n {
+    let force = match sample.force_n {
         force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
-        _ => format!(" {:>3}  ", signs.dash),
+        _ => String::new(),
     };
-    let hand_role = if moment.hand_away_m < SLOWS_M { TextRole::Human } else { TextRole::Quiet };
-    let parts =
-        [(phase.as_str(), TextRole::Text), (&bars, TextRole::Robot), (&hand, hand_role), (&force, TextRole::Text)];
+    let hand_role = if sample.hand_away_m < SLOWS_M { TextRole::Human } else { TextRole::Quiet };
+    let parts = [(phase.as_str(), TextRole::Text), (&hand, hand_role), (&force, TextRole::Text)];
     brush.parts(x, y, columns, &parts);
-}
-
-/// Draws the arm's joint angles in degrees.
-fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample) {
-    let angles: String = moment.joints.iter().map(|angle| format!("{:>6.0}", angle.to_degrees())).collect();
-    brush.parts(x, y, columns, &[("joints", TextRole::Quiet), (&angles, TextRole::Text), (" deg", TextRole::Quiet)]);
 }
 
 /// Draws the stop of the robot with its reason and the key that resumes it.

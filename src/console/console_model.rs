@@ -1,36 +1,32 @@
-//! State of the console besides the session: active keys, open dialog, latest notice.
+//! State of the console besides the session, the messages that it receives, and the commands that it returns.
 
 use std::collections::VecDeque;
 
-use crossterm::event::KeyCode;
+use crossterm::event::{KeyCode, KeyEvent};
 
 use super::chord::KeyChord;
-use super::click::SendConfirmation;
-use super::compared::SenderComparisonView;
-use super::display_status::ParticipantDisplayHealth;
-use super::gaze_advice::AccuracyCheckAction;
-use super::gaze_pairing::GazePairing;
+use super::coding::RaterSession;
+use super::gaze_check::AccuracyCheckAction;
 use super::key_action::{KeyAction, KeyLayer};
 use super::keys::KeyBindings;
-use super::lesson::TrainingPanel;
-use super::list_cursor::ListCursor;
-use super::note::TextInput;
-use super::notice::NoticeLevel;
-use super::panel::Panel;
-use super::picker::Picker;
-use super::playback::Playback;
-use super::probe_entry::ProbeEntry;
-use super::rater_session::RaterSession;
+use super::lists::{ListCursor, Picker};
+use super::mouse::SendConfirmation;
+use super::panels::Panel;
+use super::preflight::{GazePairing, ParticipantDisplayHealth};
+use super::probe_keys::ProbeEntry;
+use super::text_input::TextInput;
 use super::view::theme::Theme;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
 use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_session::history::belief_track::BeliefHistory;
+use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
+use tomcom_session::history::landmark::ReplayLandmark;
 use tomcom_session::history::signal_judge::SignalJudge;
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::settings::GazeSource;
-use tomcom_session::{TimelineEntry, TimelineEvent};
+use tomcom_session::{Event, TimelineEntry, TimelineEvent};
 
 /// Time for which a notice is shown, in seconds.
 const NOTICE_S: f64 = 4.0;
@@ -360,5 +356,214 @@ impl ConsoleModel {
             GazeSource::Lsl => "lsl",
             GazeSource::None => "none",
         }
+    }
+}
+
+/// Input of the console: a key, a mouse event, pasted text or a change of the terminal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConsoleMessage {
+    /// A key was pressed, repeated or released.
+    Key(KeyEvent),
+    /// The mouse pointer moved to this cell (column, row).
+    Pointer(u16, u16),
+    /// The mouse was clicked on this cell.
+    Click(u16, u16),
+    /// The mouse wheel turned over this cell, by this number of steps upwards.
+    Wheel(u16, u16, i8),
+    /// The terminal was resized to these columns and rows.
+    Resized(u16, u16),
+    /// The terminal gained or lost keyboard focus.
+    Focus(bool),
+    /// Text was pasted into the terminal; `None` if the paste had no end, so that it was given up.
+    Paste(Option<String>),
+}
+
+/// A command of the console to the program that runs it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConsoleCommand {
+    /// Apply this event to the session.
+    Input(Event),
+    /// Record the results of the preflight checks and start the trial.
+    Start(Event),
+    /// Move a replay to another position or change its speed.
+    Move(ReplayAction),
+    /// Save the rater's codes, and move the replay to the error whose code changed.
+    Code {
+        /// Sequence number of the press whose code changed.
+        press: u64,
+    },
+    /// Close this recording and repeat its trial in a new recording.
+    Redo,
+    /// Close this finished recording and continue with the participant's next recording.
+    Next,
+    /// Close the console; in a live run the session ends.
+    Quit,
+}
+
+/// Severity of a notice, the console's short message to the wizard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoticeLevel {
+    /// Information: the console carried out an action.
+    Done,
+    /// Warning: the console refused an action.
+    Refused,
+    /// Alarm: a fault that lasts until it is fixed.
+    Alarm,
+}
+
+/// Content of the wizard training's panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrainingPanel {
+    /// Task and scoring rules of the training, as paragraphs; shown until there is feedback.
+    pub task: Vec<String>,
+    /// Feedback on signals and on missed signals, oldest first.
+    pub feedback: Vec<TrainingFeedback>,
+    /// Score of the training so far: "2 hit, 1 missed, 3 wrong".
+    pub score: String,
+    /// Whether the wizard training has started.
+    pub begun: bool,
+}
+
+/// Feedback on a signal that the trainee sent or missed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrainingFeedback {
+    /// Time of the feedback on the trial's clock.
+    pub clock: SessionTime,
+    /// Severity, which selects the style in which the feedback is drawn.
+    pub level: NoticeLevel,
+    /// Text of the feedback on a signal, in one line.
+    pub text: String,
+}
+
+/// Action of a key in the list of differences between wizard and assistant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ComparisonAction {
+    /// Go to the next difference between wizard and assistant.
+    Next,
+    /// Go to the previous difference between wizard and assistant.
+    Last,
+    /// Show what the wizard and the assistant each knew at the time of the difference.
+    Open,
+}
+
+/// Comparison of wizard and assistants at the console, with the selected difference.
+#[derive(Clone, Debug, Default)]
+pub struct SenderComparisonView {
+    /// Newest comparison; `None` until the trial's first press or order.
+    pub seen: Option<SenderComparison>,
+    /// Selected communication that has no match; `None` selects the newest one.
+    chosen: Option<UnmatchedCommunication>,
+}
+
+impl SenderComparisonView {
+    /// Takes over the newest comparison; the selected difference stays selected if it is still one.
+    pub fn show(&mut self, newest: SenderComparison) {
+        self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
+        self.seen = Some(newest);
+    }
+
+    /// Index of the selected difference, and the comparison that contains it.
+    pub fn chosen(&self) -> Option<(usize, &SenderComparison)> {
+        let seen = self.seen.as_ref()?;
+        let newest = seen.differences.len().checked_sub(1)?;
+        let is_it = |chosen: UnmatchedCommunication| seen.differences.iter().position(|one| *one == chosen);
+        Some((self.chosen.and_then(is_it).unwrap_or(newest), seen))
+    }
+
+    /// Selects the next or the previous difference. From the last one on, the newest difference is always selected.
+    pub fn choose(&mut self, step: ComparisonAction) {
+        let Some((at, seen)) = self.chosen() else { return };
+        let to = match step {
+            ComparisonAction::Next => at + 1,
+            ComparisonAction::Last => at.saturating_sub(1),
+            ComparisonAction::Open => at,
+        };
+        self.chosen = seen.differences.get(to).copied().filter(|_| to + 1 < seen.differences.len());
+    }
+}
+
+/// Speeds of a replay as multiples of real time; infinity for as fast as possible.
+pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];
+
+/// Action of a replay's keys: play, move, or change the speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplayAction {
+    /// Play or pause the replay.
+    PlayPause,
+    /// Go to the next event of the recording that is not a gaze sample.
+    StepForward,
+    /// Go to the previous event of the recording that is not a gaze sample.
+    StepBack,
+    /// Go to the next landmark of this kind, such as an error or a signal.
+    On(ReplayLandmark),
+    /// Go to the previous landmark of this kind, such as an error or a signal.
+    BackTo(ReplayLandmark),
+    /// Go ten seconds forward in the recording.
+    SeekForward,
+    /// Go ten seconds back in the recording.
+    SeekBack,
+    /// Play the recording at the next higher speed.
+    Faster,
+    /// Play the recording at the next lower speed.
+    Slower,
+    /// Go to the beginning of the recording, before its first event.
+    ToStart,
+    /// Go to the position after the event with this sequence number.
+    ToEvent(u64),
+    /// Go to this session time of the recording.
+    ToTime(SessionTime),
+    /// Go to the end of the recording; in a recording that is still being made, stay at its growing end.
+    ToEnd,
+}
+
+/// State of a replay: its position, its speed, and the recording's state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Playback {
+    /// Name of the recording, as shown in the head line.
+    pub name: String,
+    /// Whether the replay is playing, not paused.
+    pub playing: bool,
+    /// Playback speed, as an index into [`SPEEDS`].
+    pub speed: usize,
+    /// Session time of the last known event of the recording.
+    pub length: SessionTime,
+    /// Time on the trial's clock at the end of the recording, as far as it is known.
+    pub trial_length: SessionTime,
+    /// Number of events of the recording up to the replay's position.
+    pub event: usize,
+    /// Number of events in the recording, as far as they are known.
+    pub events: usize,
+    /// Whether the replay follows a recording that is still being made.
+    pub follows: bool,
+    /// Whether the recording is incomplete: it has no end event.
+    pub cut: bool,
+    /// Whether the recording is still being made, but the replay does not follow it.
+    pub running: bool,
+    /// Whether the recording was excluded from the analysis after it was closed.
+    pub excluded: bool,
+}
+
+impl Playback {
+    /// A replay at the beginning of a recording.
+    pub fn new(name: String) -> Playback {
+        Playback {
+            name,
+            playing: false,
+            speed: 2,
+            length: SessionTime::ZERO,
+            trial_length: SessionTime::ZERO,
+            event: 0,
+            events: 0,
+            follows: false,
+            cut: false,
+            running: false,
+            excluded: false,
+        }
+    }
+
+    /// The playback speed in words: "2x", "0.25x", "max".
+    pub fn speed_label(&self) -> String {
+        let speed = SPEEDS[self.speed.min(SPEEDS.len() - 1)];
+        if speed.is_finite() { format!("{speed}x") } else { "max".to_string() }
     }
 }

@@ -4,8 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::chord::KeyChord;
-use super::compared::ComparisonAction;
-use super::playback::ReplayAction;
+use super::console_model::{ComparisonAction, ReplayAction};
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{ButtonId, LocationId};
 use tomcom_core::measures::cause_codes::ErrorCauseKind;
@@ -43,7 +42,7 @@ pub enum KeyAction {
     /// Change between the wizard's keys and the participant's buttons.
     SwitchLayer,
     /// Manual intervention: correct the kitchen, steer the robot, or abort the trial.
-    Hand(ManualAction),
+    Manual(ManualAction),
     /// Move a replay to another position or change its speed.
     Move(ReplayAction),
     /// Change which panels or which time the screen shows.

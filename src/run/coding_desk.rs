@@ -2,7 +2,7 @@
 
 use super::error::ReviewError;
 use super::seekable_replay::SeekableReplay;
-use crate::console::rater_session::{CodingRaters, RaterSession};
+use crate::console::coding::{CodingRaters, RaterSession};
 use tomcom_core::measures::cause_codes::{CodableErrors, RaterCodes};
 use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
 use tomcom_session::error_list::ListedError;

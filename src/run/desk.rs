@@ -14,7 +14,7 @@ use tokio::time::timeout;
 
 use super::error::{LiveError, TerminalError};
 use crate::console::ConsoleMessage;
-use crate::console::gaze_pairing::GazePairing;
+use crate::console::preflight::GazePairing;
 use crate::console::view::theme::Theme;
 use crate::edge::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::edge::terminal_input::TerminalInput;

@@ -9,8 +9,8 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 
 use super::desk::{OperatorDesk, PageInput};
 use super::error::TerminalError;
-use crate::console::question::StartQuestion;
-use crate::console::recording_picker::RecordingPicker;
+use crate::console::lists::RecordingPicker;
+use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::edge::terminal::TerminalScreen;
@@ -78,7 +78,7 @@ impl Default for ShellDeadlines {
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
     /// A question to the wizard before a recording, with a notice below it.
-    Question(&'a StartQuestion, Option<&'static str>, Theme),
+    Question(&'a StartPrompt, Option<&'static str>, Theme),
     /// A list of recordings to choose from.
     Recordings(&'a RecordingPicker, Theme),
 }

@@ -10,7 +10,7 @@ use super::live;
 use super::options::{SeriesRequest, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
-use crate::console::question::StartQuestion;
+use crate::console::lists::StartPrompt;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
@@ -190,11 +190,11 @@ impl Planned {
 }
 
 /// The question to the wizard whether an unfinished recording is continued or its trial repeated.
-fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQuestion {
+fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartPrompt {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
     let presses = attempt.map_or(0, |attempt| attempt.presses);
-    StartQuestion {
+    StartPrompt {
         title: format!("{}: {name} is not done", progress.code),
         text: vec![format!(
             "The recording {recording} was cut, or left before everything was done. It has {presses} presses."
@@ -208,7 +208,7 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQ
 
 /// The question for the participant's consent, without which nothing is recorded. If the display asks for consent, the
 /// wizard can still confirm it at the console.
-fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_display: bool) -> StartQuestion {
+fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_display: bool) -> StartPrompt {
     let mut text = vec![study.plan.consent.clone()];
     if on_display {
         text.push("Waiting for the participant, who agrees on the display by holding a button.".to_string());
@@ -218,7 +218,7 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
     } else {
         "yes, the participant agrees"
     };
-    StartQuestion {
+    StartPrompt {
         title: format!("{}: {label}", progress.code),
         text,
         answers: vec![yes.to_string(), "no, the participant does not agree: nothing is recorded".to_string()],

@@ -11,7 +11,7 @@ use super::event_loop;
 use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use super::training_shell::TrainingShell;
-use crate::console::playback::SPEEDS;
+use crate::console::console_model::SPEEDS;
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::wall_time::WallTime;

@@ -6,8 +6,8 @@ use super::desk::{OperatorDesk, hear_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::console::ConsoleMessage;
-use crate::console::pasting::refusal_of_paste;
-use crate::console::question::{StartQuestion, StartQuestionReply};
+use crate::console::lists::{StartPrompt, StartReply};
+use crate::console::text_input::refusal_of_paste;
 use crate::console::view::theme::Theme;
 use tomcom_core::base::time::SessionTime;
 use tomcom_devices::sight::ConsentHold;
@@ -20,7 +20,7 @@ const REDRAW: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// The terminal was closed.
-pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartQuestion) -> Result<Option<usize>, LiveError> {
+pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartPrompt) -> Result<Option<usize>, LiveError> {
     Ok(ask_consent(desk, question, false).await?.map(|(index, _)| index))
 }
 
@@ -31,21 +31,21 @@ pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartQuestion) -> Re
 /// The terminal was closed.
 pub(super) async fn ask_consent(
     desk: &mut OperatorDesk,
-    question: &StartQuestion,
+    question: &StartPrompt,
     on_display: bool,
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
     let (theme, asked, button) = (desk.theme, Instant::now(), ConsentHold::default());
     let mut shell = OpenQuestion { question, on_display, asked, button, theme, notice: None, dirty: true };
     let reply = event_loop::run(&mut shell, desk).await?;
     Ok(match reply {
-        Some((StartQuestionReply::Answer(index), on)) => Some((index, on)),
-        Some((StartQuestionReply::Leave, _)) | None => None,
+        Some((StartReply::Answer(index), on)) => Some((index, on)),
+        Some((StartReply::Leave, _)) | None => None,
     })
 }
 
 /// A question to the wizard that has not been answered.
 struct OpenQuestion<'a> {
-    question: &'a StartQuestion,
+    question: &'a StartPrompt,
     /// Whether the participant's page can answer the question.
     on_display: bool,
     /// When the question was asked: the time with which the hold of the page's button is measured begins here.
@@ -60,7 +60,7 @@ struct OpenQuestion<'a> {
 }
 
 impl ConsoleShell for OpenQuestion<'_> {
-    type Outcome = (StartQuestionReply, AnswerDevice);
+    type Outcome = (StartReply, AnswerDevice);
     type Error = LiveError;
 
     fn deadlines(&mut self) -> ShellDeadlines {
@@ -69,7 +69,7 @@ impl ConsoleShell for OpenQuestion<'_> {
 
     /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
     /// later as if they were new inputs.
-    fn take(&mut self, event: LoopEvent) -> Result<Option<(StartQuestionReply, AnswerDevice)>, LiveError> {
+    fn take(&mut self, event: LoopEvent) -> Result<Option<(StartReply, AnswerDevice)>, LiveError> {
         let now = SessionTime(self.asked.elapsed().as_nanos() as u64);
         let message = match event {
             LoopEvent::Page(input) if self.on_display => {
@@ -83,7 +83,7 @@ impl ConsoleShell for OpenQuestion<'_> {
             _ => None,
         };
         if self.button.is_given(now) {
-            return Ok(Some((StartQuestionReply::Answer(0), AnswerDevice::Display)));
+            return Ok(Some((StartReply::Answer(0), AnswerDevice::Display)));
         }
         let Some(message) = message else { return Ok(None) };
         self.dirty = true;

@@ -20,11 +20,11 @@ use tomcom_session::{Session, TrialPhase};
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
     // The head line is as wide as the screen even if one panel is at full size.
-    let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
-    let gap = if room == ScreenSize::Small { 1 } else { 3 };
+    let screen_size = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
+    let gap = if screen_size == ScreenSize::Small { 1 } else { 3 };
     let strong = brush.style(TextRole::Strong);
     // On small screens, the state of the robot takes the room of the program's name.
-    let is_small = room == ScreenSize::Small;
+    let is_small = screen_size == ScreenSize::Small;
     let name = if is_small { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     // A replay does not name the phase; whether it plays is shown beside its position.
@@ -58,7 +58,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         let text = brush.style(TextRole::Text);
         x = brush.text(x, area.y, 20, &counts, text) + gap;
     }
-    let mut healths = healths(session, model, room);
+    let mut healths = healths(session, model, screen_size);
     let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
     // If not all device states fit, those that are in order are left out first, from the last one on.
     while needed(&healths) > area.right().saturating_sub(x)
@@ -140,7 +140,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
 }
 
 /// States of recording, gaze, streams and robot in words, with their styles.
-pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
+pub(super) fn healths(session: &Session, model: &ConsoleModel, screen_size: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
         healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
@@ -166,7 +166,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
             RecordingStatus::Lost => (" RECORDING LOST ".to_string(), TextRole::Alarm),
         }),
     }
-    if room > ScreenSize::Small || model.playback.is_none() {
+    if screen_size > ScreenSize::Small || model.playback.is_none() {
         healths.push(gaze(session, model));
     }
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {

@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
+use super::dialog::open;
 use super::paint::Painter;
-use super::popup::open;
 use super::theme::{Glyphs, TextRole};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};

@@ -8,7 +8,7 @@ use ratatui::style::Style;
 use super::regions::below_title;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
-use crate::console::click::{ClickAction, ClickTarget};
+use crate::console::mouse::{ClickAction, ClickTarget};
 use crate::console::text_columns::{fit, width};
 
 /// Draws on a screen buffer in a theme, and collects click targets.

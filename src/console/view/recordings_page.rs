@@ -4,13 +4,12 @@ use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
+use super::dialog::{TYPE, open};
 use super::paint::{Painter, targets};
-use super::picker::TYPE;
-use super::popup::open;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
-use crate::console::click::{ClickAction, ClickTarget};
-use crate::console::recording_picker::RecordingPicker;
+use crate::console::lists::RecordingPicker;
+use crate::console::mouse::{ClickAction, ClickTarget};
 use crate::console::text_columns::{fit_end, width};
 
 /// Rows around the list of recordings: frame, search line, headings, key hints.

@@ -3,10 +3,9 @@
 use ratatui::layout::Rect;
 
 use crate::console::beliefs::visibility;
-use crate::console::codebook;
-use crate::console::compared::SenderComparisonView;
-use crate::console::console_model::ConsoleModel;
-use crate::console::panel::Panel;
+use crate::console::coding;
+use crate::console::console_model::{ConsoleModel, SenderComparisonView};
+use crate::console::panels::Panel;
 use tomcom_session::Session;
 use tomcom_session::settings::WizardVisibility;
 
@@ -31,7 +30,7 @@ pub enum ScreenSize {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelAreas {
     /// Size class of the terminal: small, medium or large.
-    pub room: ScreenSize,
+    pub screen_size: ScreenSize,
     /// Screen area of the head line.
     pub head: Rect,
     /// Area of the offer: one line, or two on narrow terminals.
@@ -112,8 +111,8 @@ impl PanelAreas {
         let compared = model.comparison.as_ref().map(assistants);
         let codebook = model.coding.as_ref().map(|_| {
             let (keys, kitchen) = (&model.keys, &session.kitchen);
-            let compact = codebook::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
-            [compact, codebook::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
+            let compact = coding::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
+            [compact, coding::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
         });
         let lines = LineRows { codebook, comparison: compared, scrubs: model.playback.is_some() };
         let regions = PanelAreas::with(size, visibility(session, model), model.alone, lines);
@@ -125,7 +124,7 @@ impl PanelAreas {
         match self.events.area() {
             0 if self.kitchen.area() == 0 => self,
             0 => {
-                let (kitchen, lesson) = bottom(self.kitchen, if self.room == ScreenSize::Small { 3 } else { 7 });
+                let (kitchen, lesson) = bottom(self.kitchen, if self.screen_size == ScreenSize::Small { 3 } else { 7 });
                 PanelAreas { kitchen, lesson, ..self }
             }
             _ => {
@@ -142,7 +141,7 @@ impl PanelAreas {
 
     /// Computes the arrangement of panels with these additional rows.
     fn with(size: (u16, u16), visibility: WizardVisibility, alone: Option<Panel>, lines: LineRows) -> PanelAreas {
-        let room = match size {
+        let screen_size = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
             (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => ScreenSize::Medium,
             _ => ScreenSize::Small,
@@ -156,7 +155,7 @@ impl PanelAreas {
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
         let (rest, codebook, errors) = match lines.codebook {
-            Some([rows, _]) if alone.is_some() || room == ScreenSize::Small => {
+            Some([rows, _]) if alone.is_some() || screen_size == ScreenSize::Small => {
                 let few = size.1 < FEW_ERROR_LINES.0;
                 let (rest, errors) = bottom(rest, if few { FEW_ERROR_LINES.1 } else { ERROR_LINES });
                 let (rest, codebook) = bottom(rest, rows);
@@ -164,10 +163,11 @@ impl PanelAreas {
             }
             _ => (rest, Rect::default(), Rect::default()),
         };
-        let rows = lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
+        let rows =
+            lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(screen_size, number));
         let (rest, comparison) = bottom(rest, rows);
         let bare = PanelAreas {
-            room,
+            screen_size,
             head,
             offer,
             kitchen: rest,
@@ -187,7 +187,7 @@ impl PanelAreas {
             message,
             footer,
         };
-        let regions = match room {
+        let regions = match screen_size {
             _ if let Some(panel) = alone => return bare.alone(panel),
             ScreenSize::Small => bare.small(visibility),
             ScreenSize::Medium => bare.medium(visibility),
@@ -199,7 +199,7 @@ impl PanelAreas {
     /// Gives the codebook and the error list the areas of panels that a rater must not see: signals and estimates.
     fn coding(self, codebook_rows: u16) -> PanelAreas {
         let blank = Rect::default();
-        match self.room {
+        match self.screen_size {
             // On small terminals the robot's state and the gaze share a line, and the timeline has one row less.
             ScreenSize::Small => {
                 let (_, timeline) = bottom(self.timeline, self.timeline.height.saturating_sub(1));
@@ -223,7 +223,7 @@ impl PanelAreas {
     fn alone(self, panel: Panel) -> PanelAreas {
         let blank = Rect::default();
         let body = self.kitchen;
-        let mut regions = PanelAreas { kitchen: blank, room: self.room.max(ScreenSize::Medium), ..self };
+        let mut regions = PanelAreas { kitchen: blank, screen_size: self.screen_size.max(ScreenSize::Medium), ..self };
         match panel {
             Panel::Kitchen => regions.kitchen = body,
             Panel::Belief => regions.belief = body,
@@ -336,7 +336,7 @@ impl PanelAreas {
 
     /// Area of the kitchen panel without its title, which corresponds to the wall display.
     pub fn kitchen_inside(&self) -> Rect {
-        match self.room {
+        match self.screen_size {
             ScreenSize::Small => self.kitchen,
             _ => below_title(self.kitchen),
         }
@@ -350,8 +350,8 @@ fn codes_and_errors(column: Rect, codebook_rows: u16) -> (Rect, Rect) {
 
 /// Height of the comparison: axis, first lane, three rows for each assistant (lane, lines between matches, statistics),
 /// differences, and a title if there is room.
-fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
-    match room {
+fn comparison_rows(screen_size: ScreenSize, assistants: u16) -> u16 {
+    match screen_size {
         // On small terminals, only the first of the compared assistants has a row of statistics.
         ScreenSize::Small => 4 + if assistants == 1 { 2 } else { assistants },
         ScreenSize::Medium => 4 + 3 * assistants,

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use crate::console::display_status::ParticipantDisplayHealth;
-use crate::console::notice::NoticeLevel;
+use crate::console::console_model::NoticeLevel;
+use crate::console::preflight::ParticipantDisplayHealth;
 use crate::run::desk::{OperatorDesk, PageInput};
 use tomcom_core::base::printable::printable;
 use tomcom_core::base::time::SessionTime;

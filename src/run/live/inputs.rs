@@ -2,7 +2,7 @@
 
 use super::display::PageEvent;
 use super::live_session::Live;
-use crate::console::notice::NoticeLevel;
+use crate::console::console_model::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;

@@ -1,8 +1,9 @@
 //! Output of a live session: the wizard's screen with its record in the log, and the participant's display.
 
 use super::live_session::Live;
-use crate::console::screen::screen;
-use crate::console::{click_question, hands};
+use crate::console::interventions;
+use crate::console::mouse;
+use crate::console::panels::screen;
 use crate::run::watch_desk::ComparisonThreadHandle;
 use tomcom_session::wall_display::DisplayEvent;
 use tomcom_session::{Event, TrialPhase};
@@ -17,8 +18,8 @@ impl Live {
     /// Prepares the next frame and records what the wizard will see in it.
     pub(super) fn prepare_frame(&mut self) {
         self.tick();
-        click_question::expire(&mut self.model, self.engine.session());
-        hands::expire(&mut self.model, self.engine.session());
+        mouse::expire(&mut self.model, self.engine.session());
+        interventions::expire(&mut self.model, self.engine.session());
         if let (Some(newest), Some(compared)) =
             (self.comparison.as_ref().and_then(ComparisonThreadHandle::newest), &mut self.model.comparison)
         {

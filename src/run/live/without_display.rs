@@ -1,7 +1,7 @@
 //! Stand-in for the participant's display in a live session, in a build without the feature `display`.
 
-use crate::console::display_status::ParticipantDisplayHealth;
-use crate::console::notice::NoticeLevel;
+use crate::console::console_model::NoticeLevel;
+use crate::console::preflight::ParticipantDisplayHealth;
 use crate::run::desk::{OperatorDesk, PageInput};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::{Event, Session};

@@ -5,7 +5,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
-use tomcom::console::panel::Panel;
+use tomcom::console::panels::Panel;
 use tomcom::console::view;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
 use tomcom_core::base::time::SessionTime;

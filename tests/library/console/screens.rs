@@ -1,12 +1,12 @@
 //! Whole screens at each size: everything that a wizard has to recognise at a glance.
 
 use crossterm::event::KeyCode;
+use tomcom::console::console_model::NoticeLevel;
+use tomcom::console::console_model::Playback;
 use tomcom::console::console_model::{Dialog, RecordingStatus};
 use tomcom::console::key_action::KeyLayer;
-use tomcom::console::notice::NoticeLevel;
-use tomcom::console::panel::Panel;
-use tomcom::console::playback::Playback;
-use tomcom::console::screen::screen;
+use tomcom::console::panels::Panel;
+use tomcom::console::panels::screen;
 use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};

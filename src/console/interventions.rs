@@ -1,14 +1,13 @@
 //! The experimenter's manual interventions at the console: keys that correct the recorded state of the kitchen and
 //! steer the robot, and the lists that they open.
 
-use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog};
-use super::key_action::ManualAction;
-use super::note::TextInput;
-use super::notice::NoticeLevel;
-use super::picker::{Picker, PickerAnswer, PickerOutcome, PickerQuestion};
-use super::sending::{refuse, send};
 use crossterm::event::KeyCode;
+
+use super::actions::{refuse, send};
+use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
+use super::key_action::ManualAction;
+use super::lists::{Picker, PickerAnswer, PickerKind, PickerOutcome};
+use super::text_input::TextInput;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::Agent;
 use tomcom_session::history::wording;
@@ -16,13 +15,13 @@ use tomcom_session::probes::ProbeEvent;
 use tomcom_session::{Event, Session, TrialPhase};
 
 /// Carries out a manual intervention of the experimenter, or opens the list that it needs.
-pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {
+pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAction) -> Option<ConsoleCommand> {
     let by = Sender::Wizard;
-    match hand {
+    match action {
         ManualAction::Correct if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
             refuse(model, "the kitchen can be corrected only during a trial")
         }
-        ManualAction::Correct => ask(model, PickerQuestion::Place),
+        ManualAction::Correct => ask(model, PickerKind::Place),
         ManualAction::HoldRobot if session.robot.held => {
             let words = match session.robot.stopped {
                 true => "the robot is no longer held, but still stopped",
@@ -40,11 +39,11 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             refuse(model, "the robot's press can be chosen only while the trial runs")
         }
         ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: resume it first"),
-        ManualAction::DriveRobot => ask(model, PickerQuestion::Button),
+        ManualAction::DriveRobot => ask(model, PickerKind::Button),
         ManualAction::Abort if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
             refuse(model, "no trial runs that could be aborted")
         }
-        ManualAction::Abort => ask(model, PickerQuestion::Abort),
+        ManualAction::Abort => ask(model, PickerKind::Abort),
         ManualAction::Preflight if session.phase != TrialPhase::Ready => {
             refuse(model, "preflight checks are shown only before the trial starts")
         }
@@ -59,7 +58,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             model.dialog = Some(Dialog::Note(TextInput::default()));
             None
         }
-        ManualAction::Calibrate => super::gaze_targets::begin(model, session),
+        ManualAction::Calibrate => super::gaze_check::begin(model, session),
         ManualAction::Redo => redo(model, session),
         ManualAction::Exclude if session.excluded.is_some() => {
             send(model, session, Event::TrialIncluded, NoticeLevel::Done, "the trial is no longer excluded")
@@ -67,13 +66,13 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         ManualAction::Exclude if matches!(session.phase, TrialPhase::Ready | TrialPhase::Closed) => {
             refuse(model, "no trial has begun that could be excluded")
         }
-        ManualAction::Exclude => ask(model, PickerQuestion::Exclude),
+        ManualAction::Exclude => ask(model, PickerKind::Exclude),
         ManualAction::AskProbe => {
             let words = "a freeze probe is requested";
             send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
         }
         ManualAction::SkipProbe => match skippable(session) {
-            Some(probe) => ask(model, PickerQuestion::SkipProbe(probe)),
+            Some(probe) => ask(model, PickerKind::SkipProbe(probe)),
             None => refuse(model, "no freeze probe is open"),
         },
     }
@@ -93,7 +92,7 @@ pub(super) fn skippable(session: &Session) -> Option<u32> {
 /// Closes the list of reasons for skipping a freeze probe once that probe is over, so that the reason does not skip the
 /// next probe.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
-    if let Some(Dialog::Pick(Picker { question: PickerQuestion::SkipProbe(probe), .. })) = model.dialog
+    if let Some(Dialog::Pick(Picker { kind: PickerKind::SkipProbe(probe), .. })) = model.dialog
         && skippable(session) != Some(probe)
     {
         model.dialog = None;
@@ -114,8 +113,8 @@ fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     }
 }
 
-fn ask(model: &mut ConsoleModel, question: PickerQuestion) -> Option<ConsoleCommand> {
-    model.dialog = Some(Dialog::Pick(Picker::new(question)));
+fn ask(model: &mut ConsoleModel, kind: PickerKind) -> Option<ConsoleCommand> {
+    model.dialog = Some(Dialog::Pick(Picker::new(kind)));
     None
 }
 
@@ -156,8 +155,7 @@ pub(super) fn pick(
         }
         PickerOutcome::Left => {
             // Esc in the list of contents goes back to the list of places.
-            let back =
-                matches!(picker.question, PickerQuestion::Content(_)).then(|| Picker::new(PickerQuestion::Place));
+            let back = matches!(picker.kind, PickerKind::Content(_)).then(|| Picker::new(PickerKind::Place));
             model.dialog = back.map(Dialog::Pick);
             return None;
         }
@@ -166,9 +164,9 @@ pub(super) fn pick(
     model.dialog = None;
     model.answered = Some(model.clock);
     let kitchen = &session.kitchen;
-    match (picker.question, answer) {
-        (_, PickerAnswer::Place(place)) => ask(model, PickerQuestion::Content(place)),
-        (PickerQuestion::Content(place), PickerAnswer::Content(content)) => {
+    match (picker.kind, answer) {
+        (_, PickerAnswer::Place(place)) => ask(model, PickerKind::Content(place)),
+        (PickerKind::Content(place), PickerAnswer::Content(content)) => {
             let (location, content) = (kitchen.location(place), kitchen.content(content).name.clone());
             let words = format!("kitchen corrected: {} holds {}", location.label(), kitchen.worded(&content));
             let event = Event::KitchenCorrected { location: location.name.clone(), content };
@@ -179,10 +177,10 @@ pub(super) fn pick(
             let button = kitchen.button(Agent::Robot, button).name.clone();
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
         }
-        (PickerQuestion::Abort, PickerAnswer::Reason(reason)) => {
+        (PickerKind::Abort, PickerAnswer::Reason(reason)) => {
             send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "the trial is aborted")
         }
-        (PickerQuestion::SkipProbe(probe), PickerAnswer::Reason(reason)) => {
+        (PickerKind::SkipProbe(probe), PickerAnswer::Reason(reason)) => {
             let event = ProbeEvent::Skipped { probe, reason };
             send(
                 model,

@@ -1,27 +1,28 @@
-//! The robot panel: ongoing press, progress of the arm, reason for being idle, and what the robot holds.
+//! Panels of the robot (ongoing press, progress of the arm, reason for being idle, what it holds), of the participant's
+//! display (the signal, its content and its remaining time), and of a wizard training (task, then feedback).
 
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::console::console_model::ConsoleModel;
-use crate::console::key_action::KeyAction;
-use crate::console::key_action::ManualAction;
-use crate::console::text_columns::width;
+use crate::console::console_model::{ConsoleModel, NoticeLevel, TrainingFeedback, TrainingPanel};
+use crate::console::key_action::{KeyAction, ManualAction};
+use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::words::count;
+use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::robot::moment::ArmSample;
 use tomcom_core::robot::safety::{SLOWS_M, SafetyMode};
 use tomcom_session::history::wording;
 use tomcom_session::settings::ArmKind;
-use tomcom_session::{Session, TrialPhase};
+use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
 
 /// Draws the robot panel.
-pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.robot;
     if area.area() == 0 {
         return;
     }
-    if regions.room == ScreenSize::Small {
+    if regions.screen_size == ScreenSize::Small {
         brush.parts(area.x, area.y, area.width, &[(" robot    ", TextRole::Quiet)]);
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
         // Other modes than this one stand in the head line.
@@ -30,7 +31,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
             columns = columns.saturating_sub(name.len() as u16);
             brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
         }
-        line(brush, area.x + 10, area.y, columns, session, model);
+        robot_line(brush, area.x + 10, area.y, columns, session, model);
         return;
     }
     let is_arm = session.spec.robot.arm == ArmKind::Physics;
@@ -50,7 +51,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let is_crowded = !name.is_empty() && columns + 6 >= area.width;
     let inside = brush.panel_with(area, title, if is_crowded { &parts[..1] } else { &parts });
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
-    line(brush, x, inside.y, columns, session, model);
+    robot_line(brush, x, inside.y, columns, session, model);
     holds(brush, x, inside.y + 1, columns, session);
     if let Some((_, sample)) = session.robot.arm.last {
         arm(brush, x, inside.y + 2, columns, session, &sample);
@@ -104,7 +105,7 @@ fn mode_role(mode: SafetyMode) -> TextRole {
     }
 }
 
-fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     if session.robot.stopped {
         stopped(brush, x, y, columns, session, model);
         return;
@@ -155,7 +156,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
 fn release(model: &ConsoleModel) -> String {
     model
         .keys
-        .chord_for(&KeyAction::Hand(ManualAction::HoldRobot))
+        .chord_for(&KeyAction::Manual(ManualAction::HoldRobot))
         .map(|key| format!("{key} releases the robot"))
         .unwrap_or_default()
 }
@@ -168,4 +169,131 @@ fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel)
     let words = if left > 50 { format!(" {} ", release(model)) } else { " ".to_string() };
     let end = brush.parts(end, y, left, &[(&words, TextRole::Quiet)]);
     (end, (x + columns).saturating_sub(end))
+}
+
+/// Draws the panel that tells which signal the participant sees now.
+pub fn draw_display(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let area = regions.shown;
+    if area.area() == 0 {
+        return;
+    }
+    if regions.screen_size == ScreenSize::Small {
+        brush.parts(area.x, area.y, area.width, &[(" display  ", TextRole::Quiet)]);
+        display_line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
+        return;
+    }
+    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes the signal back"));
+    let remark = session.shown.as_ref().and(back).unwrap_or_default();
+    let inside = brush.panel(area, "On the participant's display", &remark);
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    display_line(brush, x, inside.y, columns, session, model);
+    if let Some(shown) = &session.shown {
+        let style = brush.style(TextRole::Text);
+        for (row, text) in wrap(&says(session, &shown.signal), columns).iter().take(2).enumerate() {
+            brush.text(x, inside.y + 1 + row as u16, columns, text, style);
+        }
+    }
+}
+
+/// Draws the present signal with its remaining time in one line.
+fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+    let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == TrialPhase::Ready);
+    if let Some(key) = start {
+        let key = key.to_string();
+        let parts = [("press ", TextRole::Strong), (&key, TextRole::Signal), (" to start the trial", TextRole::Strong)];
+        brush.parts(x, y, columns, &parts);
+        return;
+    }
+    let Some(shown) = &session.shown else {
+        brush.parts(x, y, columns, &[("no signal, only the kitchen", TextRole::Quiet)]);
+        return;
+    };
+    let title = match (&shown.signal, columns > 60) {
+        (Signal::ShowRecipe(_), true) => says(session, &shown.signal),
+        _ => wording::signal(&shown.signal),
+    };
+    let (left_s, share) = time_left(session, shown, model);
+    let bar = if columns < 44 { 4 } else { 8 };
+    let room = columns.saturating_sub(bar + 7);
+    let end = brush.parts(x, y, room, &[(&title, TextRole::Signal)]);
+    let by = format!(" by {}", wording::sender(shown.by));
+    if end + width(&by) <= x + room {
+        brush.parts(end, y, room, &[(&by, TextRole::Quiet)]);
+    }
+    let at = brush.bar(x + columns - bar - 6, y, bar, share, TextRole::Signal);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
+}
+
+/// Remaining time of a signal in seconds, and as a share of its duration.
+fn time_left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f64) {
+    let now = if session.is_running() { model.now } else { session.paused_at };
+    let left_s = shown.until.secs_since(now);
+    (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
+}
+
+/// Content of the signal that the participant sees, in words.
+fn says(session: &Session, signal: &Signal) -> String {
+    let kitchen = &session.kitchen;
+    let Some(location) = signal.location(kitchen) else {
+        // Of proposed presses, only those that the participant has not made yet are shown.
+        return proposals::left(session)
+            .map_or(String::new(), |left| format!("proposed next: {}", wording::proposal(left)));
+    };
+    let content = kitchen.content_label(session.state, location);
+    match signal {
+        Signal::ShowRecipe(_) => match wording::recipe(session, location) {
+            Some(recipe) => format!("{content} = {recipe}"),
+            None => format!("{}: {content}", kitchen.location(location).label()),
+        },
+        Signal::Highlight(_) | Signal::Propose(_) => {
+            format!("highlight: {} holds {content}", kitchen.location(location).label())
+        }
+    }
+}
+
+/// Columns for the clock time of a line of feedback.
+const CLOCK: u16 = 6;
+
+/// Draws the panel of a wizard training.
+pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleModel) {
+    let area = regions.lesson;
+    let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
+    let inside = match regions.screen_size {
+        ScreenSize::Small => area,
+        _ => brush.panel(area, "Training", &lesson.score),
+    };
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let mut y = inside.y;
+    for (clock, text, role) in training_lines(lesson) {
+        let indent = if clock.is_empty() { 0 } else { CLOCK };
+        for (row, line) in wrap(&text, columns.saturating_sub(indent)).iter().enumerate() {
+            if y >= inside.bottom() {
+                return;
+            }
+            if row == 0 {
+                let quiet = brush.style(TextRole::Quiet);
+                brush.text(x, y, indent, &clock, quiet);
+            }
+            let style = brush.style(role);
+            brush.text(x + indent, y, columns.saturating_sub(indent), line, style);
+            y += 1;
+        }
+    }
+}
+
+/// Lines of the training panel, each with or without a time on the trial's clock.
+fn training_lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
+    if lesson.feedback.is_empty() {
+        return lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text)).collect();
+    }
+    let newest = lesson.feedback.iter().rev().enumerate();
+    let line = |(back, TrainingFeedback { clock, level, text }): (usize, &TrainingFeedback)| {
+        let role = match (back, level) {
+            (_, NoticeLevel::Refused | NoticeLevel::Alarm) => TextRole::Strong,
+            (0, NoticeLevel::Done) => TextRole::Strong,
+            (_, NoticeLevel::Done) => TextRole::Text,
+        };
+        (format!("{:>5}", clock.to_string()), text.clone(), role)
+    };
+    newest.map(line).collect()
 }

@@ -1,28 +1,20 @@
-//! Actions of the console: what each entry of the key table does.
+//! Messages to the console and what each entry of the key table does: events for the session, or why it rejects them.
 
 use super::beliefs::{beliefs, visibility};
-use super::coding;
-use super::compared::ComparisonAction;
-use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog};
-use super::form;
-use super::hands;
-use super::held_keys::is_right_after_list;
+use super::console_model::{ComparisonAction, ConsoleCommand, ConsoleMessage, ConsoleModel, Dialog, NoticeLevel};
 use super::key_action::{KeyAction, KeyLayer};
-use super::notice::NoticeLevel;
-use super::palette;
-use super::panel::Panel;
-use super::panels;
+use super::key_press::{self, is_right_after_list};
+use super::panels::{self, Panel};
 use super::possible::effects;
-use super::preflight;
-use super::sending::{resume_robot, send};
+use super::{coding, form, interventions, lists, mouse, preflight, text_input};
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_session::admit::{admit, hygiene};
 use tomcom_session::event::SignalEndReason;
 use tomcom_session::history::wording;
-use tomcom_session::offers;
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Event, Session, TrialPhase};
+use tomcom_session::{Event, Session, TrialPhase, offers};
 
 /// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
@@ -85,7 +77,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
                 None
             }
         },
-        KeyAction::Hand(hand) => hands::act(model, session, hand),
+        KeyAction::Manual(action) => interventions::act(model, session, action),
         KeyAction::SwitchLayer => {
             let (layer, words) = match model.layer {
                 KeyLayer::Wizard => (KeyLayer::Participant, "keys now press the participant's buttons"),
@@ -123,7 +115,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             None
         }
         KeyAction::Palette => {
-            palette::open(model, session, "");
+            lists::open(model, session, "");
             None
         }
         // A replay can be left without a question, for nothing is lost, and a rater's codes are saved after every key;
@@ -163,4 +155,66 @@ fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand
         }
     };
     send(model, session, event, NoticeLevel::Done, words)
+}
+
+/// Why the session would reject an event now; `None` if it would accept it.
+pub(super) fn refusal(session: &Session, now: SessionTime, event: &Event) -> Option<String> {
+    admit(session, event).map_err(str::to_string).and_then(|()| hygiene(session, now, event)).err()
+}
+
+/// Sends an event if the session accepts it now; else a notice tells the wizard why not.
+pub(super) fn send(
+    model: &mut ConsoleModel,
+    session: &Session,
+    event: Event,
+    level: NoticeLevel,
+    words: &str,
+) -> Option<ConsoleCommand> {
+    if let Some(reason) = refusal(session, model.now, &event) {
+        return refuse(model, &reason);
+    }
+    match words {
+        "" => model.notice = None,
+        words => model.say(level, words),
+    }
+    Some(ConsoleCommand::Input(event))
+}
+
+/// Tells the wizard why a key has no effect now.
+pub(super) fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
+    model.say(NoticeLevel::Refused, reason);
+    None
+}
+
+/// Releases the robot after a stop.
+pub(super) fn resume_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    let words =
+        if session.robot.held { "the robot is no longer stopped, but still held" } else { "the robot continues" };
+    send(model, session, Event::RobotResumed, NoticeLevel::Done, words)
+}
+
+/// Handles a message to the console at the time `model.now`.
+pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {
+    mouse::expire(model, session);
+    interventions::expire(model, session);
+    match message {
+        ConsoleMessage::Key(key) => key_press::key(model, session, &key),
+        ConsoleMessage::Pointer(column, row) => {
+            mouse::point(model, session, (column, row));
+            None
+        }
+        ConsoleMessage::Click(column, row) => mouse::click(model, session, (column, row)),
+        ConsoleMessage::Wheel(column, row, steps) => mouse::wheel(model, session, (column, row), i64::from(steps)),
+        ConsoleMessage::Resized(columns, rows) => {
+            model.size = (columns, rows);
+            None
+        }
+        ConsoleMessage::Paste(text) => text_input::paste(model, session, text.as_deref()),
+        ConsoleMessage::Focus(focused) => {
+            let changed = std::mem::replace(&mut model.focused, focused) != focused;
+            model.pressed = None;
+            let event = if focused { Event::FocusRegained } else { Event::FocusLost };
+            (changed && session.phase != TrialPhase::Closed).then_some(ConsoleCommand::Input(event))
+        }
+    }
 }

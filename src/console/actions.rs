@@ -34,7 +34,6 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
     }
 }
 
-/// Carries out the action of a key at the console.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {

@@ -15,7 +15,6 @@ use tomcom_session::Session;
 use tomcom_session::error_list::ListedError;
 use tomcom_session::history::wording;
 
-/// Carries out an action of the rater's keys.
 pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Option<ConsoleCommand> {
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let coding = model.coding.as_mut()?;
@@ -90,11 +89,8 @@ pub(super) fn go_to(model: &mut ConsoleModel, index: usize) -> Option<ConsoleCom
 /// Who codes the errors of a recording: one rater, or two raters together.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CodingRaters {
-    /// One rater, who has this name ("R1").
     Rater(String),
-    /// Two raters who settle together the errors that they coded differently.
     Pair {
-        /// Codes on which the two raters agree, and those that they settled earlier.
         consensus: RaterConsensus,
         /// Codes that each rater gave alone, in the order of the consensus.
         own: [RaterCodes; 2],
@@ -112,7 +108,6 @@ struct CodeChange {
 /// State of coding the errors of a recording: the codes so far, and the steps to undo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaterSession {
-    /// Whether one rater codes, or two raters settle their differences.
     pub party: CodingRaters,
     /// Errors to be coded, in order of time; for two raters, only those that they have to settle.
     pub errors: Vec<ListedError>,
@@ -122,7 +117,6 @@ pub struct RaterSession {
     pub finished: Vec<String>,
     /// Row of the error list that the arrow keys have selected, while the replay does not stand at that error.
     pub chosen: Option<usize>,
-    /// Whether all codes are saved beside the log.
     pub is_saved: bool,
     /// Codes of the errors at the time when the recording was opened.
     opened: RaterCodes,
@@ -172,7 +166,6 @@ impl RaterSession {
         self.errors.iter().filter(is_new).count()
     }
 
-    /// Gives an error a rater's code, or removes the code.
     pub fn give(&mut self, press: u64, code: Option<ErrorCauseCode>) {
         let before = self.codes.0.get(&press).cloned();
         if before != code {
@@ -191,12 +184,10 @@ impl RaterSession {
         Some(press)
     }
 
-    /// Whether the rater has changed a code that can be undone.
     pub fn can_undo(&self) -> bool {
         !self.done.is_empty()
     }
 
-    /// Whether the rater has undone a change of a code that can be redone.
     pub fn can_redo(&self) -> bool {
         !self.undone.is_empty()
     }
@@ -248,7 +239,6 @@ impl RaterSession {
         consensus.raters.iter().zip(own).map(of).collect()
     }
 
-    /// What the rater can do next, once every error has a code.
     pub fn next_step(&self) -> Option<String> {
         if self.first_open().is_some() {
             return None;
@@ -287,7 +277,6 @@ const GAP: u16 = 2;
 pub struct CodebookEntry {
     /// Key that codes this cause; `None` for a heading and for continued lines of a definition.
     pub key: Option<KeyChord>,
-    /// Text of the entry: the error's cause with its definition, or a heading.
     pub words: String,
 }
 

@@ -44,25 +44,17 @@ pub enum Dialog {
     /// Help of the console: the table of keys. For each entry of the table, whether its key had an effect when the help
     /// was opened: the order of the lines does not change while the help is read.
     Help(Vec<bool>),
-    /// Question whether to end the session and close the console.
     Quit,
-    /// Question whether to end the trial.
     EndTrial,
-    /// List from which the wizard chooses an answer.
     Pick(Picker),
-    /// List of all actions that have keys (the palette).
     Palette(ListCursor),
-    /// Question whether to send the signal that was clicked.
     Send(SendConfirmation),
-    /// List of the preflight checks.
     Preflight,
     /// Gaze accuracy check: the targets, then the result.
     Calibration,
-    /// Text input for the wizard's note.
     Note(TextInput),
     /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
-    /// Details of a difference between wizard and assistant, as lines of text.
     Difference(Vec<String>),
     /// Report of a wizard training, as lines of text; closed with enter.
     Report(Vec<String>),
@@ -71,9 +63,7 @@ pub enum Dialog {
 /// A short message of the console to the wizard, shown for a few seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// Text of the notice to the wizard, in one line.
     pub text: String,
-    /// Severity of the notice.
     pub level: NoticeLevel,
     /// Time at which the notice was given, on [`ConsoleModel::clock`].
     pub at: SessionTime,
@@ -82,11 +72,8 @@ pub struct Notice {
 /// State of the session's recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecordingStatus {
-    /// The session is not recorded.
     Off,
-    /// The session is recorded into this folder.
     On(String),
-    /// The recording can no longer be written.
     Lost,
 }
 
@@ -95,20 +82,15 @@ pub enum RecordingStatus {
 pub struct RerunStreamStatus {
     /// Address to which Rerun viewers connect; `None` if the stream is only written to a file.
     pub address: Option<String>,
-    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows that the Rerun stream dropped because the viewers were too slow.
     pub dropped: u64,
 }
 
 /// State of the outgoing streams of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LslStatus {
-    /// Names of the LSL streams that are sent.
     pub streams: Vec<String>,
-    /// Number of samples sent over LSL.
     pub sent: u64,
-    /// Number of samples that LSL dropped or refused.
     pub lost: u64,
 }
 
@@ -116,7 +98,6 @@ pub struct LslStatus {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressedKey {
     pub code: KeyCode,
-    /// Time at which the terminal last reported the key.
     pub reported: SessionTime,
     /// Time at which the key last counted as newly pressed.
     pub counted: SessionTime,
@@ -125,31 +106,20 @@ pub(super) struct PressedKey {
 /// State of the console: everything that concerns only the screen and the keyboard, not the trial.
 #[derive(Clone, Debug)]
 pub struct ConsoleModel {
-    /// Session time that the console draws.
     pub now: SessionTime,
     /// Clock for keys and notices, which also runs while a replay is paused.
     pub clock: SessionTime,
-    /// Columns and rows of the terminal.
     pub size: (u16, u16),
-    /// Colours and signs of the console.
     pub theme: Theme,
-    /// Table of the console's key bindings.
     pub keys: KeyBindings,
-    /// Whose keys are active: the wizard's or the participant's.
     pub layer: KeyLayer,
-    /// Dialog that is open above the console's panels, if any.
     pub dialog: Option<Dialog>,
-    /// Latest notice to the wizard.
     pub notice: Option<Notice>,
-    /// State of the session's recording: on, off or lost.
     pub recording: RecordingStatus,
-    /// State of the stream to Rerun viewers, if there is one.
     pub viewers: Option<RerunStreamStatus>,
-    /// State of the streams of the Lab Streaming Layer, if there are any.
     pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
-    /// Panel of the console that is shown alone at full size, if any.
     pub alone: Option<Panel>,
     /// First visible column of the help, or first visible line of a training report.
     pub help_from: usize,
@@ -157,14 +127,12 @@ pub struct ConsoleModel {
     pub events_back: usize,
     /// Scroll position of the timeline: seconds before the present.
     pub timeline_back_s: u32,
-    /// Whether the terminal has keyboard focus.
     pub focused: bool,
     /// Point of the wall display under the mouse pointer, in fractions of its size; below 0 or above 1 while the
     /// pointer is outside the kitchen panel.
     pub pointer: Option<[f64; 2]>,
     /// Latest gaze samples with their times, oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
-    /// Number of rejected gaze senders.
     pub rejected_senders: u64,
     /// The last rejected gaze sender, and when it was rejected.
     pub rejected_gaze: Option<(RejectedGaze, SessionTime)>,
@@ -174,7 +142,6 @@ pub struct ConsoleModel {
     pub gaze_pairing: Option<GazePairing>,
     /// What the session reads from its gaze file; `None` for other gaze sources.
     pub recorded_gaze: Option<RecordedGazeSummary>,
-    /// State of the participant's display, if there is one.
     pub display: Option<ParticipantDisplayHealth>,
     /// Session times of the human's errors, in ascending order.
     pub errors: Vec<SessionTime>,
@@ -182,25 +149,18 @@ pub struct ConsoleModel {
     pub unproven: u64,
     /// Judgement of each signal of the trial at the time when the signal was sent (hit, late or needless).
     pub signals: SignalJudge,
-    /// History of the estimate of the participant's beliefs.
     pub belief: BeliefHistory,
     /// State aspect whose estimated belief is shown over time.
     pub belief_focus: Option<AspectId>,
-    /// Comparison of wizard and assistants, if it is shown.
     pub comparison: Option<SenderComparisonView>,
-    /// Training panel, in a wizard training.
     pub lesson: Option<TrainingPanel>,
-    /// The rater's codes, while the errors of a recording are coded.
     pub coding: Option<RaterSession>,
-    /// Playback position and speed, in a replay.
     pub playback: Option<Playback>,
-    /// Answer to the current probe question that is being entered at this console.
     pub probe_entry: ProbeEntry,
     /// Index of the selected reason for waiving the practice criterion, until enter confirms it.
     pub waiver: Option<usize>,
     /// What the wizard has selected to do with the result of a gaze accuracy check, until enter confirms it.
     pub gaze_choice: Option<AccuracyCheckAction>,
-    /// Action that the wizard chose last in the palette, if it may stand first there.
     pub(super) palette_chosen: Option<KeyAction>,
     /// Action that stands first in the open palette.
     pub(super) palette_first: Option<KeyAction>,
@@ -210,7 +170,6 @@ pub struct ConsoleModel {
     pub(super) clicked: Option<(KeyChord, SessionTime)>,
     /// Whether the terminal reports key repeats as such, separate from presses.
     pub(super) exact_keys: bool,
-    /// Key that was pressed last, by which key repeat is detected.
     pub(super) pressed: Option<PressedKey>,
 }
 
@@ -264,7 +223,6 @@ impl ConsoleModel {
         }
     }
 
-    /// Shows a notice to the wizard.
     pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
@@ -314,7 +272,6 @@ impl ConsoleModel {
         arrived.is_none_or(|arrived| arrived < *at).then_some(rejected)
     }
 
-    /// Adds a gaze sample to the trail that the gaze map draws.
     pub fn see(&mut self, at: SessionTime, sample: GazeSample) {
         if self.trail.len() == TRAIL {
             self.trail.pop_front();
@@ -339,13 +296,11 @@ impl ConsoleModel {
         self.alone = aspect.map(|_| Panel::Belief);
     }
 
-    /// Whether a timeline entry is a press that was an error of the human.
     pub fn is_error(&self, entry: &TimelineEntry) -> bool {
         matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
             && self.errors.binary_search(&entry.time).is_ok()
     }
 
-    /// Name of a gaze source on the screen.
     pub fn gaze_label(source: GazeSource) -> &'static str {
         match source {
             GazeSource::Simulated => "simulated",
@@ -362,17 +317,13 @@ impl ConsoleModel {
 /// Input of the console: a key, a mouse event, pasted text or a change of the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleMessage {
-    /// A key was pressed, repeated or released.
     Key(KeyEvent),
     /// The mouse pointer moved to this cell (column, row).
     Pointer(u16, u16),
-    /// The mouse was clicked on this cell.
     Click(u16, u16),
-    /// The mouse wheel turned over this cell, by this number of steps upwards.
     Wheel(u16, u16, i8),
     /// The terminal was resized to these columns and rows.
     Resized(u16, u16),
-    /// The terminal gained or lost keyboard focus.
     Focus(bool),
     /// Text was pasted into the terminal; `None` if the paste had no end, so that it was given up.
     Paste(Option<String>),
@@ -381,31 +332,22 @@ pub enum ConsoleMessage {
 /// A command of the console to the program that runs it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleCommand {
-    /// Apply this event to the session.
     Input(Event),
-    /// Record the results of the preflight checks and start the trial.
     Start(Event),
-    /// Move a replay to another position or change its speed.
     Move(ReplayAction),
     /// Save the rater's codes, and move the replay to the error whose code changed.
     Code {
-        /// Sequence number of the press whose code changed.
         press: u64,
     },
-    /// Close this recording and repeat its trial in a new recording.
     Redo,
-    /// Close this finished recording and continue with the participant's next recording.
     Next,
-    /// Close the console; in a live run the session ends.
     Quit,
 }
 
 /// Severity of a notice, the console's short message to the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeLevel {
-    /// Information: the console carried out an action.
     Done,
-    /// Warning: the console refused an action.
     Refused,
     /// Alarm: a fault that lasts until it is fixed.
     Alarm,
@@ -416,33 +358,25 @@ pub enum NoticeLevel {
 pub struct TrainingPanel {
     /// Task and scoring rules of the training, as paragraphs; shown until there is feedback.
     pub task: Vec<String>,
-    /// Feedback on signals and on missed signals, oldest first.
     pub feedback: Vec<TrainingFeedback>,
     /// Score of the training so far: "2 hit, 1 missed, 3 wrong".
     pub score: String,
-    /// Whether the wizard training has started.
     pub begun: bool,
 }
 
 /// Feedback on a signal that the trainee sent or missed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrainingFeedback {
-    /// Time of the feedback on the trial's clock.
     pub clock: SessionTime,
-    /// Severity, which selects the style in which the feedback is drawn.
     pub level: NoticeLevel,
-    /// Text of the feedback on a signal, in one line.
     pub text: String,
 }
 
 /// Action of a key in the list of differences between wizard and assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComparisonAction {
-    /// Go to the next difference between wizard and assistant.
     Next,
-    /// Go to the previous difference between wizard and assistant.
     Last,
-    /// Show what the wizard and the assistant each knew at the time of the difference.
     Open,
 }
 
@@ -488,29 +422,22 @@ pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINIT
 /// Action of a replay's keys: play, move, or change the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayAction {
-    /// Play or pause the replay.
     PlayPause,
     /// Go to the next event of the recording that is not a gaze sample.
     StepForward,
     /// Go to the previous event of the recording that is not a gaze sample.
     StepBack,
-    /// Go to the next landmark of this kind, such as an error or a signal.
     On(ReplayLandmark),
-    /// Go to the previous landmark of this kind, such as an error or a signal.
     BackTo(ReplayLandmark),
     /// Go ten seconds forward in the recording.
     SeekForward,
     /// Go ten seconds back in the recording.
     SeekBack,
-    /// Play the recording at the next higher speed.
     Faster,
-    /// Play the recording at the next lower speed.
     Slower,
-    /// Go to the beginning of the recording, before its first event.
     ToStart,
     /// Go to the position after the event with this sequence number.
     ToEvent(u64),
-    /// Go to this session time of the recording.
     ToTime(SessionTime),
     /// Go to the end of the recording; in a recording that is still being made, stay at its growing end.
     ToEnd,
@@ -519,23 +446,17 @@ pub enum ReplayAction {
 /// State of a replay: its position, its speed, and the recording's state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
-    /// Name of the recording, as shown in the head line.
     pub name: String,
-    /// Whether the replay is playing, not paused.
     pub playing: bool,
     /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
     /// Session time of the last known event of the recording.
     pub length: SessionTime,
-    /// Time on the trial's clock at the end of the recording, as far as it is known.
     pub trial_length: SessionTime,
     /// Number of events of the recording up to the replay's position.
     pub event: usize,
-    /// Number of events in the recording, as far as they are known.
     pub events: usize,
-    /// Whether the replay follows a recording that is still being made.
     pub follows: bool,
-    /// Whether the recording is incomplete: it has no end event.
     pub cut: bool,
     /// Whether the recording is still being made, but the replay does not follow it.
     pub running: bool,

@@ -35,9 +35,7 @@ pub enum FormContent<'a> {
         /// Steps of the phase that the wizard has to do, in this order.
         steps: &'a [String],
     },
-    /// Tutorial, which the participant reads on the display.
     Tutorial(&'a Tutorial),
-    /// Items of a questionnaire for the participant.
     Questions(&'a Questionnaire),
     /// Choice after an unmet practice criterion: repeat the practice, or waive the criterion.
     Failed,
@@ -295,15 +293,12 @@ pub(super) enum SheetKey {
     Confirm,
     /// Go on to the session's next phase, if the sheet is complete.
     Leave,
-    /// Show the next item of the sheet.
     Forward,
-    /// Show the previous item of the sheet.
     Back,
     /// Take back the last tick, or show the previous item.
     Undo,
     /// Leave the sheet's present item unanswered.
     Skip,
-    /// A digit, which answers an item or selects a choice.
     Digit(u8),
     /// A letter or a minus sign, which begins a typed answer.
     Letter(char),

@@ -14,7 +14,6 @@ use tomcom_session::history::wording;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::{Event, Session, TrialPhase};
 
-/// Carries out a manual intervention of the experimenter, or opens the list that it needs.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAction) -> Option<ConsoleCommand> {
     let by = Sender::Wizard;
     match action {
@@ -118,7 +117,6 @@ fn ask(model: &mut ConsoleModel, kind: PickerKind) -> Option<ConsoleCommand> {
     None
 }
 
-/// Handles a key in the text input for the wizard's note.
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
@@ -141,7 +139,6 @@ pub(super) fn write(
     }
 }
 
-/// Handles a key in an open list of answers to a question.
 pub(super) fn pick(
     model: &mut ConsoleModel,
     session: &Session,

@@ -16,7 +16,6 @@ use super::{gaze_check, interventions, mouse, panels, preflight, probe_keys};
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::{Event, Session, TrialPhase};
 
-/// Handles a terminal's report about a key.
 pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
     match touch(model, key) {
         KeyPressKind::Release => None,
@@ -287,11 +286,9 @@ pub(super) const ANSWER_S: f64 = 0.7;
 /// Meaning of a terminal's key report: newly pressed, pressed again or held, held, or released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum KeyPressKind {
-    /// The key was newly pressed, according to the terminal's report.
     Press,
     /// The key was pressed a second time, or has been held since the first press and begins to repeat.
     Again,
-    /// The key is held down, according to the terminal's report.
     Held,
     Release,
 }

@@ -28,7 +28,6 @@ use tomcom_session::settings::{ParticipantKind, SessionSpec};
 pub struct KeyBindings {
     /// Key bindings in the order of the help.
     pub bindings: Vec<KeyBinding>,
-    /// Key of the signal about each location, by which the timeline marks signals.
     marks: Vec<Option<KeyChord>>,
     /// Key bindings that are active only in a comparison of wizard and assistant.
     comparing: Vec<KeyBinding>,
@@ -96,7 +95,6 @@ impl KeyBindings {
         Ok(KeyBindings { bindings, marks, comparing, coding })
     }
 
-    /// Adds the keys of the comparison of wizard and assistant.
     pub fn with_comparison(mut self) -> KeyBindings {
         self.bindings.append(&mut self.comparing);
         self
@@ -134,7 +132,6 @@ impl KeyBindings {
         self.bindings.iter().find(acts)
     }
 
-    /// The key that sends the signal about a kitchen location.
     pub fn of_signal(&self, location: LocationId) -> Option<KeyChord> {
         let is_it = |line: &&KeyBinding| matches!(line.action, KeyAction::Signal(about, _) if about == location);
         self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
@@ -290,12 +287,10 @@ impl KeyFileBindings {
         self.table(line.section).iter().find(|(name, _)| *name.get_ref() == line.name)
     }
 
-    /// Byte range of a key binding's entry in the key file.
     pub(super) fn place(&self, line: &KeyBinding) -> Option<Range<usize>> {
         self.entry(line).map(|(name, keys)| name.span().start..keys.span().end)
     }
 
-    /// Applies the key file to the key tables of the live console and of the replay.
     pub(super) fn apply(&self, live: &mut [KeyBinding], replay: &mut [KeyBinding]) -> Result<(), KeyError> {
         for section in [KeyFileTable::Console, KeyFileTable::Replay, KeyFileTable::Signals, KeyFileTable::Buttons] {
             let known = || live.iter().chain(replay.iter()).filter(move |line| line.section == section);
@@ -338,7 +333,6 @@ impl KeyFileBindings {
     }
 }
 
-/// The keys that the key file assigns to an action.
 fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, KeyError> {
     let wrong = |found: String, remedy: &str| {
         let place = KeyErrorSource::File(names.span());

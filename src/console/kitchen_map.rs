@@ -15,9 +15,7 @@ use tomcom_session::settings::ParticipantKind;
 /// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]
 pub struct KitchenMapBox {
-    /// Kitchen element (location or storage) that the box on the screen shows.
     pub thing: KitchenMapElement,
-    /// Rectangle of terminal cells in which the element is drawn.
     pub cells: Rect,
     area: DisplayArea,
     /// Regions of the wall display and of the screen that belong to the element; the regions of all elements together
@@ -31,16 +29,13 @@ pub struct KitchenMapBox {
 pub struct AgentZone {
     /// Agent that reaches these columns of the kitchen map; `None` if both agents do.
     pub owner: Option<Agent>,
-    /// Rectangle of terminal cells that the agent's zone takes.
     pub cells: Rect,
 }
 
 /// Kitchen map of the console: the boxes of all locations and storages, and the zones of the agents.
 #[derive(Clone, Debug)]
 pub struct KitchenMap {
-    /// Boxes of all kitchen locations and ingredient storages on the map.
     pub spots: Vec<KitchenMapBox>,
-    /// Zones of the two agents, whose names stand above the columns of the kitchen map.
     pub zones: Vec<AgentZone>,
 }
 
@@ -282,7 +277,6 @@ fn cover(mut spots: Vec<KitchenMapBox>) -> Vec<KitchenMapBox> {
 /// An element of the kitchen map: a location or an ingredient storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KitchenMapElement {
-    /// Location of the kitchen, such as a hand, a board or an order.
     Location(LocationId),
     /// Ingredient storage, as an index into [`Kitchen::storages`].
     Storage(usize),

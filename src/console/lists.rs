@@ -25,11 +25,8 @@ pub struct ListCursor {
 /// Result of a key in an open list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListReply {
-    /// The list stays open.
     Open,
-    /// The list was closed without a choice.
     Left,
-    /// The row under the cursor was chosen.
     Taken,
 }
 
@@ -90,59 +87,42 @@ fn begins(words: &[Vec<char>], wanted: &[char]) -> bool {
 pub enum PickerKind {
     /// Which location has another content than the program assumes?
     Place,
-    /// What is the content of this location?
     Content(LocationId),
-    /// Which button shall the robot press next?
     Button,
-    /// Why is the trial aborted?
     Abort,
-    /// Why is the trial excluded from the analysis?
     Exclude,
-    /// Why are the remaining questions of the freeze probe with this number skipped?
     SkipProbe(u32),
 }
 
 /// Answer that the wizard chose from a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PickerAnswer {
-    /// Location whose content is to be corrected.
     Place(LocationId),
-    /// True content of the location.
     Content(ContentId),
-    /// Button that the robot shall press next.
     Button(ButtonId),
-    /// Reason for aborting or excluding the trial, or for skipping the probe.
     Reason(String),
 }
 
 /// An entry of a list from which the wizard chooses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PickerEntry {
-    /// Answer that choosing the entry gives.
     pub answer: PickerAnswer,
-    /// Text of the entry, which is shown and searched.
     pub label: String,
-    /// Further information, shown at the right of the entry.
     pub remark: String,
 }
 
 /// An open list from which the wizard chooses the answer to a question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picker {
-    /// Question that the list asks the wizard.
     pub kind: PickerKind,
-    /// Filter and cursor of the list.
     pub cursor: ListCursor,
 }
 
 /// Result of a key in a list of answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PickerOutcome {
-    /// The list stays open.
     Nothing,
-    /// The list was closed without an answer.
     Left,
-    /// The wizard chose this answer from the list.
     This(PickerAnswer),
 }
 
@@ -152,7 +132,6 @@ impl Picker {
         Picker { kind, cursor: ListCursor::default() }
     }
 
-    /// The list's question in words.
     pub fn title(&self, session: &Session) -> String {
         match self.kind {
             PickerKind::Place => "Correct the kitchen: which place?".to_string(),
@@ -180,7 +159,6 @@ impl Picker {
         }
     }
 
-    /// Handles a key in the open list of answers.
     pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
         let mut choices = self.choices(session);
         match self.cursor.key(choices.len(), code) {
@@ -202,7 +180,6 @@ fn places(session: &Session) -> Vec<PickerEntry> {
     places.map(choice).collect()
 }
 
-/// Contents that the location can have, except the one that the program assumes.
 fn contents(session: &Session, place: LocationId) -> Vec<PickerEntry> {
     let kitchen = &session.kitchen;
     let can_be = |id: ContentId| id.is_empty() || kitchen.accepts(place, id);
@@ -308,13 +285,9 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
 /// An open list from which the user chooses a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordingPicker {
-    /// Question above the list of recordings.
     pub title: String,
-    /// Headings of the columns in the list of recordings.
     pub headings: Vec<String>,
-    /// Cells of each recording's row.
     pub rows: Vec<Vec<String>>,
-    /// Filter and cursor of the list.
     pub cursor: ListCursor,
 }
 
@@ -323,7 +296,6 @@ pub struct RecordingPicker {
 pub enum RecordingReply {
     /// The recording with this index in [`RecordingPicker::rows`] was chosen.
     Chosen(usize),
-    /// The list was closed without a choice.
     Leave,
 }
 
@@ -338,7 +310,6 @@ impl RecordingPicker {
         (0..self.rows.len()).filter(|&row| self.cursor.keeps(&self.rows[row].join(" "))).collect()
     }
 
-    /// Handles a key in the list of recordings.
     pub fn key(&mut self, key: &KeyEvent) -> Option<RecordingReply> {
         let has_control = key.modifiers.contains(KeyModifiers::CONTROL);
         match (key.kind, key.code) {
@@ -361,7 +332,6 @@ impl RecordingPicker {
         None
     }
 
-    /// Handles a turn of the mouse wheel by this number of steps upwards.
     pub fn scroll(&mut self, steps: i8) {
         self.take(if steps > 0 { KeyCode::Up } else { KeyCode::Down });
     }
@@ -380,9 +350,7 @@ impl RecordingPicker {
 /// A question to the user with numbered answers, shown before a recording begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StartPrompt {
-    /// Heading of the question to the user.
     pub title: String,
-    /// Text of the question, as paragraphs.
     pub text: Vec<String>,
     /// Texts of the answers; key 1 selects the first.
     pub answers: Vec<String>,
@@ -391,9 +359,7 @@ pub struct StartPrompt {
 /// Reply of the user to a question before a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StartReply {
-    /// Index of the answer that the user selected.
     Answer(usize),
-    /// The user quits the program.
     Leave,
 }
 

@@ -154,7 +154,6 @@ pub(super) fn wheel(
     None
 }
 
-/// The panel of the console under a screen cell.
 fn panel_at(regions: &PanelAreas, cell: (u16, u16)) -> Option<Panel> {
     Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
 }
@@ -162,36 +161,29 @@ fn panel_at(regions: &PanelAreas, cell: (u16, u16)) -> Option<Panel> {
 /// Action of a mouse click on the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClickAction {
-    /// Do what this key of the keyboard does.
     Key(KeyChord),
     /// Move the cursor to this row of the open list (counted among the rows that match the filter); choose the row if
     /// the cursor is already there.
     Row(usize),
     /// Open the list of all actions (the palette) with this filter text; for hints that several keys share.
     Palette(&'static str),
-    /// Show the estimated belief about this state aspect over time.
     Belief(AspectId),
     /// While a rater codes errors: go to the error with this index in the list.
     Error(usize),
-    /// Move a replay to this session time.
     Seek(SessionTime),
 }
 
 /// Screen cells that can be clicked, with the action of a click.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClickTarget {
-    /// Screen cells that can be clicked.
     pub cells: Rect,
-    /// Action of a mouse click on these screen cells.
     pub action: ClickAction,
 }
 
 /// The question whether to send a clicked signal; the signal is sent once the wizard confirms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SendConfirmation {
-    /// Key of the keyboard with the same action as the click.
     pub chord: KeyChord,
-    /// Signal that is sent to the participant once the wizard confirms.
     pub signal: Signal,
     /// Sequence number of the clicked offer; `None` if a signal was clicked that is not on offer.
     pub offer: Option<u64>,

@@ -41,7 +41,6 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
     }
 }
 
-/// Turns the pages of the help.
 pub fn leaf(model: &mut ConsoleModel, look: ViewAction) {
     let is_forward = matches!(look, ViewAction::Next | ViewAction::Forward | ViewAction::Later);
     model.help_from = match is_forward {
@@ -65,19 +64,13 @@ pub(super) fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<
 /// A panel of the console that can be shown alone at full size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
-    /// Kitchen as it truly is, with the wizard's keys.
     Kitchen,
-    /// Estimate of the participant's beliefs.
     Belief,
-    /// Signals that the assistant advises.
     Recommendation,
     /// Map of the places where the participant looked lately; shown at full size only.
     GazeMap,
-    /// List of the newest events.
     Events,
-    /// Timeline of presses, signals and errors.
     Timeline,
-    /// Comparison of the wizard's and the assistants' signals on one time axis.
     Comparison,
 }
 
@@ -93,7 +86,6 @@ impl Panel {
         Panel::Timeline,
     ];
 
-    /// Whether the wizard may see the panel under this visibility setting.
     pub(super) fn may_be_seen(self, visibility: WizardVisibility, compares: bool) -> bool {
         match self {
             Panel::Comparison => compares,

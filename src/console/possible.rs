@@ -58,7 +58,6 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
         )
 }
 
-/// Whether the open dialog or sheet lets the key of an action through.
 fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     let has_control = || model.keys.chord_for(action).is_some_and(|chord| chord.ctrl);
     let stops = *action == KeyAction::StopRobot;

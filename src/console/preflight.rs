@@ -40,12 +40,10 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks
 }
 
-/// Whether all preflight checks are ok.
 pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
 
-/// Name of the key that carries out an action.
 fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
@@ -226,11 +224,8 @@ pub struct ParticipantDisplayHealth {
     pub round_trip_ms: Option<f64>,
     /// Delay from the participant's last press to its effect on the screen, in milliseconds.
     pub redraw_ms: Option<f64>,
-    /// Number of connected participant pages that only watch.
     pub watching: u64,
-    /// Number of unreadable messages from participant pages.
     pub malformed: u64,
-    /// Number of rejected connections to the participant's display.
     pub refused: u64,
 }
 
@@ -302,7 +297,6 @@ impl ParticipantDisplayHealth {
     }
 }
 
-/// Whether the session's participant uses the display.
 pub fn is_wanted(session: &Session) -> bool {
     session.spec.participant.kind == ParticipantKind::Display
 }

@@ -13,11 +13,8 @@ use tomcom_session::{Event, Session, TrialPhase};
 /// Who enters the answers to a freeze probe's questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeAnswerer {
-    /// The participant enters the answers on the display.
     Display,
-    /// The wizard enters at the console what the participant says.
     Console,
-    /// The simulated participant gives the answers.
     Simulated,
 }
 
@@ -60,7 +57,6 @@ pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
     Some(format!("{} in {:.0} s", numbered(session, book.numbered + 1), in_s.max(0.0).ceil()))
 }
 
-/// Whether the key is a digit that selects a choice by its number.
 pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode) -> bool {
     let is_digit = matches!(code, KeyCode::Char('0'..='9'));
     let is_free = model.dialog.is_none() && model.playback.is_none();
@@ -141,7 +137,6 @@ pub(super) fn write(
 /// Answer to a freeze probe's question while the wizard enters it at the console.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProbeEntry {
-    /// Numbers of the probe and of the question that the answer belongs to.
     of: (u32, usize),
     /// Number of the selected answer; 0 is "I don't know".
     pub choice: Option<usize>,

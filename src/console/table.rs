@@ -164,7 +164,6 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines
 }
 
-/// Default key table of a replay.
 pub fn replay() -> Vec<KeyBinding> {
     use ReplayAction::{BackTo, On};
     let moves = [

@@ -25,7 +25,6 @@ impl TextInput {
         TextInput { at: letters.len(), letters }
     }
 
-    /// Handles a key that edits the text input.
     pub fn key(&mut self, code: KeyCode) {
         match code {
             KeyCode::Char(letter) if self.letters.len() < MOST && !letter.is_control() => {

@@ -99,7 +99,6 @@ impl TerminalScreen {
         })
     }
 
-    /// Sets up the screen of a terminal in raw mode.
     fn set_up(frames: Arc<FrameWriter>) -> io::Result<TerminalScreen> {
         let ground = ground().unwrap_or(TerminalBackground::Dark);
         frames.show(way_in()?);

@@ -47,7 +47,6 @@ struct Panel<'a> {
     beliefs: &'a [EstimatedBelief],
 }
 
-/// Draws the belief panel.
 pub fn draw(
     brush: &mut Painter,
     regions: &PanelAreas,
@@ -243,7 +242,6 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws an estimated belief in one line of a wide panel.
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
         let style = brush.style(role(belief));
         let end = self.end(belief, area.width);
@@ -260,7 +258,6 @@ impl Panel<'_> {
         brush.text(x, y, (area.x + room).saturating_sub(x), &is, text);
     }
 
-    /// Draws the beliefs as the few lines of a small screen.
     fn lines(&self, brush: &mut Painter, area: Rect) {
         let quiet = brush.style(TextRole::Quiet);
         let x = brush.text(area.x, area.y, area.width, " beliefs  ", quiet);

@@ -24,7 +24,6 @@ const LABELS: u16 = 10;
 
 const TITLE: &str = "Signals of wizard and assistant compared";
 
-/// Draws the comparison of wizard and assistants.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.comparison;
     let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };

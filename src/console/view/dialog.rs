@@ -68,7 +68,6 @@ fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str
     brush.hints(inside.x + 2, inside.bottom() - 1, inside.width - 3, &hints);
 }
 
-/// Draws the details of a difference between wizard and assistant.
 fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     let columns = (screen.width - 4).min(100);
     let wrapped: Vec<(bool, String)> = lines
@@ -104,7 +103,6 @@ pub fn report_rest(model: &ConsoleModel) -> usize {
     lines.len().saturating_sub(rows)
 }
 
-/// Draws the report of a wizard training.
 fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleModel) {
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
@@ -126,7 +124,6 @@ const FIX: &str = "fix: ";
 /// Column at which the findings of the preflight checks begin.
 const FOUND: u16 = 23;
 
-/// Draws the list of preflight checks.
 pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let checks = checks(session, model);
     let columns = (COLUMNS + 24).min(screen.width);
@@ -173,7 +170,6 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
     brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
 }
 
-/// Draws the text input of the wizard's note.
 pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
     // A trial goes on by itself after a freeze probe.
     let (remark, says) = match session.is_running() {
@@ -235,13 +231,10 @@ struct ListPage<'a> {
     rows: Vec<Row>,
     /// Number of rows of the list before filtering.
     all: usize,
-    /// What the space bar does in the list, as a hint.
     space: &'a str,
-    /// What the enter key does in the list, as a hint.
     takes: &'a str,
 }
 
-/// Draws the open list of answers to a question.
 pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
     let rows = picker.choices(session).into_iter();
     let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();

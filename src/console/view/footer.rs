@@ -26,7 +26,6 @@ struct Hint<'a> {
     role: TextRole,
 }
 
-/// Draws the line of key hints.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
@@ -165,7 +164,6 @@ fn style_of(brush: &Painter, notice: &Notice) -> Style {
     }
 }
 
-/// Whether the trial of a live session is over.
 fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed)
 }

@@ -179,7 +179,6 @@ fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect
     (0..reach).flat_map(|by| [at(by), at(-by)]).find(is_free).unwrap_or(at(0))
 }
 
-/// Marks in the kitchen panel where the participant looks.
 pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
     let Some((at, sample)) = session.gaze.last else { return };
     let age_s = model.now.secs_since(at);
@@ -228,7 +227,6 @@ pub fn draw_target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
     brush.text(x, y, columns, &text, badge);
 }
 
-/// Draws the result of the gaze accuracy check, once all targets have been shown.
 pub fn draw_accuracy_check(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
     let inside = open(brush, screen, (COLUMNS, 13), "Gaze accuracy check", "space stops the robot");

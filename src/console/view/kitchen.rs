@@ -28,7 +28,6 @@ const FRESH_S: f64 = 5.0;
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
 
-/// Draws the kitchen panel.
 pub fn draw(
     brush: &mut Painter,
     regions: &PanelAreas,
@@ -137,16 +136,12 @@ struct Place<'a> {
     model: &'a ConsoleModel,
     id: LocationId,
     kitchen: &'a Kitchen,
-    /// Content of the location in words, and whether the location is empty.
     content: String,
     is_empty: bool,
     /// Seconds since a recent change of the location's content, and the agent that changed it.
     fresh: Option<(f64, Option<Agent>)>,
-    /// Whether the present signal highlights this kitchen location.
     is_shown: bool,
-    /// Whether the open offer is about this kitchen location.
     is_offered: bool,
-    /// Value that the participant falsely believes about this location.
     thinks: Option<String>,
 }
 

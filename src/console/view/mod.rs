@@ -30,7 +30,6 @@ pub mod side_panels;
 pub mod theme;
 pub mod timeline;
 
-/// Draws the console.
 pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     draw(&mut Painter::new(frame.buffer_mut(), model.theme), session, model);
 }

@@ -59,7 +59,6 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
 }
 
 impl ShownOffer<'_> {
-    /// The kitchen location that the offered signal is about.
     pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
         match &self.act {
             OfferedCommunication::Signal(signal) => signal.location(&session.kitchen),
@@ -258,7 +257,6 @@ const LONGEST_SIGNAL: u16 = 28;
 /// Text that marks the signal on offer in the list of signals.
 const OFFERED: &str = "offered";
 
-/// Draws the list of signals, ranked by benefit.
 pub fn draw_signals(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.recommendation;
     if area.area() == 0 {
@@ -384,7 +382,6 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
     x + GAUGE + 1
 }
 
-/// Draws the line with the cost of a signal and the age of the numbers in the list.
 fn cost_line(
     brush: &mut Painter,
     inside: Rect,

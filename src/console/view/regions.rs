@@ -29,43 +29,27 @@ pub enum ScreenSize {
 /// Screen areas of the console's panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelAreas {
-    /// Size class of the terminal: small, medium or large.
     pub screen_size: ScreenSize,
-    /// Screen area of the head line.
     pub head: Rect,
     /// Area of the offer: one line, or two on narrow terminals.
     pub offer: Rect,
-    /// Screen area of the kitchen panel.
     pub kitchen: Rect,
-    /// Screen area of the belief panel.
     pub belief: Rect,
-    /// Screen area of the recommendation panel.
     pub recommendation: Rect,
     /// Area of the gaze map, which is shown at full size only: the kitchen panel marks the gaze, too.
     pub gaze_map: Rect,
-    /// Area of the panel that tells which signal the participant sees.
     pub shown: Rect,
     /// Area of the gaze panel: where the participant looks, and the gaze's quality.
     pub gaze: Rect,
-    /// Screen area of the robot panel.
     pub robot: Rect,
-    /// Screen area of the list of newest events.
     pub events: Rect,
-    /// Screen area of the timeline.
     pub timeline: Rect,
-    /// Area of the comparison of wizard and assistants, which replaces the timeline.
     pub comparison: Rect,
-    /// Screen area of the wizard training's panel.
     pub lesson: Rect,
-    /// Screen area of a rater's codebook.
     pub codebook: Rect,
-    /// Screen area of a rater's list of errors.
     pub errors: Rect,
-    /// Area of the bar that shows the position in a recording.
     pub scrub: Rect,
-    /// Screen area of the line of messages.
     pub message: Rect,
-    /// Screen area of the line of key hints.
     pub footer: Rect,
 }
 
@@ -97,9 +81,7 @@ const ERRORS_ROWS: u16 = 6;
 struct LineRows {
     /// If a rater codes errors: rows of the codebook across the screen, and in a column beside the kitchen.
     codebook: Option<[u16; 2]>,
-    /// Number of compared assistants, if a comparison is shown.
     comparison: Option<u16>,
-    /// Whether there is a bar for the position in a recording.
     scrubs: bool,
 }
 
@@ -236,7 +218,6 @@ impl PanelAreas {
         regions
     }
 
-    /// Screen area of a panel of the console.
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
@@ -359,7 +340,6 @@ fn comparison_rows(screen_size: ScreenSize, assistants: u16) -> u16 {
     }
 }
 
-/// Screen area inside the frame of a panel.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
 }

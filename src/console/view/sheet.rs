@@ -310,9 +310,7 @@ const WIDEST: u16 = 84;
 
 /// Drawing context of a sheet (a form at full size).
 pub(super) struct Pen<'a, 'b> {
-    /// Painter that draws on the screen.
     pub brush: &'a mut Painter<'b>,
-    /// Whether the sheet's keys work and are shown; they do not in a replay.
     pub with_keys: bool,
 }
 
@@ -326,7 +324,6 @@ pub(super) struct Page {
     lines: Vec<Vec<PagePart>>,
     /// Index of the line that must be visible if the page is longer than the screen.
     focus: usize,
-    /// Lines that can be clicked, each with the key that a click stands for.
     keys: Vec<(usize, KeyChord)>,
 }
 
@@ -421,7 +418,6 @@ pub(super) fn hide_probe(brush: &mut Painter, area: Rect, session: &Session, mod
     }
 }
 
-/// Draws the sheet of a freeze probe.
 pub(super) fn draw_probe(pen: &mut Pen, screen: Rect, open: &StartedProbe, session: &Session, model: &ConsoleModel) {
     let mut page = Page::new(screen);
     let who = answerer(session, model);

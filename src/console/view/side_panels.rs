@@ -16,7 +16,6 @@ use tomcom_session::history::wording;
 use tomcom_session::settings::ArmKind;
 use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
 
-/// Draws the robot panel.
 pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.robot;
     if area.area() == 0 {
@@ -58,7 +57,6 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
     }
 }
 
-/// Draws the content of the robot's hand and its number of presses.
 fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
     let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
@@ -67,7 +65,6 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-/// Draws the arm's motion phase, distance of the human's hand, and contact force.
 fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, sample: &ArmSample) {
     let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
     let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(sample.phase) };
@@ -96,7 +93,6 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
 }
 
-/// Style in which a safety mode of the robot is drawn.
 fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
         SafetyMode::Normal => TextRole::Quiet,
@@ -152,7 +148,6 @@ fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Sessi
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// Name of the key that releases the held robot, with words.
 fn release(model: &ConsoleModel) -> String {
     model
         .keys
@@ -254,7 +249,6 @@ fn says(session: &Session, signal: &Signal) -> String {
 /// Columns for the clock time of a line of feedback.
 const CLOCK: u16 = 6;
 
-/// Draws the panel of a wizard training.
 pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleModel) {
     let area = regions.lesson;
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };

@@ -29,7 +29,6 @@ const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
 const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 
-/// Draws the timeline of presses, signals, orders and notes.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.timeline;
     if area.area() == 0 {
@@ -264,7 +263,6 @@ fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> Stri
 /// Words before the times while the trial has not started: the longest of all phases.
 const BEFORE: &str = " before the trial, ";
 
-/// Draws the bar of the position in the recording.
 pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
     if area.area() == 0 {
@@ -306,7 +304,6 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
 /// Columns for the name of the agent; the longest is "assistant".
 const WHO: u16 = 10;
 
-/// Draws the list of events.
 pub fn draw_events(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     if regions.events.area() == 0 {
         return;

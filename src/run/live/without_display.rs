@@ -2,7 +2,7 @@
 
 use crate::console::console_model::NoticeLevel;
 use crate::console::preflight::ParticipantDisplayHealth;
-use crate::run::desk::{OperatorDesk, PageInput};
+use crate::run::operator_station::{OperatorStation, PageInput};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::{Event, Session};
 
@@ -11,7 +11,7 @@ pub(super) enum ParticipantDisplay {}
 
 impl ParticipantDisplay {
     /// Returns no display, since this build lacks the participant's display.
-    pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
+    pub fn at(_: &OperatorStation) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         (None, None)
     }
 

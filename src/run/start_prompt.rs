@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use super::desk::{OperatorDesk, hear_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
+use super::operator_station::{OperatorStation, take_consent_input};
 use crate::console::ConsoleMessage;
 use crate::console::lists::{StartPrompt, StartReply};
 use crate::console::text_input::refusal_of_paste;
@@ -20,8 +20,8 @@ const REDRAW: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// The terminal was closed.
-pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartPrompt) -> Result<Option<usize>, LiveError> {
-    Ok(ask_consent(desk, question, false).await?.map(|(index, _)| index))
+pub(super) async fn ask(station: &mut OperatorStation, question: &StartPrompt) -> Result<Option<usize>, LiveError> {
+    Ok(ask_consent(station, question, false).await?.map(|(index, _)| index))
 }
 
 /// Asks the wizard a question that, with `on_display`, the participant's page can answer, too, by choosing the first
@@ -30,13 +30,13 @@ pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartPrompt) -> Resu
 /// # Errors
 /// The terminal was closed.
 pub(super) async fn ask_consent(
-    desk: &mut OperatorDesk,
+    station: &mut OperatorStation,
     question: &StartPrompt,
     on_display: bool,
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
-    let (theme, asked, button) = (desk.theme, Instant::now(), ConsentHold::default());
+    let (theme, asked, button) = (station.theme, Instant::now(), ConsentHold::default());
     let mut shell = OpenQuestion { question, on_display, asked, button, theme, notice: None, dirty: true };
-    let reply = event_loop::run(&mut shell, desk).await?;
+    let reply = event_loop::run(&mut shell, station).await?;
     Ok(match reply {
         Some((StartReply::Answer(index), on)) => Some((index, on)),
         Some((StartReply::Leave, _)) | None => None,
@@ -46,16 +46,13 @@ pub(super) async fn ask_consent(
 /// A question to the wizard that has not been answered.
 struct OpenQuestion<'a> {
     question: &'a StartPrompt,
-    /// Whether the participant's page can answer the question.
     on_display: bool,
     /// When the question was asked: the time with which the hold of the page's button is measured begins here.
     asked: Instant,
-    /// The consent button of the participant's page.
     button: ConsentHold,
     theme: Theme,
     /// Why the last input had no effect.
     notice: Option<&'static str>,
-    /// Whether the screen with the question has to be redrawn.
     dirty: bool,
 }
 
@@ -73,7 +70,7 @@ impl ConsoleShell for OpenQuestion<'_> {
         let now = SessionTime(self.asked.elapsed().as_nanos() as u64);
         let message = match event {
             LoopEvent::Page(input) if self.on_display => {
-                if !hear_consent(&input, &mut self.button, now) {
+                if !take_consent_input(&input, &mut self.button, now) {
                     self.notice = Some("the page sent a consent, but its button was not held long enough: not counted");
                     self.dirty = true;
                 }

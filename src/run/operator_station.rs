@@ -1,4 +1,4 @@
-//! The operator's desk: terminal, eye tracker, the participant's display, and termination signals. The desk is opened
+//! The operator's station: terminal, eye tracker, the participant's display, and termination signals. The station is opened
 //! once for all recordings of a participant's series.
 
 use std::io;
@@ -31,34 +31,34 @@ use tomcom_session::settings::{ConsoleSpec, GazeSource};
 /// Largest number of tracker messages that are processed together; more would delay the wizard's keys.
 const PACKET: usize = 32;
 /// Longest wait for the program Pupil Capture to finish its last request.
-const SETTLE: Duration = Duration::from_secs(2);
+const LAST_REQUEST: Duration = Duration::from_secs(2);
 
 #[cfg(feature = "display")]
-mod wall;
+mod station_display;
 #[cfg(not(feature = "display"))]
-#[path = "desk/without_display.rs"]
-mod wall;
+#[path = "operator_station/without_display.rs"]
+mod station_display;
 
-mod lsl_desk;
+mod lsl_output;
 
-use lsl_desk::LslDesk;
-use wall::WallDisplay;
-pub(super) use wall::{PageInput, hear_consent};
+use lsl_output::LslOutput;
+use station_display::StationDisplay;
+pub(super) use station_display::{PageInput, take_consent_input};
 
 /// Terminal and devices that all recordings of a series share.
-pub(super) struct OperatorDesk {
+pub(super) struct OperatorStation {
     pub screen: TerminalScreen,
     /// Colour theme of the questions that the console asks before a recording.
     pub theme: Theme,
-    pub seat: OperatorInput,
+    pub input: OperatorInput,
     pub tracker: GazeTracker,
-    pub wall: WallDisplay,
-    pub lsl: LslDesk,
+    pub display: StationDisplay,
+    pub lsl: LslOutput,
 }
 
 /// The wizard's input from the terminal, and termination signals from the system.
 pub(super) struct OperatorInput {
-    hands: TerminalInput,
+    terminal: TerminalInput,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
 
@@ -66,9 +66,8 @@ pub(super) struct OperatorInput {
 #[derive(Default)]
 pub(super) struct GazeTracker {
     news: Option<Receiver<TrackerMessage>>,
-    /// Channel for requests to the program Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
-    /// End of the thread that reads gaze from the Lab Streaming Layer; the desk waits for it once `news` is dropped.
+    /// End of the thread that reads gaze from the Lab Streaming Layer; the station waits for it once `news` is dropped.
     _inlet: Option<InletThreadGuard>,
     file: Option<Arc<GazeFile>>,
     /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
@@ -84,42 +83,40 @@ pub(super) struct GazeTracker {
 }
 
 impl GazeTracker {
-    /// Keeps the accepted gaze accuracy check for the next recording.
     pub fn keep(&mut self, calibrated: Option<AcceptedGazeCheck>) {
         self.calibrated = calibrated;
     }
 
-    /// The gaze accuracy check that was accepted in the previous recording.
     pub fn calibrated(&self) -> Option<&AcceptedGazeCheck> {
         self.calibrated.as_ref()
     }
 }
 
-impl OperatorDesk {
+impl OperatorStation {
     /// Opens the devices that these settings need, and takes over the terminal.
     ///
     /// # Errors
     /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, the tags do not fit on the
     /// display, or the library of the Lab Streaming Layer is missing.
-    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorDesk, LiveError> {
+    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorStation, LiveError> {
         outlive_file_limits().map_err(TerminalError)?;
-        let lsl = LslDesk::open(spec)?;
+        let lsl = LslOutput::open(spec)?;
         let tracker = GazeTracker::open(spec, kitchen, &lsl).await?;
-        let wall = WallDisplay::open(spec).await?;
-        Ok(OperatorDesk { tracker, wall, lsl, ..OperatorDesk::without_devices(&spec.console)? })
+        let display = StationDisplay::open(spec).await?;
+        Ok(OperatorStation { tracker, display, lsl, ..OperatorStation::without_devices(&spec.console)? })
     }
 
     /// Takes over the terminal, without devices.
     ///
     /// # Errors
     /// There is no terminal.
-    pub fn without_devices(console: &ConsoleSpec) -> Result<OperatorDesk, TerminalError> {
+    pub fn without_devices(console: &ConsoleSpec) -> Result<OperatorStation, TerminalError> {
         let screen = TerminalScreen::take().map_err(TerminalError)?;
         let theme = theme(console, screen.ground);
-        let hands = TerminalInput::start().map_err(TerminalError)?;
-        let seat = OperatorInput { hands, end: Box::pin(asked_to_end()) };
-        let (tracker, wall, lsl) = (GazeTracker::default(), WallDisplay::default(), LslDesk::default());
-        Ok(OperatorDesk { screen, theme, seat, tracker, wall, lsl })
+        let terminal = TerminalInput::start().map_err(TerminalError)?;
+        let input = OperatorInput { terminal, end: Box::pin(asked_to_end()) };
+        let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
+        Ok(OperatorStation { screen, theme, input, tracker, display, lsl })
     }
 }
 
@@ -130,13 +127,13 @@ impl OperatorInput {
         tokio::select! {
             biased;
             _ = &mut self.end => None,
-            message = self.hands.next() => message,
+            message = self.terminal.next() => message,
         }
     }
 }
 
 impl GazeTracker {
-    async fn open(spec: &SessionSpec, kitchen: &Kitchen, desk: &LslDesk) -> Result<GazeTracker, LiveError> {
+    async fn open(spec: &SessionSpec, kitchen: &Kitchen, lsl: &LslOutput) -> Result<GazeTracker, LiveError> {
         let (participant, tracker) = (&spec.participant, &spec.tracker);
         let surface = || tracker.surface_map(kitchen).map_err(LiveError::Tags);
         match participant.gaze {
@@ -161,9 +158,9 @@ impl GazeTracker {
                 Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
             }
             GazeSource::Lsl => {
-                let stream = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.clone());
+                let stream = spec.lsl.as_ref().and_then(|spec| spec.gaze.clone());
                 // The settings were checked, so both the LSL library and the stream's settings exist.
-                let Some((library, stream)) = desk.library().zip(stream) else { return Ok(GazeTracker::default()) };
+                let Some((library, stream)) = lsl.library().zip(stream) else { return Ok(GazeTracker::default()) };
                 let followed = lsl::follow(library, stream, kitchen.display_m);
                 let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
                 Ok(GazeTracker { news: Some(news), _inlet: Some(inlet), ..GazeTracker::default() })
@@ -220,7 +217,7 @@ impl GazeTracker {
     }
 
     /// Waits briefly until the program Pupil Capture has finished its requests.
-    pub async fn settle(&self) {
+    pub async fn finish_requests(&self) {
         let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(TrackerMessage::Connected(_))))
         else {
             return;
@@ -228,7 +225,7 @@ impl GazeTracker {
         let (sender, done) = oneshot::channel();
         if orders.try_send(CaptureRequest::Report(sender)).is_ok() {
             // The wait is limited, since Pupil Capture may have been closed.
-            let _ = timeout(SETTLE, done).await;
+            let _ = timeout(LAST_REQUEST, done).await;
         }
     }
 }

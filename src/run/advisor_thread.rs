@@ -45,7 +45,7 @@ impl AdvisorThreadHandle {
 /// Waits for the assistant's next recommendation; waits forever if the session has no assistant.
 pub async fn next_advice(advisor: &mut Option<AdvisorThreadHandle>) -> Option<Recommendation> {
     match advisor {
-        Some(desk) => desk.answers.recv().await,
+        Some(thread) => thread.answers.recv().await,
         None => std::future::pending().await,
     }
 }

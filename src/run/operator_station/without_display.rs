@@ -1,4 +1,4 @@
-//! Stand-in for the participant's display at the operator's desk, in a build without the feature `display`.
+//! Stand-in for the participant's display at the operator's station, in a build without the feature `display`.
 
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
@@ -10,15 +10,15 @@ pub(in crate::run) enum PageInput {}
 
 /// Stand-in for the participant's display, which this build lacks.
 #[derive(Default)]
-pub(in crate::run) struct WallDisplay {}
+pub(in crate::run) struct StationDisplay {}
 
-impl WallDisplay {
+impl StationDisplay {
     /// Opens no display; sessions that need a display were refused before.
     ///
     /// # Errors
     /// None.
-    pub async fn open(_: &SessionSpec) -> Result<WallDisplay, LiveError> {
-        Ok(WallDisplay {})
+    pub async fn open(_: &SessionSpec) -> Result<StationDisplay, LiveError> {
+        Ok(StationDisplay {})
     }
 
     /// Does nothing, since this build has no page that could ask for consent.
@@ -33,6 +33,6 @@ impl WallDisplay {
 }
 
 /// Never called, since this build has no participant's page.
-pub(in crate::run) fn hear_consent(input: &PageInput, _: &mut ConsentHold, _: SessionTime) -> bool {
+pub(in crate::run) fn take_consent_input(input: &PageInput, _: &mut ConsentHold, _: SessionTime) -> bool {
     match *input {}
 }

@@ -1,4 +1,4 @@
-//! The Lab Streaming Layer (LSL) at the operator's desk: its library, and the streams that are sent.
+//! The Lab Streaming Layer (LSL) at the operator's station: its library, and the streams that are sent.
 
 use std::rc::Rc;
 
@@ -9,19 +9,19 @@ use tomcom_session::{Session, SessionSpec};
 /// The LSL library, if the session uses LSL, and the streams that are sent. A participant's streams stay open from one
 /// recording to the next, so that a recorder can continue.
 #[derive(Default)]
-pub(in crate::run) struct LslDesk {
+pub(in crate::run) struct LslOutput {
     library: Option<LslLibrary>,
     streams: Option<Rc<LslStreams>>,
 }
 
-impl LslDesk {
+impl LslOutput {
     /// Loads the LSL library, if the session uses LSL.
     ///
     /// # Errors
     /// The LSL library is missing, or too old.
-    pub fn open(spec: &SessionSpec) -> Result<LslDesk, LslError> {
+    pub fn open(spec: &SessionSpec) -> Result<LslOutput, LslError> {
         let library = spec.uses_lsl().then(|| lsl::load(spec.lsl.as_ref())).transpose()?;
-        Ok(LslDesk { library, streams: None })
+        Ok(LslOutput { library, streams: None })
     }
 
     /// The LSL library; `None` if the session does not use LSL.

@@ -65,7 +65,7 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
 
 /// Message when a recording is opened for raters: at which error the session begins, and which codes changed since the
 /// errors were settled.
-pub(super) fn greeting(session: &RaterSession) -> String {
+pub(super) fn opening_words(session: &RaterSession) -> String {
     let name = session.name();
     let begins = match session.first_open() {
         None => return format!("{name}: {}", session.next_step().unwrap_or_default()),
@@ -92,7 +92,7 @@ pub(super) fn greeting(session: &RaterSession) -> String {
 ///
 /// # Errors
 /// The folder cannot be written to.
-pub(super) fn farewell(film: &SeekableReplay, session: &RaterSession) -> Result<String, RecordingWriteError> {
+pub(super) fn closing_words(film: &SeekableReplay, session: &RaterSession) -> Result<String, RecordingWriteError> {
     if !session.is_saved {
         save(film, session)?;
     }

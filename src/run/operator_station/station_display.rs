@@ -1,4 +1,4 @@
-//! The participant's display at the operator's desk.
+//! The participant's display at the operator's station.
 
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
@@ -11,24 +11,28 @@ use tomcom_session::{Session, SessionSpec};
 
 /// The server of the participant's display, if the session has one.
 #[derive(Default)]
-pub(in crate::run) struct WallDisplay(Option<DisplayServer>);
+pub(in crate::run) struct StationDisplay(Option<DisplayServer>);
 
-impl WallDisplay {
+impl StationDisplay {
     /// Starts the server of the participant's display, if the session has a display.
     ///
     /// # Errors
     /// The network address of the display's server cannot be opened.
-    pub async fn open(spec: &SessionSpec) -> Result<WallDisplay, LiveError> {
+    pub async fn open(spec: &SessionSpec) -> Result<StationDisplay, LiveError> {
         if spec.participant.kind != ParticipantKind::Display {
-            return Ok(WallDisplay(None));
+            return Ok(StationDisplay(None));
         }
         let (address, port) = (spec.display.listen, spec.display.port);
         let opened = DisplayServer::open(address, port, &DisplayWords::for_display(&spec.display)).await;
-        opened.map(|display| WallDisplay(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
+        opened.map(|display| StationDisplay(Some(display))).map_err(|reason| LiveError::Display {
+            address,
+            port,
+            reason,
+        })
     }
 
     /// The server of the participant's display; `None` if the session has no display.
-    pub fn display(&self) -> Option<&DisplayServer> {
+    pub fn server(&self) -> Option<&DisplayServer> {
         self.0.as_ref()
     }
 
@@ -53,7 +57,7 @@ impl WallDisplay {
 
 /// Handles an input of the participant's page while it asks for consent; returns false if the page says that the
 /// participant consented, although the button was not held.
-pub(in crate::run) fn hear_consent(input: &PageInput, button: &mut ConsentHold, now: SessionTime) -> bool {
+pub(in crate::run) fn take_consent_input(input: &PageInput, button: &mut ConsentHold, now: SessionTime) -> bool {
     match input {
         PageInput::Reply(ParticipantResponse::Hold { held }) => button.hold(*held, now),
         PageInput::Reply(ParticipantResponse::Consent) => return button.tell(now),

@@ -213,7 +213,7 @@ fn keys(args: &KeysArgs) -> Result<(), Failure> {
     let map = key_file::key_map(files.keys.as_ref())?;
     let lines = console::keys::lines(&files.kitchen.kitchen, &map)
         .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "{}", error.found)))?;
-    Ok(put(&console::keymap::write(&lines))?)
+    Ok(put(&console::keys::write(&lines))?)
 }
 
 fn completions(args: &CompletionsArgs) -> Result<(), Failure> {

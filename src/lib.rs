@@ -29,7 +29,6 @@
 //!
 //! A build refuses what it leaves out, and names the missing feature: [`tomcom_session::features`].
 
-#![warn(missing_docs)]
 #![deny(unsafe_code)]
 
 pub mod cli;

@@ -113,7 +113,7 @@ pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
 pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure> {
     let [one, other] = two_raters(raters, "--settle")?;
     check_terminal()?;
-    Ok(put(&format!("{}\n", review_console::settle(recording, [&one, &other])?))?)
+    Ok(put(&format!("{}\n", review_console::code_as_pair(recording, [&one, &other])?))?)
 }
 
 /// Parses the names of two different raters from the values of an option.

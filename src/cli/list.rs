@@ -8,7 +8,6 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::edge::near_path;
-use crate::run::pick_recording;
 use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::count;
 use tomcom_session::log::LOG_NAME;
@@ -68,7 +67,7 @@ pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
     }
     let found = recordings::of_folder(path)?;
     if std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
-        return pick_recording::pick(path)?.ok_or(Failure::Unread);
+        return recording_list::pick(path)?.ok_or(Failure::Unread);
     }
     let named: Vec<String> = found.iter().take(MOST_NAMED).map(|path| path.display().to_string()).collect();
     let more = match found.len().saturating_sub(MOST_NAMED) {

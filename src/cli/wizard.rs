@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::list::{chosen, each_chosen, exists, gathered};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
-use crate::console::playback::SPEEDS;
+use crate::console::console_model::SPEEDS;
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
 use tomcom_core::communication::concept::ConceptName;

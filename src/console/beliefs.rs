@@ -16,26 +16,21 @@ const THINKS: f32 = 0.5;
 /// Whether an estimated belief of the participant is probably false, unsure or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BeliefCorrectness {
-    /// The participant probably believes a wrong value.
     False,
     /// The true value is improbable and so is every other value; or the true value is probable, but a signal about the
     /// aspect is on offer.
     Unsure,
-    /// The participant probably knows the true value.
     Right,
 }
 
 /// Estimated belief of the participant about one state aspect (a location's content or a recipe).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatedBelief {
-    /// State aspect that the belief is about.
     pub aspect: AspectId,
-    /// Whether the belief is probably false, unsure or right.
     pub standing: BeliefCorrectness,
     /// Index of the value that the participant most probably believes; for an unsure belief of the wrong values only,
     /// since the true value would tell nothing.
     pub thinks: usize,
-    /// Index of the state aspect's true value.
     pub truth: usize,
     /// Expected probability that the participant gives to the value [`EstimatedBelief::thinks`].
     pub p: f32,
@@ -144,7 +139,6 @@ pub fn name(session: &Session, aspect: AspectId) -> String {
     }
 }
 
-/// A value of a state aspect in words.
 pub fn value(kitchen: &Kitchen, aspect: AspectId, value: usize) -> &str {
     &kitchen.aspects[aspect.index()].wordings[value]
 }

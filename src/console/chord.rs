@@ -35,9 +35,7 @@ const REMEDY: &str = "a key: a character such as \"k\", a letter with ctrl such 
 /// A key of the keyboard, pressed with or without ctrl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeyChord {
-    /// Key code as the terminal reports it.
     pub code: KeyCode,
-    /// Whether ctrl is held together with the key.
     pub ctrl: bool,
 }
 
@@ -55,7 +53,6 @@ impl KeyChord {
         KeyChord::plain(KeyCode::Char(key))
     }
 
-    /// The key that types this character, with ctrl.
     pub const fn ctrl(key: char) -> KeyChord {
         KeyChord { code: KeyCode::Char(key), ctrl: true }
     }

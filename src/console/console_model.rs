@@ -1,36 +1,32 @@
-//! State of the console besides the session: active keys, open dialog, latest notice.
+//! State of the console besides the session, the messages that it receives, and the commands that it returns.
 
 use std::collections::VecDeque;
 
-use crossterm::event::KeyCode;
+use crossterm::event::{KeyCode, KeyEvent};
 
 use super::chord::KeyChord;
-use super::click::SendConfirmation;
-use super::compared::SenderComparisonView;
-use super::display_status::ParticipantDisplayHealth;
-use super::gaze_advice::AccuracyCheckAction;
-use super::gaze_pairing::GazePairing;
+use super::coding::RaterSession;
+use super::gaze_check::AccuracyCheckAction;
 use super::key_action::{KeyAction, KeyLayer};
 use super::keys::KeyBindings;
-use super::lesson::TrainingPanel;
-use super::list_cursor::ListCursor;
-use super::note::TextInput;
-use super::notice::NoticeLevel;
-use super::panel::Panel;
-use super::picker::Picker;
-use super::playback::Playback;
-use super::probe_entry::ProbeEntry;
-use super::rater_session::RaterSession;
+use super::lists::{ListCursor, Picker};
+use super::mouse::SendConfirmation;
+use super::panels::Panel;
+use super::preflight::{GazePairing, ParticipantDisplayHealth};
+use super::probe_keys::ProbeEntry;
+use super::text_input::TextInput;
 use super::view::theme::Theme;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_session::history::belief_track::BeliefHistory;
+use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
 use tomcom_session::history::signal_judge::SignalJudge;
 use tomcom_session::preflight_checks::RejectedGaze;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::GazeSource;
-use tomcom_session::{TimelineEntry, TimelineEvent};
+use tomcom_session::{Event, TimelineEntry, TimelineEvent};
 
 /// Time for which a notice is shown, in seconds.
 const NOTICE_S: f64 = 4.0;
@@ -48,25 +44,17 @@ pub enum Dialog {
     /// Help of the console: the table of keys. For each entry of the table, whether its key had an effect when the help
     /// was opened: the order of the lines does not change while the help is read.
     Help(Vec<bool>),
-    /// Question whether to end the session and close the console.
     Quit,
-    /// Question whether to end the trial.
     EndTrial,
-    /// List from which the wizard chooses an answer.
     Pick(Picker),
-    /// List of all actions that have keys (the palette).
     Palette(ListCursor),
-    /// Question whether to send the signal that was clicked.
     Send(SendConfirmation),
-    /// List of the preflight checks.
     Preflight,
     /// Gaze accuracy check: the targets, then the result.
     Calibration,
-    /// Text input for the wizard's note.
     Note(TextInput),
     /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
-    /// Details of a difference between wizard and assistant, as lines of text.
     Difference(Vec<String>),
     /// Report of a wizard training, as lines of text; closed with enter.
     Report(Vec<String>),
@@ -75,9 +63,7 @@ pub enum Dialog {
 /// A short message of the console to the wizard, shown for a few seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// Text of the notice to the wizard, in one line.
     pub text: String,
-    /// Severity of the notice.
     pub level: NoticeLevel,
     /// Time at which the notice was given, on [`ConsoleModel::clock`].
     pub at: SessionTime,
@@ -86,11 +72,8 @@ pub struct Notice {
 /// State of the session's recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecordingStatus {
-    /// The session is not recorded.
     Off,
-    /// The session is recorded into this folder.
     On(String),
-    /// The recording can no longer be written.
     Lost,
 }
 
@@ -99,20 +82,15 @@ pub enum RecordingStatus {
 pub struct RerunStreamStatus {
     /// Address to which Rerun viewers connect; `None` if the stream is only written to a file.
     pub address: Option<String>,
-    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows that the Rerun stream dropped because the viewers were too slow.
     pub dropped: u64,
 }
 
 /// State of the outgoing streams of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LslStatus {
-    /// Names of the LSL streams that are sent.
     pub streams: Vec<String>,
-    /// Number of samples sent over LSL.
     pub sent: u64,
-    /// Number of samples that LSL dropped or refused.
     pub lost: u64,
 }
 
@@ -120,7 +98,6 @@ pub struct LslStatus {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressedKey {
     pub code: KeyCode,
-    /// Time at which the terminal last reported the key.
     pub reported: SessionTime,
     /// Time at which the key last counted as newly pressed.
     pub counted: SessionTime,
@@ -129,31 +106,20 @@ pub(super) struct PressedKey {
 /// State of the console: everything that concerns only the screen and the keyboard, not the trial.
 #[derive(Clone, Debug)]
 pub struct ConsoleModel {
-    /// Session time that the console draws.
     pub now: SessionTime,
     /// Clock for keys and notices, which also runs while a replay is paused.
     pub clock: SessionTime,
-    /// Columns and rows of the terminal.
     pub size: (u16, u16),
-    /// Colours and signs of the console.
     pub theme: Theme,
-    /// Table of the console's key bindings.
     pub keys: KeyBindings,
-    /// Whose keys are active: the wizard's or the participant's.
     pub layer: KeyLayer,
-    /// Dialog that is open above the console's panels, if any.
     pub dialog: Option<Dialog>,
-    /// Latest notice to the wizard.
     pub notice: Option<Notice>,
-    /// State of the session's recording: on, off or lost.
     pub recording: RecordingStatus,
-    /// State of the stream to Rerun viewers, if there is one.
     pub viewers: Option<RerunStreamStatus>,
-    /// State of the streams of the Lab Streaming Layer, if there are any.
     pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
-    /// Panel of the console that is shown alone at full size, if any.
     pub alone: Option<Panel>,
     /// First visible column of the help, or first visible line of a training report.
     pub help_from: usize,
@@ -161,14 +127,12 @@ pub struct ConsoleModel {
     pub events_back: usize,
     /// Scroll position of the timeline: seconds before the present.
     pub timeline_back_s: u32,
-    /// Whether the terminal has keyboard focus.
     pub focused: bool,
     /// Point of the wall display under the mouse pointer, in fractions of its size; below 0 or above 1 while the
     /// pointer is outside the kitchen panel.
     pub pointer: Option<[f64; 2]>,
     /// Latest gaze samples with their times, oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
-    /// Number of rejected gaze senders.
     pub rejected_senders: u64,
     /// The last rejected gaze sender, and when it was rejected.
     pub rejected_gaze: Option<(RejectedGaze, SessionTime)>,
@@ -178,7 +142,6 @@ pub struct ConsoleModel {
     pub gaze_pairing: Option<GazePairing>,
     /// What the session reads from its gaze file; `None` for other gaze sources.
     pub recorded_gaze: Option<RecordedGazeSummary>,
-    /// State of the participant's display, if there is one.
     pub display: Option<ParticipantDisplayHealth>,
     /// Session times of the human's errors, in ascending order.
     pub errors: Vec<SessionTime>,
@@ -186,25 +149,18 @@ pub struct ConsoleModel {
     pub unproven: u64,
     /// Judgement of each signal of the trial at the time when the signal was sent (hit, late or needless).
     pub signals: SignalJudge,
-    /// History of the estimate of the participant's beliefs.
     pub belief: BeliefHistory,
     /// State aspect whose estimated belief is shown over time.
     pub belief_focus: Option<AspectId>,
-    /// Comparison of wizard and assistants, if it is shown.
     pub comparison: Option<SenderComparisonView>,
-    /// Training panel, in a wizard training.
     pub lesson: Option<TrainingPanel>,
-    /// The rater's codes, while the errors of a recording are coded.
     pub coding: Option<RaterSession>,
-    /// Playback position and speed, in a replay.
     pub playback: Option<Playback>,
-    /// Answer to the current probe question that is being entered at this console.
     pub probe_entry: ProbeEntry,
     /// Index of the selected reason for waiving the practice criterion, until enter confirms it.
     pub waiver: Option<usize>,
     /// What the wizard has selected to do with the result of a gaze accuracy check, until enter confirms it.
     pub gaze_choice: Option<AccuracyCheckAction>,
-    /// Action that the wizard chose last in the palette, if it may stand first there.
     pub(super) palette_chosen: Option<KeyAction>,
     /// Action that stands first in the open palette.
     pub(super) palette_first: Option<KeyAction>,
@@ -214,7 +170,6 @@ pub struct ConsoleModel {
     pub(super) clicked: Option<(KeyChord, SessionTime)>,
     /// Whether the terminal reports key repeats as such, separate from presses.
     pub(super) exact_keys: bool,
-    /// Key that was pressed last, by which key repeat is detected.
     pub(super) pressed: Option<PressedKey>,
 }
 
@@ -268,7 +223,6 @@ impl ConsoleModel {
         }
     }
 
-    /// Shows a notice to the wizard.
     pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
@@ -318,7 +272,6 @@ impl ConsoleModel {
         arrived.is_none_or(|arrived| arrived < *at).then_some(rejected)
     }
 
-    /// Adds a gaze sample to the trail that the gaze map draws.
     pub fn see(&mut self, at: SessionTime, sample: GazeSample) {
         if self.trail.len() == TRAIL {
             self.trail.pop_front();
@@ -343,13 +296,11 @@ impl ConsoleModel {
         self.alone = aspect.map(|_| Panel::Belief);
     }
 
-    /// Whether a timeline entry is a press that was an error of the human.
     pub fn is_error(&self, entry: &TimelineEntry) -> bool {
         matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
             && self.errors.binary_search(&entry.time).is_ok()
     }
 
-    /// Name of a gaze source on the screen.
     pub fn gaze_label(source: GazeSource) -> &'static str {
         match source {
             GazeSource::Simulated => "simulated",
@@ -360,5 +311,180 @@ impl ConsoleModel {
             GazeSource::Lsl => "lsl",
             GazeSource::None => "none",
         }
+    }
+}
+
+/// Input of the console: a key, a mouse event, pasted text or a change of the terminal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConsoleMessage {
+    Key(KeyEvent),
+    /// The mouse pointer moved to this cell (column, row).
+    Pointer(u16, u16),
+    Click(u16, u16),
+    Wheel(u16, u16, i8),
+    /// The terminal was resized to these columns and rows.
+    Resized(u16, u16),
+    Focus(bool),
+    /// Text was pasted into the terminal; `None` if the paste had no end, so that it was given up.
+    Paste(Option<String>),
+}
+
+/// A command of the console to the program that runs it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConsoleCommand {
+    Input(Event),
+    Start(Event),
+    Move(ReplayAction),
+    /// Save the rater's codes, and move the replay to the error whose code changed.
+    Code {
+        press: u64,
+    },
+    Redo,
+    Next,
+    Quit,
+}
+
+/// Severity of a notice, the console's short message to the wizard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoticeLevel {
+    Done,
+    Refused,
+    /// Alarm: a fault that lasts until it is fixed.
+    Alarm,
+}
+
+/// Content of the wizard training's panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrainingPanel {
+    /// Task and scoring rules of the training, as paragraphs; shown until there is feedback.
+    pub task: Vec<String>,
+    pub feedback: Vec<TrainingFeedback>,
+    /// Score of the training so far: "2 hit, 1 missed, 3 wrong".
+    pub score: String,
+    pub begun: bool,
+}
+
+/// Feedback on a signal that the trainee sent or missed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrainingFeedback {
+    pub clock: SessionTime,
+    pub level: NoticeLevel,
+    pub text: String,
+}
+
+/// Action of a key in the list of differences between wizard and assistant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ComparisonAction {
+    Next,
+    Last,
+    Open,
+}
+
+/// Comparison of wizard and assistants at the console, with the selected difference.
+#[derive(Clone, Debug, Default)]
+pub struct SenderComparisonView {
+    /// Newest comparison; `None` until the trial's first press or order.
+    pub seen: Option<SenderComparison>,
+    /// Selected communication that has no match; `None` selects the newest one.
+    chosen: Option<UnmatchedCommunication>,
+}
+
+impl SenderComparisonView {
+    /// Takes over the newest comparison; the selected difference stays selected if it is still one.
+    pub fn show(&mut self, newest: SenderComparison) {
+        self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
+        self.seen = Some(newest);
+    }
+
+    /// Index of the selected difference, and the comparison that contains it.
+    pub fn chosen(&self) -> Option<(usize, &SenderComparison)> {
+        let seen = self.seen.as_ref()?;
+        let newest = seen.differences.len().checked_sub(1)?;
+        let is_it = |chosen: UnmatchedCommunication| seen.differences.iter().position(|one| *one == chosen);
+        Some((self.chosen.and_then(is_it).unwrap_or(newest), seen))
+    }
+
+    /// Selects the next or the previous difference. From the last one on, the newest difference is always selected.
+    pub fn choose(&mut self, step: ComparisonAction) {
+        let Some((at, seen)) = self.chosen() else { return };
+        let to = match step {
+            ComparisonAction::Next => at + 1,
+            ComparisonAction::Last => at.saturating_sub(1),
+            ComparisonAction::Open => at,
+        };
+        self.chosen = seen.differences.get(to).copied().filter(|_| to + 1 < seen.differences.len());
+    }
+}
+
+/// Speeds of a replay as multiples of real time; infinity for as fast as possible.
+pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];
+
+/// Action of a replay's keys: play, move, or change the speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplayAction {
+    PlayPause,
+    /// Go to the next event of the recording that is not a gaze sample.
+    StepForward,
+    /// Go to the previous event of the recording that is not a gaze sample.
+    StepBack,
+    On(ReplayLandmark),
+    BackTo(ReplayLandmark),
+    /// Go ten seconds forward in the recording.
+    SeekForward,
+    /// Go ten seconds back in the recording.
+    SeekBack,
+    Faster,
+    Slower,
+    ToStart,
+    /// Go to the position after the event with this sequence number.
+    ToEvent(u64),
+    ToTime(SessionTime),
+    /// Go to the end of the recording; in a recording that is still being made, stay at its growing end.
+    ToEnd,
+}
+
+/// State of a replay: its position, its speed, and the recording's state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Playback {
+    pub name: String,
+    pub playing: bool,
+    /// Playback speed, as an index into [`SPEEDS`].
+    pub speed: usize,
+    /// Session time of the last known event of the recording.
+    pub length: SessionTime,
+    pub trial_length: SessionTime,
+    /// Number of events of the recording up to the replay's position.
+    pub event: usize,
+    pub events: usize,
+    pub follows: bool,
+    pub cut: bool,
+    /// Whether the recording is still being made, but the replay does not follow it.
+    pub running: bool,
+    /// Whether the recording was excluded from the analysis after it was closed.
+    pub excluded: bool,
+}
+
+impl Playback {
+    /// A replay at the beginning of a recording.
+    pub fn new(name: String) -> Playback {
+        Playback {
+            name,
+            playing: false,
+            speed: 2,
+            length: SessionTime::ZERO,
+            trial_length: SessionTime::ZERO,
+            event: 0,
+            events: 0,
+            follows: false,
+            cut: false,
+            running: false,
+            excluded: false,
+        }
+    }
+
+    /// The playback speed in words: "2x", "0.25x", "max".
+    pub fn speed_label(&self) -> String {
+        let speed = SPEEDS[self.speed.min(SPEEDS.len() - 1)];
+        if speed.is_finite() { format!("{speed}x") } else { "max".to_string() }
     }
 }

@@ -4,13 +4,10 @@
 
 use crossterm::event::KeyCode;
 
-use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog};
-use super::note::TextInput;
-use super::notice::NoticeLevel;
+use super::actions::{refuse, send};
+use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
 use super::probe_keys;
-use super::sending::{refuse, send};
-use super::sheet_key::SheetKey;
+use super::text_input::TextInput;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
 use tomcom_session::probes::StartedProbe;
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
@@ -38,9 +35,7 @@ pub enum FormContent<'a> {
         /// Steps of the phase that the wizard has to do, in this order.
         steps: &'a [String],
     },
-    /// Tutorial, which the participant reads on the display.
     Tutorial(&'a Tutorial),
-    /// Items of a questionnaire for the participant.
     Questions(&'a Questionnaire),
     /// Choice after an unmet practice criterion: repeat the practice, or waive the criterion.
     Failed,
@@ -111,12 +106,12 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
         (FormContent::Tutorial(tutorial), stroke) => read(model, session, tutorial, stroke),
         (_, SheetKey::Leave) => leave(model, session),
         (FormContent::Steps { .. }, SheetKey::Confirm) => match protocol.ticks.iter().position(|done| !done) {
-            Some(open) => tell(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
+            Some(open) => send_protocol(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
             None => leave(model, session),
         },
         (FormContent::Steps { .. }, SheetKey::Undo) => {
             let last = protocol.ticks.iter().rposition(|done| *done)?;
-            tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
+            send_protocol(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
         (FormContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace unticks the last one"),
         (FormContent::Questions(_), _) if protocol.confirmed => match stroke {
@@ -125,7 +120,9 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
         },
         (FormContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
         (FormContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
-            Some(reason) => tell(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() }),
+            Some(reason) => {
+                send_protocol(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() })
+            }
             None => Some(ConsoleCommand::Next),
         },
         (FormContent::Failed, SheetKey::Digit(digit)) => {
@@ -150,7 +147,9 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
             Some(before) => before,
             None => return refuse(model, "this is the first page of the tutorial"),
         },
-        SheetKey::Digit(0) => return tell(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by })),
+        SheetKey::Digit(0) => {
+            return send_protocol(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by }));
+        }
         SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
             return refuse(model, "arrows turn the participant's page, 0 ends the tutorial");
         }
@@ -160,7 +159,7 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
         Some(step) => TutorialEvent::Shown { step: step.id.clone(), by },
         None => TutorialEvent::Ended { by },
     };
-    tell(model, session, ProtocolEvent::Tutorial(event))
+    send_protocol(model, session, ProtocolEvent::Tutorial(event))
 }
 
 fn ask(
@@ -176,13 +175,15 @@ fn ask(
     match (stroke, shown) {
         (SheetKey::Digit(digit), Some(_)) if is_typed => begin_typing(model, protocol, char::from(b'0' + digit)),
         (SheetKey::Letter(letter), Some(_)) if is_typed => begin_typing(model, protocol, letter),
-        (SheetKey::Digit(0) | SheetKey::Skip, Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
+        (SheetKey::Digit(0) | SheetKey::Skip, Some(item)) => {
+            send_protocol(model, session, ProtocolEvent::ItemSkipped { item })
+        }
         (SheetKey::Digit(digit), Some(item)) => {
             let index = usize::from(digit - 1);
             let chosen = form.and_then(|form| form.choose(index, protocol.given(protocol.item)));
             let is_choice = matches!(form, Some(AnswerFormat::Choice { .. }));
             match chosen.or((!is_choice).then(|| AnswerValue::from(digit))) {
-                Some(answer) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+                Some(answer) => send_protocol(model, session, ProtocolEvent::ItemAnswered { item, answer }),
                 None => refuse(model, "the item has no option with this number"),
             }
         }
@@ -191,15 +192,15 @@ fn ask(
         }
         (SheetKey::Back | SheetKey::Undo, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
-            tell(model, session, ProtocolEvent::ItemShown { item })
+            send_protocol(model, session, ProtocolEvent::ItemShown { item })
         }
         (SheetKey::Confirm | SheetKey::Forward, Some(_)) => {
             let next = session.next_item()?;
-            tell(model, session, next)
+            send_protocol(model, session, next)
         }
         (SheetKey::Confirm, None) => match protocol.open_item().and_then(id) {
-            Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
-            None => tell(model, session, ProtocolEvent::AnswersConfirmed),
+            Some(item) => send_protocol(model, session, ProtocolEvent::ItemShown { item }),
+            None => send_protocol(model, session, ProtocolEvent::AnswersConfirmed),
         },
         (SheetKey::Forward, None) => refuse(model, "enter confirms the answers"),
         (SheetKey::Leave, _) => leave(model, session),
@@ -254,7 +255,7 @@ pub(super) fn type_answer(
                 (_, Err(_)) => Err("the answer has to be a whole number"),
             };
             match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
-                Ok(answer) => return tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+                Ok(answer) => return send_protocol(model, session, ProtocolEvent::ItemAnswered { item, answer }),
                 Err(reason) => model.say(NoticeLevel::Refused, reason),
             }
         }
@@ -276,11 +277,29 @@ pub(super) fn leave(model: &mut ConsoleModel, session: &Session) -> Option<Conso
         return refuse(model, "the trial is over");
     };
     match session.next_phase() {
-        Some(phase) => tell(model, session, ProtocolEvent::PhaseStarted { phase, number }),
+        Some(phase) => send_protocol(model, session, ProtocolEvent::PhaseStarted { phase, number }),
         None => Some(ConsoleCommand::Next),
     }
 }
 
-fn tell(model: &mut ConsoleModel, session: &Session, event: ProtocolEvent) -> Option<ConsoleCommand> {
+fn send_protocol(model: &mut ConsoleModel, session: &Session, event: ProtocolEvent) -> Option<ConsoleCommand> {
     send(model, session, Event::Protocol(event), NoticeLevel::Done, "")
+}
+
+/// Meaning of a key on a sheet (a form at full size).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SheetKey {
+    /// Tick the present step, go on from the present item, or confirm the sheet.
+    Confirm,
+    /// Go on to the session's next phase, if the sheet is complete.
+    Leave,
+    Forward,
+    Back,
+    /// Take back the last tick, or show the previous item.
+    Undo,
+    /// Leave the sheet's present item unanswered.
+    Skip,
+    Digit(u8),
+    /// A letter or a minus sign, which begins a typed answer.
+    Letter(char),
 }

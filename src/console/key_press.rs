@@ -1,34 +1,21 @@
-//! Handling of a pressed key: which part of the console takes it (dialog, sheet or main view), and whether it counts as
-//! a press.
+//! Handling of a pressed key: whether it counts as a press or is held, and which part of the console takes it (dialog,
+//! sheet or main view).
 
-use crossterm::event::{KeyCode, KeyEvent};
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
+use super::actions::{act, differ, send};
 use super::chord::KeyChord;
-use super::click_question;
-use super::compared::ComparisonAction;
-use super::console_actions::{act, differ};
-use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog};
-use super::form::{self, sheet};
-use super::gaze_targets;
-use super::hands;
-use super::held_keys::{KeyPressKind, may_follow_at_once, touch};
-use super::key_action::{KeyAction, KeyLayer, ViewAction};
-use super::list_cursor::{ListCursor, ListReply};
-use super::notice::NoticeLevel;
-use super::palette;
-use super::panels;
+use super::console_model::{ComparisonAction, ConsoleCommand, ConsoleModel, Dialog, NoticeLevel, PressedKey};
+use super::form::{self, SheetKey, sheet};
+use super::key_action::{KeyAction, KeyLayer, ManualAction, ViewAction};
+use super::lists::{self, ListCursor, ListReply};
 use super::possible::acts_on_sheet;
-use super::preflight;
-use super::probe_keys;
-use super::sending::send;
-use super::sheet_key::SheetKey;
 use super::view::dialog::report_rest;
 use super::view::help::help_pages;
+use super::{gaze_check, interventions, mouse, panels, preflight, probe_keys};
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::{Event, Session, TrialPhase};
 
-/// Handles a terminal's report about a key.
 pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
     match touch(model, key) {
         KeyPressKind::Release => None,
@@ -53,7 +40,7 @@ pub(super) fn press(
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
     if matches!(model.dialog, Some(Dialog::Send(_))) && action != Some(KeyAction::StopRobot) {
         if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
-            return click_question::answer(model, session, chord.code, touch == KeyPressKind::Press);
+            return mouse::answer(model, session, chord.code, touch == KeyPressKind::Press);
         }
         // Every key other than enter and esc closes the question and keeps its own meaning.
         model.dialog = None;
@@ -77,7 +64,7 @@ pub(super) fn press(
             preflight::answer(model, session, chord.code, action, touch == KeyPressKind::Press)
         }
         _ if model.dialog == Some(Dialog::Calibration) => {
-            gaze_targets::answer(model, session, chord.code, touch == KeyPressKind::Press)
+            gaze_check::answer(model, session, chord.code, touch == KeyPressKind::Press)
         }
         // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
         _ if touch == KeyPressKind::Held && !probe_keys::takes_digit(model, session, code) => {
@@ -114,7 +101,7 @@ fn in_text(
         return None;
     }
     match model.dialog.clone() {
-        Some(Dialog::Note(line)) => hands::write(model, session, line, code),
+        Some(Dialog::Note(line)) => interventions::write(model, session, line, code),
         Some(Dialog::Answer(line)) => form::type_answer(model, session, line, code),
         _ => None,
     }
@@ -132,7 +119,7 @@ fn in_list(
         return None;
     }
     match model.dialog.clone() {
-        Some(Dialog::Pick(picker)) => hands::pick(model, session, picker, chord.code),
+        Some(Dialog::Pick(picker)) => interventions::pick(model, session, picker, chord.code),
         Some(Dialog::Palette(cursor)) => choose(model, session, cursor, chord.code),
         _ => None,
     }
@@ -146,14 +133,14 @@ fn choose(
     mut cursor: ListCursor,
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
-    let left = palette::actions(model, &cursor);
+    let left = lists::actions(model, &cursor);
     let reply = cursor.key(left.len(), code);
     let chosen = left.get(cursor.at).filter(|_| reply == ListReply::Taken);
     let chosen = chosen.and_then(|line| Some((line.action.clone(), *line.chords.first()?, line.help.clone())));
     model.dialog = Some(Dialog::Palette(cursor)).filter(|_| reply == ListReply::Open);
     let (action, chord, help) = chosen?;
     model.answered = Some(model.clock);
-    palette::remember(model, &action);
+    lists::remember(model, &action);
     match action {
         KeyAction::Signal(..) | KeyAction::Accept => {
             model.say(NoticeLevel::Done, format!("press {chord} to {help}: signals are not sent from a list"));
@@ -287,4 +274,57 @@ fn unknown(model: &mut ConsoleModel, session: &Session, chord: KeyChord) {
     } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != TrialPhase::Closed {
         model.say(NoticeLevel::Refused, format!("the key \"{key}\" does nothing here: ? shows the keys"));
     }
+}
+
+/// Largest time between two reports of one key, in seconds, for the key to count as held down: terminals repeat a held
+/// key about every 0.03 s, and no finger is that fast. Used only where the terminal does not report repeats as such.
+const REPEAT_S: f64 = 0.15;
+/// Time in seconds for which a question ignores the key that opened it: longer than the usual delay before key repeat
+/// sets in (0.25 to 0.7 s), during which a held key cannot be told from a second press.
+pub(super) const ANSWER_S: f64 = 0.7;
+
+/// Meaning of a terminal's key report: newly pressed, pressed again or held, held, or released.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum KeyPressKind {
+    Press,
+    /// The key was pressed a second time, or has been held since the first press and begins to repeat.
+    Again,
+    Held,
+    Release,
+}
+
+/// Classifies a key report of the terminal, and remembers the key for the next report.
+pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> KeyPressKind {
+    match key.kind {
+        KeyEventKind::Press if model.exact_keys => return KeyPressKind::Press,
+        KeyEventKind::Press => {}
+        kind => {
+            model.exact_keys = true;
+            return if kind == KeyEventKind::Release { KeyPressKind::Release } else { KeyPressKind::Held };
+        }
+    }
+    // Only the key that was pressed last repeats. The waiting time runs from the press that counted, so that repeated
+    // attempts do not prolong it.
+    let now = model.clock;
+    let last = model.pressed.filter(|last| last.code == key.code);
+    let touch = match last.map(|last| (now.secs_since(last.reported), now.secs_since(last.counted))) {
+        Some((gap_s, _)) if gap_s < REPEAT_S => KeyPressKind::Held,
+        Some((_, since_s)) if since_s < ANSWER_S => KeyPressKind::Again,
+        _ => KeyPressKind::Press,
+    };
+    let counted = last.filter(|_| touch != KeyPressKind::Press).map_or(now, |last| last.counted);
+    model.pressed = Some(PressedKey { code: key.code, reported: now, counted });
+    touch
+}
+
+/// Whether a list has closed so recently that an enter key was probably meant for the list.
+pub(super) fn is_right_after_list(model: &ConsoleModel) -> bool {
+    model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S)
+}
+
+/// Whether a second press shortly after the first counts although the terminal cannot tell it from a held key. It does
+/// not count for actions that toggle, nor for actions that are recorded each time.
+pub(super) fn may_follow_at_once(action: &KeyAction) -> bool {
+    let once = [ManualAction::HoldRobot, ManualAction::SkipPress].map(KeyAction::Manual);
+    !matches!(action, KeyAction::Advance | KeyAction::SwitchLayer | KeyAction::Note(_)) && !once.contains(action)
 }

@@ -2,28 +2,25 @@
 //! A click takes the same way through the program as the key with the same action.
 
 use crossterm::event::KeyCode;
+use ratatui::layout::Rect;
 
-use super::arrange::KitchenMap;
+use super::actions::{act, refusal};
 use super::chord::KeyChord;
-use super::click::ClickAction;
-use super::click_question;
-use super::coding;
-use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog};
+use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel, ReplayAction};
 use super::form::sheet;
-use super::held_keys::{ANSWER_S, KeyPressKind};
 use super::key_action::{KeyAction, KeyLayer, RaterAction};
-use super::key_press::press;
-use super::map_items::KitchenMapElement;
-use super::notice::NoticeLevel;
-use super::palette;
-use super::panel::Panel;
-use super::panels;
-use super::playback::ReplayAction;
+use super::key_press::{ANSWER_S, KeyPressKind, press};
+use super::kitchen_map::{KitchenMap, KitchenMapElement};
+use super::panels::{self, Panel};
 use super::view::click_targets;
 use super::view::regions::PanelAreas;
-use tomcom_core::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
-use tomcom_session::Session;
+use super::{coding, lists};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::Offer;
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonAction as Use, ButtonId, LocationId};
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Event, Session, offers};
 
 /// Longest time between the two clicks of a double click, in seconds: the second click of a double click does not
 /// confirm a question.
@@ -54,7 +51,7 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
         Some(ClickAction::Key(chord)) => key(model, session, chord),
         Some(ClickAction::Row(row)) => choose(model, session, row),
         Some(ClickAction::Palette(filter)) => {
-            palette::open(model, session, filter);
+            lists::open(model, session, filter);
             None
         }
         Some(ClickAction::Belief(aspect)) => {
@@ -77,17 +74,17 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
 /// confirms.
 fn key(model: &mut ConsoleModel, session: &Session, chord: KeyChord) -> Option<ConsoleCommand> {
     let now = model.clock;
-    if let Some(Dialog::Send(question)) = &model.dialog
-        && question.chord == chord
+    if let Some(Dialog::Send(confirmation)) = &model.dialog
+        && confirmation.chord == chord
     {
-        let question = question.clone();
-        let is_double = now.secs_since(question.asked) < DOUBLE_CLICK_S;
-        return if is_double { None } else { click_question::confirm(model, session, question) };
+        let confirmation = confirmation.clone();
+        let is_double = now.secs_since(confirmation.asked) < DOUBLE_CLICK_S;
+        return if is_double { None } else { confirm(model, session, confirmation) };
     }
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
     let asks = matches!(model.dialog, None | Some(Dialog::Send(_))) && !session.spec.console.click_sends;
     if let Some(action @ (KeyAction::Signal(..) | KeyAction::Accept)) = action.filter(|_| asks) {
-        click_question::ask(model, session, chord, &action);
+        ask(model, session, chord, &action);
         return None;
     }
     let last = model.clicked.replace((chord, now));
@@ -116,7 +113,7 @@ fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
         let plan = map(model, session, &regions);
         let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
         if let Some(KitchenMapElement::Location(location)) = thing {
-            return tell(model, session, location);
+            return explain_place(model, session, location);
         }
     }
     match (model.alone, panel_at(&regions, cell)) {
@@ -126,7 +123,7 @@ fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
 }
 
 /// Shows the key of a kitchen location and what the key does.
-fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
+fn explain_place(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];
     let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
@@ -157,7 +154,125 @@ pub(super) fn wheel(
     None
 }
 
-/// The panel of the console under a screen cell.
 fn panel_at(regions: &PanelAreas, cell: (u16, u16)) -> Option<Panel> {
     Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
+}
+
+/// Action of a mouse click on the console.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClickAction {
+    Key(KeyChord),
+    /// Move the cursor to this row of the open list (counted among the rows that match the filter); choose the row if
+    /// the cursor is already there.
+    Row(usize),
+    /// Open the list of all actions (the palette) with this filter text; for hints that several keys share.
+    Palette(&'static str),
+    Belief(AspectId),
+    /// While a rater codes errors: go to the error with this index in the list.
+    Error(usize),
+    Seek(SessionTime),
+}
+
+/// Screen cells that can be clicked, with the action of a click.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClickTarget {
+    pub cells: Rect,
+    pub action: ClickAction,
+}
+
+/// The question whether to send a clicked signal; the signal is sent once the wizard confirms.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SendConfirmation {
+    pub chord: KeyChord,
+    pub signal: Signal,
+    /// Sequence number of the clicked offer; `None` if a signal was clicked that is not on offer.
+    pub offer: Option<u64>,
+    /// Time of the click, on the console's own clock ([`super::console_model::ConsoleModel::clock`]).
+    pub asked: SessionTime,
+    /// Session time of the click; in a training the session does not run on the console's clock.
+    pub asked_at: SessionTime,
+}
+
+/// Asks the wizard whether to send a clicked signal or the clicked offer's signal; or says why the signal cannot be
+/// sent.
+pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, action: &KeyAction) {
+    let asked = match action {
+        KeyAction::Signal(_, signal) => match refusal(session, model.now, &shown(signal)) {
+            None => Ok((signal.clone(), None)),
+            Some(reason) => Err(reason),
+        },
+        _ => offers::enter(session, model.now)
+            .and_then(|(offer, _)| Ok((offer.signal().cloned().ok_or("no signal is on offer")?, Some(offer.seq)))),
+    };
+    match asked {
+        Ok((signal, offer)) => {
+            model.notice = None;
+            model.dialog =
+                Some(Dialog::Send(SendConfirmation { chord, signal, offer, asked: model.clock, asked_at: model.now }));
+        }
+        Err(reason) => model.say(NoticeLevel::Refused, format!("signal not sent: {reason}")),
+    }
+}
+
+/// Time after which the question whether to send closes, in seconds: a later enter key is probably not an answer to it.
+const WAITS_S: f64 = 5.0;
+
+/// Closes the question whether to send a clicked signal once it is too old, or once a newer offer has opened that the
+/// wizard sees: from then on, enter accepts that offer. A hidden offer leaves the question open, since a notice would
+/// tell a blinded wizard that the assistant recommends something.
+pub fn expire(model: &mut ConsoleModel, session: &Session) {
+    let Some(Dialog::Send(confirmation)) = &model.dialog else { return };
+    let is_late = model.clock.secs_since(confirmation.asked) > WAITS_S;
+    // In a training the settings hide offers that the recorded wizard saw.
+    let is_shown = session.spec.console.visibility == WizardVisibility::Recommendation;
+    let is_newer = |offer: &Offer| offer.opened > confirmation.asked_at && Some(offer.seq) != confirmation.offer;
+    let is_other = session.offers.open().is_some_and(|offer| is_shown && offer.advice.visible && is_newer(offer));
+    if is_late || is_other {
+        let why = if is_late { "the click was not confirmed in time" } else { "another signal is on offer now" };
+        model.dialog = None;
+        model.say(NoticeLevel::Refused, format!("signal not sent: {why}; click again"));
+    }
+}
+
+/// A key while the console asks whether to send a clicked signal: enter sends if it is newly pressed (not held), esc
+/// cancels.
+pub(super) fn answer(
+    model: &mut ConsoleModel,
+    session: &Session,
+    code: KeyCode,
+    is_press: bool,
+) -> Option<ConsoleCommand> {
+    match model.dialog.clone() {
+        Some(Dialog::Send(confirmation)) if code == KeyCode::Enter && is_press => confirm(model, session, confirmation),
+        Some(Dialog::Send(_)) if code == KeyCode::Esc => {
+            model.dialog = None;
+            None
+        }
+        _ => None,
+    }
+}
+
+/// Sends the clicked signal. After a click on an offer, nothing is sent if that offer has closed meanwhile.
+pub(super) fn confirm(
+    model: &mut ConsoleModel,
+    session: &Session,
+    confirmation: SendConfirmation,
+) -> Option<ConsoleCommand> {
+    model.dialog = None;
+    let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
+    match confirmation.offer {
+        Some(offer) if now_meant != Some(offer) => {
+            model.say(NoticeLevel::Refused, "signal not sent: the clicked offer has closed");
+            None
+        }
+        Some(_) => act(model, session, KeyAction::Accept),
+        None => {
+            let location = confirmation.signal.location(&session.kitchen)?;
+            act(model, session, KeyAction::Signal(location, confirmation.signal))
+        }
+    }
+}
+
+fn shown(signal: &Signal) -> Event {
+    Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None }
 }

@@ -1,12 +1,16 @@
-//! Panel navigation: a single panel at full size, and scrolling back in time. Neither affects the participant;
-//! [`super::screen`] records what the wizard's screen shows.
+//! Panels of the console: which is shown alone at full size, scrolling back in time, and what the log records of them.
+//! Neither affects the participant.
 
 use super::beliefs::visibility;
-use super::console_model::ConsoleModel;
+use super::console_model::{ConsoleModel, Dialog};
+use super::form::sheet;
 use super::key_action::ViewAction;
-use super::panel::Panel;
+use super::lists::PickerKind;
 use super::view::help::help_pages;
+use super::view::regions::{LEAST, PanelAreas, ScreenSize};
 use tomcom_session::Session;
+use tomcom_session::event::WizardScreenContent;
+use tomcom_session::settings::WizardVisibility;
 
 /// One scroll step: seconds in the timeline, entries in the list of events.
 const STEP: (u32, usize) = (5, 1);
@@ -37,7 +41,6 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
     }
 }
 
-/// Turns the pages of the help.
 pub fn leaf(model: &mut ConsoleModel, look: ViewAction) {
     let is_forward = matches!(look, ViewAction::Next | ViewAction::Forward | ViewAction::Later);
     model.help_from = match is_forward {
@@ -55,5 +58,86 @@ pub(super) fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<
     } else if matches!(model.alone, None | Some(Panel::Events)) {
         let back = model.events_back as i64 + steps * STEP.1 as i64;
         model.events_back = back.clamp(0, session.timeline.len().saturating_sub(1) as i64) as usize;
+    }
+}
+
+/// A panel of the console that can be shown alone at full size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Panel {
+    Kitchen,
+    Belief,
+    Recommendation,
+    /// Map of the places where the participant looked lately; shown at full size only.
+    GazeMap,
+    Events,
+    Timeline,
+    Comparison,
+}
+
+impl Panel {
+    /// All panels, in the order in which the keys go through them.
+    pub(super) const ALL: [Panel; 7] = [
+        Panel::Comparison,
+        Panel::Kitchen,
+        Panel::Belief,
+        Panel::Recommendation,
+        Panel::GazeMap,
+        Panel::Events,
+        Panel::Timeline,
+    ];
+
+    pub(super) fn may_be_seen(self, visibility: WizardVisibility, compares: bool) -> bool {
+        match self {
+            Panel::Comparison => compares,
+            Panel::Belief => visibility >= WizardVisibility::Belief,
+            Panel::Recommendation => visibility >= WizardVisibility::Recommendation,
+            _ => true,
+        }
+    }
+}
+
+/// What the wizard's screen shows now: its panels and the open dialog or sheet.
+pub fn screen(session: &Session, model: &ConsoleModel) -> WizardScreenContent {
+    let visibility = visibility(session, model);
+    let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
+    let regions = PanelAreas::showing(model.size, session, model);
+    let room = match regions.screen_size {
+        _ if !fits => "too_small",
+        ScreenSize::Small => "small",
+        ScreenSize::Medium => "medium",
+        ScreenSize::Large => "large",
+    };
+    let dialog = model.dialog.as_ref().map(name);
+    let sheet = sheet(session).map(|sheet| sheet.name());
+    let panels = if fits { regions.panels() } else { Vec::new() };
+    WizardScreenContent {
+        visibility,
+        room: room.to_string(),
+        panels: panels.into_iter().map(str::to_string).collect(),
+        dialog: dialog.or(sheet).map(str::to_string),
+    }
+}
+
+fn name(dialog: &Dialog) -> &'static str {
+    match dialog {
+        Dialog::Help(_) => "help",
+        Dialog::Quit => "quit",
+        Dialog::EndTrial => "end_trial",
+        Dialog::Palette(_) => "palette",
+        Dialog::Send(_) => "send_signal",
+        Dialog::Preflight => "preflight",
+        Dialog::Calibration => "calibration",
+        Dialog::Note(_) => "note",
+        Dialog::Answer(_) => "answer",
+        Dialog::Difference(_) => "difference",
+        Dialog::Report(_) => "report",
+        Dialog::Pick(list) => match list.kind {
+            PickerKind::Place => "correct_place",
+            PickerKind::Content(_) => "correct_content",
+            PickerKind::Button => "drive_robot",
+            PickerKind::Abort => "abort_trial",
+            PickerKind::Exclude => "exclude_trial",
+            PickerKind::SkipProbe(_) => "skip_probe",
+        },
     }
 }

@@ -1,23 +1,20 @@
 //! Which actions have an effect now: the line of key hints shows only those.
 
+use super::actions::refusal;
 use super::beliefs::{beliefs, visibility};
-use super::compared::ComparisonAction;
-use super::console_model::{ConsoleModel, Dialog};
+use super::console_model::{ComparisonAction, ConsoleModel, Dialog, Playback, ReplayAction, SPEEDS};
 use super::form::sheet;
-use super::hands::{can_redo, skippable, types_notes};
-use super::held_keys::is_right_after_list;
+use super::interventions::{can_redo, skippable, types_notes};
 use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAction};
-use super::playback::{Playback, ReplayAction, SPEEDS};
+use super::key_press::is_right_after_list;
 use super::preflight;
-use super::sending::refusal;
 use tomcom_core::communication::Sender;
 use tomcom_session::admit::admit;
 use tomcom_session::event::SignalEndReason;
 use tomcom_session::gaze_check::GazeCheckEvent;
-use tomcom_session::offers;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Event, Session, TrialPhase};
+use tomcom_session::{Event, Session, TrialPhase, offers};
 
 /// Whether an action would have an effect now, given the dialog or sheet that covers the console.
 pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
@@ -47,7 +44,7 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
     let in_probe = matches!(
         action,
         KeyAction::EndTrial
-            | KeyAction::Hand(ManualAction::SkipProbe | ManualAction::Abort | ManualAction::NoteInWords)
+            | KeyAction::Manual(ManualAction::SkipProbe | ManualAction::Abort | ManualAction::NoteInWords)
     );
     (in_probe && session.is_frozen())
         || matches!(
@@ -57,11 +54,10 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
                 | KeyAction::Quit
                 | KeyAction::StopRobot
                 | KeyAction::ResumeRobot
-                | KeyAction::Hand(ManualAction::Calibrate)
+                | KeyAction::Manual(ManualAction::Calibrate)
         )
 }
 
-/// Whether the open dialog or sheet lets the key of an action through.
 fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     let has_control = || model.keys.chord_for(action).is_some_and(|chord| chord.ctrl);
     let stops = *action == KeyAction::StopRobot;
@@ -75,7 +71,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         Some(Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
             KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
-            KeyAction::ResumeRobot | KeyAction::Hand(ManualAction::HoldRobot) => true,
+            KeyAction::ResumeRobot | KeyAction::Manual(ManualAction::HoldRobot) => true,
             KeyAction::Quit => has_control(),
             _ => stops,
         },
@@ -104,7 +100,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
         KeyAction::EndTrial => runs,
         KeyAction::StopRobot => admits(Event::RobotStopped),
         KeyAction::ResumeRobot => admits(Event::RobotResumed),
-        KeyAction::Hand(hand) => intervenes(session, *hand),
+        KeyAction::Manual(action) => intervenes(session, *action),
         KeyAction::Move(to) => model.playback.as_ref().is_some_and(|playback| moves(playback, *to)),
         KeyAction::Look(ViewAction::All) => model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0,
         KeyAction::Belief => {
@@ -130,10 +126,10 @@ fn advances(session: &Session, model: &ConsoleModel) -> bool {
     }
 }
 
-fn intervenes(session: &Session, hand: ManualAction) -> bool {
+fn intervenes(session: &Session, action: ManualAction) -> bool {
     let (phase, by) = (session.phase, Sender::Wizard);
     let admits = |event: Event| admit(session, &event).is_ok();
-    match hand {
+    match action {
         ManualAction::Correct | ManualAction::Abort => matches!(phase, TrialPhase::Running | TrialPhase::Paused),
         ManualAction::HoldRobot => phase != TrialPhase::Closed,
         ManualAction::SkipPress => admits(Event::RobotSkipped { by }),

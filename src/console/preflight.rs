@@ -7,17 +7,17 @@ use std::path::Path;
 
 use crossterm::event::KeyCode;
 
-use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog, LslStatus, RecordingStatus, RerunStreamStatus};
-use super::display_status::is_wanted;
-use super::key_action::KeyAction;
-use super::key_action::ManualAction;
-use super::notice::NoticeLevel;
+use super::console_model::{
+    ConsoleCommand, ConsoleModel, Dialog, LslStatus, NoticeLevel, RecordingStatus, RerunStreamStatus,
+};
+use super::key_action::{KeyAction, ManualAction};
 use super::probe_keys::{ProbeAnswerer, answerer};
 use tomcom_core::base::text::count;
+use tomcom_core::base::time::SessionTime;
 use tomcom_session::admit::admit;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
 use tomcom_session::probes::of_trial;
+use tomcom_session::settings::{GazeSource, ParticipantKind};
 use tomcom_session::{Event, Session};
 
 /// The key that overrides failed preflight checks and starts the trial.
@@ -25,7 +25,7 @@ pub const OVERRIDE: char = 'o';
 
 /// Runs all preflight checks: participant, gaze, display, robot, recording, disk, keyboard, streams.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
-    let check_gaze = key(model, &KeyAction::Hand(ManualAction::Calibrate));
+    let check_gaze = key(model, &KeyAction::Manual(ManualAction::Calibrate));
     let rejected = model.rejected_since(session.gaze.arrived);
     let mut checks = participant(session, model.now, &check_gaze, rejected);
     let path = session.spec.tracker.file.as_deref().unwrap_or_default();
@@ -40,12 +40,10 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks
 }
 
-/// Whether all preflight checks are ok.
 pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
 
-/// Name of the key that carries out an action.
 fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
@@ -62,7 +60,7 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
             )
         }
         (false, true) => {
-            let release = key(model, &KeyAction::Hand(ManualAction::HoldRobot));
+            let release = key(model, &KeyAction::Manual(ManualAction::HoldRobot));
             PreflightCheck::new(
                 "robot",
                 PreflightVerdict::Warning,
@@ -200,13 +198,128 @@ pub(super) fn answer(
             None
         }
         // Keys that fix a problem also work in the list of preflight checks.
-        (_, Some(KeyAction::ResumeRobot)) => super::sending::resume_robot(model, session),
-        (_, Some(KeyAction::Hand(ManualAction::HoldRobot))) if is_press => {
-            super::hands::act(model, session, ManualAction::HoldRobot)
+        (_, Some(KeyAction::ResumeRobot)) => super::actions::resume_robot(model, session),
+        (_, Some(KeyAction::Manual(ManualAction::HoldRobot))) if is_press => {
+            super::interventions::act(model, session, ManualAction::HoldRobot)
         }
         (_, Some(KeyAction::Advance)) if is_press && is_ok => go(model, session, false),
         // If the problem has been fixed in the meantime, the start does not count as an override.
         (KeyCode::Char(OVERRIDE), _) if is_press => go(model, session, !is_ok),
         _ => None,
+    }
+}
+
+/// State of the participant's display: the web page on the wall screen and its connection.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticipantDisplayHealth {
+    /// Address of the display's web page: "http://127.0.0.1:50022".
+    pub url: String,
+    /// Pairing code that the web page asks for; `None` if the page can only be opened at this computer.
+    pub code: Option<String>,
+    /// Size in pixels of the page that the participant uses; `None` if no such page is connected.
+    pub page: Option<[u32; 2]>,
+    /// Whether the page shows the layout of upright screens, on which gaze is not mapped.
+    pub upright: bool,
+    /// Round-trip time between the program and the page, in milliseconds.
+    pub round_trip_ms: Option<f64>,
+    /// Delay from the participant's last press to its effect on the screen, in milliseconds.
+    pub redraw_ms: Option<f64>,
+    pub watching: u64,
+    pub malformed: u64,
+    pub refused: u64,
+}
+
+/// Least size of the participant's page in pixels; a smaller screen is hard to read from where the participant stands.
+const SMALL_PX: [u32; 2] = [1280, 720];
+/// Round-trip time above which presses at the page are noticeably delayed, in milliseconds.
+const SLOW_MS: f64 = 30.0;
+
+impl ParticipantDisplayHealth {
+    /// State of the participant's display for the console's head line; `true` if all is well.
+    pub fn line(&self) -> (String, bool) {
+        match (self.page, self.redraw_ms.or(self.round_trip_ms)) {
+            (None, _) => ("NO DISPLAY".to_string(), false),
+            (Some(_), None) => ("display ok".to_string(), true),
+            (Some(_), Some(ms)) => (format!("display {ms:.0} ms"), true),
+        }
+    }
+
+    fn address(&self) -> String {
+        format!("open {} in a browser, full screen", self.url)
+    }
+
+    /// The text, followed by the pairing code if the participant's page asks for a code.
+    fn with_code(&self, text: String) -> String {
+        match &self.code {
+            Some(code) => format!("{text}; pairing code {code}"),
+            None => text,
+        }
+    }
+
+    /// Address to open for the participant, with the pairing code, while no participant page is connected.
+    pub fn to_open(&self) -> Option<String> {
+        self.page.is_none().then(|| self.with_code(self.address()))
+    }
+
+    /// Preflight check of the participant's display before a trial whose gaze comes from this source.
+    pub fn check(&self, gaze: GazeSource) -> PreflightCheck {
+        let Some([width, height]) = self.page else {
+            let found = self.with_code("participant's page not connected".to_string());
+            return PreflightCheck::new("display", PreflightVerdict::Failed, found, self.address());
+        };
+        let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms round trip"));
+        let others = match self.watching {
+            0 => String::new(),
+            watching => format!(", {watching} more watch the page"),
+        };
+        let wrong = match self.malformed + self.refused {
+            0 => String::new(),
+            _ => format!(", {} messages malformed, {} connections rejected", self.malformed, self.refused),
+        };
+        let upright = if self.upright { " upright" } else { "" };
+        let found = format!("{width}x{height}{upright}{trip}{others}{wrong}");
+        // Who holds an upright screen in the hand reads it from nearby.
+        let is_small = !self.upright && (width < SMALL_PX[0] || height < SMALL_PX[1]);
+        let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
+        let (verdict, remedy) = match (is_small, is_slow) {
+            _ if self.upright && gaze != GazeSource::None => {
+                (PreflightVerdict::Warning, "turn the screen: on an upright page there is no gaze")
+            }
+            (true, _) => {
+                (PreflightVerdict::Warning, "show the page in full screen (F11) on a display of at least 1280x720")
+            }
+            (false, true) => {
+                (PreflightVerdict::Warning, "open the page on this computer, or use a cable instead of Wi-Fi")
+            }
+            (false, false) => (PreflightVerdict::Ok, ""),
+        };
+        PreflightCheck::new("display", verdict, found, remedy)
+    }
+}
+
+pub fn is_wanted(session: &Session) -> bool {
+    session.spec.participant.kind == ParticipantKind::Display
+}
+
+/// Address and pairing code that a gaze sender at another computer needs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GazePairing {
+    /// Network address to which the sender sends its gaze: "192.168.1.5:50021".
+    pub address: String,
+    /// Pairing code that the sender has to send first.
+    pub code: String,
+}
+
+impl GazePairing {
+    /// Text with the pairing code for the gaze panel, while no gaze arrives.
+    pub fn line(&self, session: &Session, now: SessionTime) -> Option<String> {
+        session.gaze_hz(now).is_none().then(|| format!("pairing code {}", self.code))
+    }
+
+    /// Entry of the preflight list with pairing code and address, while no gaze arrives.
+    pub fn check(&self, session: &Session, now: SessionTime) -> Option<PreflightCheck> {
+        // The pairing code stands before the address, because small screens cut the line.
+        let found = format!("pairing code {}; send gaze to {}", self.code, self.address);
+        session.gaze_hz(now).is_none().then(|| PreflightCheck::ok("gaze pairing", found))
     }
 }

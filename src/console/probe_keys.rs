@@ -2,11 +2,9 @@
 
 use crossterm::event::KeyCode;
 
-use super::console_message::ConsoleCommand;
-use super::console_model::ConsoleModel;
-use super::notice::NoticeLevel;
-use super::sending::{refuse, send};
-use super::sheet_key::SheetKey;
+use super::actions::{refuse, send};
+use super::console_model::{ConsoleCommand, ConsoleModel, NoticeLevel};
+use super::form::SheetKey;
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin, StartedProbe};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;
@@ -15,11 +13,8 @@ use tomcom_session::{Event, Session, TrialPhase};
 /// Who enters the answers to a freeze probe's questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeAnswerer {
-    /// The participant enters the answers on the display.
     Display,
-    /// The wizard enters at the console what the participant says.
     Console,
-    /// The simulated participant gives the answers.
     Simulated,
 }
 
@@ -62,7 +57,6 @@ pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
     Some(format!("{} in {:.0} s", numbered(session, book.numbered + 1), in_s.max(0.0).ceil()))
 }
 
-/// Whether the key is a digit that selects a choice by its number.
 pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode) -> bool {
     let is_digit = matches!(code, KeyCode::Char('0'..='9'));
     let is_free = model.dialog.is_none() && model.playback.is_none();
@@ -138,4 +132,26 @@ pub(super) fn write(
     }
     model.probe_entry = entry;
     None
+}
+
+/// Answer to a freeze probe's question while the wizard enters it at the console.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ProbeEntry {
+    of: (u32, usize),
+    /// Number of the selected answer; 0 is "I don't know".
+    pub choice: Option<usize>,
+    /// Whether the last key was a digit, so that another digit continues the number.
+    pub is_typed: bool,
+    /// Whether the choice is confirmed, so that the participant's confidence is entered next.
+    pub asks_sure: bool,
+    /// How sure the participant is of the answer, from 1 (a guess) to 3 (certain).
+    pub sure: Option<u8>,
+}
+
+impl ProbeEntry {
+    /// The entry for this question: unchanged if it belongs to this question, else empty.
+    pub fn for_question(self, probe: u32, question: usize) -> ProbeEntry {
+        let of = (probe, question);
+        if self.of == of { self } else { ProbeEntry { of, ..ProbeEntry::default() } }
+    }
 }

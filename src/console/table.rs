@@ -1,16 +1,13 @@
 //! The default key table: all actions with their keys and texts, before a key file changes them.
 
+use crossterm::event::KeyCode;
 use crossterm::event::KeyCode::{
-    self, BackTab, Backspace, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
+    BackTab, Backspace, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
 };
 
 use super::chord::KeyChord;
-use super::compared::ComparisonAction;
-use super::key_action::ManualAction;
-use super::key_action::RaterAction;
-use super::key_action::ViewAction;
-use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer};
-use super::playback::ReplayAction;
+use super::console_model::{ComparisonAction, ReplayAction};
+use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer, ManualAction, RaterAction, ViewAction};
 use tomcom_core::communication::{self, HighlightSet, Signal};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use tomcom_core::measures::raters::ErrorCauseKind;
@@ -54,8 +51,8 @@ fn line(
 
 /// An entry of the key table for a manual intervention. The hint line shows such an entry only where it is the next
 /// step.
-fn hand(name: &str, key: char, hand: ManualAction, group: &'static str, help: &str) -> KeyBinding {
-    line(name, &[KeyChord::ctrl(key)], KeyAction::Hand(hand), group, help, None)
+fn manual(name: &str, key: char, action: ManualAction, group: &'static str, help: &str) -> KeyBinding {
+    line(name, &[KeyChord::ctrl(key)], KeyAction::Manual(action), group, help, None)
 }
 
 fn plain(code: KeyCode) -> [KeyChord; 1] {
@@ -83,9 +80,9 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             "resume the robot after a stop",
             Some("resume robot"),
         ),
-        hand("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold the robot, or release it"),
-        hand("skip_press", 's', ManualAction::SkipPress, ROBOT, "skip the robot's present press"),
-        hand("drive_robot", 'd', ManualAction::DriveRobot, ROBOT, "choose the robot's next press"),
+        manual("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold the robot, or release it"),
+        manual("skip_press", 's', ManualAction::SkipPress, ROBOT, "skip the robot's present press"),
+        manual("drive_robot", 'd', ManualAction::DriveRobot, ROBOT, "choose the robot's next press"),
         line(
             "start_pause",
             &[KeyChord::char('.')],
@@ -102,21 +99,21 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             "end the trial (asks first)",
             Some("end"),
         ),
-        hand("preflight", 'f', ManualAction::Preflight, TRIAL, "show the preflight checks"),
-        hand("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check gaze accuracy with targets"),
-        hand("correct", 'u', ManualAction::Correct, TRIAL, "correct what a place of the kitchen holds"),
-        hand("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort the trial (asks why)"),
-        hand("ask_probe", 'a', ManualAction::AskProbe, TRIAL, "ask for a freeze probe"),
+        manual("preflight", 'f', ManualAction::Preflight, TRIAL, "show the preflight checks"),
+        manual("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check gaze accuracy with targets"),
+        manual("correct", 'u', ManualAction::Correct, TRIAL, "correct what a place of the kitchen holds"),
+        manual("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort the trial (asks why)"),
+        manual("ask_probe", 'a', ManualAction::AskProbe, TRIAL, "ask for a freeze probe"),
         line(
             "skip_probe",
             &plain(Delete),
-            KeyAction::Hand(ManualAction::SkipProbe),
+            KeyAction::Manual(ManualAction::SkipProbe),
             TRIAL,
             "skip the rest of a freeze probe (asks why)",
             None,
         ),
-        hand("redo_trial", 'n', ManualAction::Redo, TRIAL, "repeat an aborted or excluded trial"),
-        hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude the trial, or include it again"),
+        manual("redo_trial", 'n', ManualAction::Redo, TRIAL, "repeat an aborted or excluded trial"),
+        manual("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude the trial, or include it again"),
         line(
             "switch_keys",
             &plain(Tab),
@@ -149,7 +146,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines.push(wizards(line(
         "note_in_words",
         &[KeyChord::char('0')],
-        KeyAction::Hand(ManualAction::NoteInWords),
+        KeyAction::Manual(ManualAction::NoteInWords),
         NOTES,
         help,
         Some("type note"),
@@ -167,7 +164,6 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines
 }
 
-/// Default key table of a replay.
 pub fn replay() -> Vec<KeyBinding> {
     use ReplayAction::{BackTo, On};
     let moves = [

@@ -15,7 +15,6 @@ const WAITED: Duration = Duration::from_millis(250);
 pub(super) struct Arrival {
     /// Instant at which the source was last found to be empty.
     pub after: Instant,
-    /// Instant at which the data were read.
     pub by: Instant,
 }
 
@@ -61,7 +60,6 @@ impl ArrivalWatch {
         }
     }
 
-    /// Arrival of data that were read at this instant.
     pub fn arrival(self, read: Instant) -> Arrival {
         Arrival { after: self.empty, by: read }
     }

@@ -63,7 +63,6 @@ pub struct ConnectionTable {
 /// An open connection's entry in the table; dropping it removes the entry.
 #[derive(Debug)]
 pub struct ConnectionHandle {
-    /// Serial number of the network connection.
     pub number: u64,
     address: IpAddr,
     table: Arc<ConnectionTable>,
@@ -73,9 +72,7 @@ pub struct ConnectionHandle {
 /// A new connection, and whether another connection is closed to make room for it.
 #[derive(Debug)]
 pub struct NewConnection {
-    /// Table entry of the new network connection.
     pub place: ConnectionHandle,
-    /// Whether another connection is closed to make room for the new one.
     pub made_room: bool,
 }
 
@@ -128,7 +125,6 @@ impl ConnectionTable {
         candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
     }
 
-    /// Number of open network connections.
     pub fn count(&self) -> usize {
         self.lock().entries.len()
     }

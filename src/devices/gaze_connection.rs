@@ -15,10 +15,10 @@ use tokio::time::{sleep, timeout, timeout_at};
 
 use super::arrival::{Arrival, ArrivalWatch};
 use super::connection_table::ConnectionHandle;
+use super::gaze_gate::RejectionReporter;
 use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
 use super::gaze_line::{begins_object, code_in, long_line_fault, opening_fault, parse};
-use super::gaze_rejections::RejectionReporter;
 use super::sender_clock::SenderClock;
 
 /// Longest line of a gaze connection, in bytes.
@@ -37,19 +37,13 @@ pub(super) type SharedGate = Arc<Mutex<GazeAccessCheck>>;
 
 /// A gaze connection with the state of its sender.
 pub(super) struct GazeConnection {
-    /// TCP stream of the connection.
     pub stream: TcpStream,
     /// Network address of the sender of gaze, with port 0: a sender that connects again counts once.
     pub from: SocketAddr,
-    /// Watch of the data that arrive on the connection.
     pub watch: ArrivalWatch,
-    /// Entry of this connection in the table of network connections.
     pub place: ConnectionHandle,
-    /// Access check for senders of gaze, shared by all connections.
     pub gate: SharedGate,
-    /// Reporter of rejected senders.
     pub rejections: RejectionReporter,
-    /// Channel by which the connection's gaze messages reach the session.
     pub news: Sender<TrackerMessage>,
 }
 

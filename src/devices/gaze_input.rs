@@ -20,20 +20,16 @@ pub enum TrackerMessage {
     /// unknown time that may have waited to be read counts as taken when it can have arrived first. The sample's
     /// confidence is NaN if the tracker did not tell it.
     Sample(GazeSample, Option<Instant>),
-    /// Number of malformed messages, lines or gaze samples that the tracker sent.
     Malformed(u64),
     /// A gaze sample's time stamp is too large to be a time: it is this number.
     WrongTime(f64),
     /// Senders are rejected: they send no gaze, or are not admitted.
     Rejected {
-        /// Network address of the last rejected gaze sender.
         from: IpAddr,
-        /// Why the last gaze sender was rejected.
         why: GazeSenderRejection,
         /// Number of senders that were rejected for the first time since the last message of this kind.
         senders: u64,
     },
-    /// Number of tracker messages dropped because the queue to the session was full.
     Overrun(u64),
     /// The time stamps of a sender cannot be used for this fault; `None`: they are those of a clock.
     Stamps(Option<StampFault>),
@@ -41,30 +37,23 @@ pub enum TrackerMessage {
     Connected(String),
     /// The program of an eye tracker no longer responds, for this reason.
     Lost(String),
-    /// Whether the tracker detects the display's markers now.
     SeesDisplay(bool),
     /// The tracker detects surfaces with these names, but not the display's surface.
     OtherSurfaces(Vec<String>),
     /// Several streams, described by these texts, could be the tracker's; none: no longer several.
     SeveralStreams(Vec<String>),
-    /// Somebody or something set the tracker's clock.
     ClockSet {
         /// Step of the tracker's clock in seconds; negative if the clock was set back.
         by_s: f64,
         /// Instant before the step at which the tracker's clock was last found unchanged.
         known_at: Instant,
     },
-    /// State of the recording that the tracker's program makes of the trial.
     Recording(TrackerRecording),
-    /// A finished fixation of the participant's gaze.
     Fixation(TrackerFixation),
-    /// Onset or offset of the participant's blink.
     Blink {
-        /// Whether the eyes closed (onset); false if the eyes opened (offset).
         is_onset: bool,
         /// Confidence of the tracker in the blink, 0 to 1.
         confidence: f64,
-        /// Time of the blink's onset or offset, on the tracker's and this computer's clock.
         taken: TrackerTime,
     },
 }
@@ -72,11 +61,8 @@ pub enum TrackerMessage {
 /// Why a gaze sender is rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum GazeSenderRejection {
-    /// The session lists admitted network addresses, and the sender's is not among them.
     Unlisted,
-    /// The sender at another computer has sent something else than the pairing code.
     Unpaired,
-    /// The sender at another computer sent a wrong pairing code.
     WrongCode,
     /// The pairing code was not checked, because too many wrong ones came before.
     Locked,
@@ -84,7 +70,6 @@ pub enum GazeSenderRejection {
     ByteOrderMark,
     /// The text is encoded as UTF-16.
     Utf16,
-    /// The data are a request of a web page, or of another program that speaks HTTP.
     HttpRequest,
     /// The text begins with this, and not with a JSON object.
     NoObject(String),
@@ -96,7 +81,6 @@ pub enum GazeSenderRejection {
     Silent(u64),
     /// Datagrams of this other address are read, which sent a gaze sample first.
     OtherSender(IpAddr),
-    /// As many connections as there may be send gaze.
     Crowded,
     /// The connection had not sent a gaze sample for longer than all others, when a new one needed room.
     GaveWay,
@@ -153,7 +137,6 @@ impl GazeSenderRejection {
 /// Time of a tracker's event, on the tracker's clock and on this computer's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerTime {
-    /// Time on the tracker's clock, in nanoseconds.
     pub device_ns: i64,
     /// Time on this computer's clock, if the two clocks were compared.
     pub at: Option<Instant>,

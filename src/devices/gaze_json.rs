@@ -17,14 +17,12 @@ use tokio::time::sleep;
 
 use super::arrival::{Arrival, ArrivalWatch};
 use super::connection_table::{ConnectionLimits, ConnectionTable};
-use super::datagram_holder::ExclusiveDatagramSender;
 use super::gaze_connection::{GazeConnection, SharedGate, attend, lock};
-use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
+use super::gaze_gate::{GazeAccessCheck, GazeAdmission, RejectionReporter};
 use super::gaze_input::{GazeSenderRejection, TrackerMessage, WAITING};
 use super::gaze_line::{begins_object, opening_fault, parse};
-use super::gaze_rejections::RejectionReporter;
 use super::outer_address::reachable;
-use super::pairing_code::pairing_code;
+use super::pairing::pairing_code;
 use super::sender_clock::SenderClock;
 use tomcom_session::settings::GazeSenders;
 
@@ -45,12 +43,10 @@ const LIMITS: ConnectionLimits = ConnectionLimits {
 /// The open gaze input for connections (TCP) and datagrams (UDP).
 #[derive(Debug)]
 pub struct GazeListener {
-    /// Network address at which gaze connections and datagrams are received.
     pub address: SocketAddr,
     /// Pairing code for senders at other computers; `None` if no other computer can reach the input, or if the session
     /// lists addresses.
     pub code: Option<String>,
-    /// Channel of messages from the senders of gaze.
     pub news: Receiver<TrackerMessage>,
 }
 
@@ -117,7 +113,6 @@ async fn take_connections(
     }
 }
 
-/// Waits for the next connection.
 async fn accept(listener: &TcpListener, watch: &mut ArrivalWatch) -> io::Result<(TcpStream, SocketAddr)> {
     let asked = Instant::now();
     match poll_fn(|context| Poll::Ready(listener.poll_accept(context))).await {
@@ -173,7 +168,6 @@ struct DatagramReader {
 }
 
 impl DatagramReader {
-    /// The messages of a datagram.
     fn take(&mut self, datagram: &[u8], from: SocketAddr, arrival: Arrival) -> Vec<TrackerMessage> {
         let now = arrival.by;
         let Some(lines) = self.gate.lines(from, datagram, now) else { return Vec::new() };
@@ -198,7 +192,6 @@ impl DatagramReader {
         forget.into_iter().chain(self.clock(from, now).stamp(found, arrival)).collect()
     }
 
-    /// The clock of this sender.
     fn clock(&mut self, from: SocketAddr, now: Instant) -> &mut SenderClock {
         let known = self.clocks.iter().position(|(sender, _)| *sender == from);
         let known = known.and_then(|index| self.clocks.remove(index));
@@ -208,6 +201,35 @@ impl DatagramReader {
         let last = self.clocks.len();
         self.clocks.push_back(known.unwrap_or_else(|| (from, SenderClock::new(now))));
         &mut self.clocks[last].1
+    }
+}
+
+/// Silence after which the network address that sent gaze loses its exclusive use of the gaze input.
+pub const RELEASE: Duration = Duration::from_secs(5);
+
+/// Which address may send gaze datagrams: the first sender has exclusive use until it falls silent.
+#[derive(Clone, Copy, Debug)]
+pub struct ExclusiveDatagramSender {
+    senders: GazeSenders,
+    /// Address with exclusive use of the gaze input, and the arrival of its last sample.
+    holder: Option<(IpAddr, Instant)>,
+}
+
+impl ExclusiveDatagramSender {
+    /// A filter that no address uses exclusively yet.
+    pub fn new(senders: GazeSenders) -> ExclusiveDatagramSender {
+        ExclusiveDatagramSender { senders, holder: None }
+    }
+
+    /// The other address because of which no gaze datagram from this network address is read; `None` if it is read.
+    pub fn excludes(&self, from: IpAddr, now: Instant) -> Option<IpAddr> {
+        let (holder, heard) = self.holder.filter(|_| self.senders == GazeSenders::First)?;
+        (holder != from && now.saturating_duration_since(heard) < RELEASE).then_some(holder)
+    }
+
+    /// Records that a datagram from this network address contained a gaze sample.
+    pub fn heard(&mut self, from: IpAddr, now: Instant) {
+        self.holder = Some((from, now));
     }
 }
 

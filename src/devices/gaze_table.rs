@@ -66,7 +66,6 @@ enum GazeExporter {
 struct GazeColumns {
     exporter: GazeExporter,
     separator: u8,
-    /// Names of all columns.
     names: Vec<String>,
     /// Number of cells with the row's name before the first column.
     row_names: usize,
@@ -85,7 +84,6 @@ struct GazeColumns {
 /// A row of the gaze table that is a gaze sample.
 struct GazeRow {
     line: usize,
-    /// Time in billionths of the unit of the table's times.
     time: i128,
     place: [f64; 2],
     /// `None` if the row does not tell the confidence.
@@ -102,7 +100,6 @@ pub(super) struct GazeTable {
     pub first_malformed: Option<String>,
     /// Number of samples without a confidence.
     pub without_confidence: u64,
-    /// What was odd in the table and how it was read.
     pub remarks: Vec<String>,
 }
 

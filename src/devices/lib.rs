@@ -9,7 +9,6 @@
 mod arrival;
 mod compared_clock;
 pub mod connection_table;
-pub mod datagram_holder;
 #[cfg(feature = "display")]
 pub mod display;
 mod gaze_connection;
@@ -18,14 +17,12 @@ mod gaze_gate;
 pub mod gaze_input;
 pub mod gaze_json;
 pub mod gaze_line;
-mod gaze_rejections;
 mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
 pub mod lsl;
 mod outer_address;
 mod pairing;
-mod pairing_code;
 pub mod pupil;
 #[cfg(feature = "rerun")]
 pub mod rerun;
@@ -38,6 +35,5 @@ pub mod sight;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
-mod tracker_folder;
 #[cfg(feature = "rerun")]
 pub mod viewer;

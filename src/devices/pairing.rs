@@ -4,12 +4,13 @@
 //! too. The number of open connections then bounds how many codes can be tried. The sender address of a datagram can be
 //! forged, so of datagrams only these few are checked at all.
 
+use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, VecDeque};
+use std::hash::BuildHasher;
 use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
 use super::connection_table::network_of;
-use super::pairing_code::is_code;
 
 /// Time for which a network address is locked after a wrong pairing code.
 const WAIT: Duration = Duration::from_secs(1);
@@ -33,7 +34,6 @@ const MAX_PAGES: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PairingVerdict {
     Right,
-    /// The pairing code was wrong, and the sender's address is locked for this time.
     Wrong(Duration),
     /// The pairing code was not checked: the sender's address is still locked for this time.
     Locked(Duration),
@@ -118,8 +118,26 @@ fn wait_after(count: u32) -> Duration {
     (WAIT * 2_u32.pow(doublings)).min(LONGEST)
 }
 
+/// Letters and digits of pairing codes, without those that are easily confused.
+const SIGNS: &[u8; 32] = b"ABCDEFGHJKLMNPQRSTUVWXYZ23456789";
+
+/// An unpredictable pairing code of six characters. The code comes from the operating system's random source (through
+/// the seeds of the standard library's hash maps), not from the session's seed, which is recorded.
+pub(super) fn pairing_code() -> String {
+    let bits = RandomState::new().hash_one("pairing code");
+    (0..6).map(|place| char::from(SIGNS[(bits >> (5 * place)) as usize % SIGNS.len()])).collect()
+}
+
+/// Whether a typed text is the pairing code, ignoring case and spaces; texts are compared in constant time.
+pub(super) fn is_code(typed: &str, code: &str) -> bool {
+    let typed: Vec<u8> =
+        typed.bytes().filter(u8::is_ascii_alphanumeric).map(|byte| byte.to_ascii_uppercase()).collect();
+    let differing = typed.iter().zip(code.bytes()).filter(|(a, b)| **a != *b).count();
+    typed.len() == code.len() && differing == 0
+}
+
 #[cfg(test)]
-mod tests {
+mod pairing_tests {
     use super::*;
 
     const HERE: IpAddr = IpAddr::V4(std::net::Ipv4Addr::new(10, 0, 0, 7));
@@ -213,5 +231,19 @@ mod tests {
         // Test: a sender without a name is not recognised the next time.
         assert_eq!(desk.attempt(THERE, None, "WRONG2", later), PairingVerdict::Wrong(WAIT));
         assert_eq!(desk.attempt(THERE, None, "ABC234", later), PairingVerdict::Locked(WAIT));
+    }
+}
+
+#[cfg(test)]
+mod pairing_code_tests {
+    use super::*;
+
+    #[test]
+    fn a_code_is_known_by_its_signs() {
+        let code = pairing_code();
+        assert_eq!(code.len(), 6);
+        assert!(is_code(&format!(" {} ", code.to_lowercase()), &code));
+        assert!(!is_code(&code[1..], &code) && !is_code("", &code) && !is_code(&format!("{code}A"), &code));
+        assert_ne!(code, pairing_code());
     }
 }

@@ -60,16 +60,13 @@ const LINE_MM: f32 = 2.0;
 /// Identity of a Rerun stream: id and name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StreamIdentity {
-    /// Unique id of the stream.
     pub id: String,
-    /// Name of the stream in the viewer.
     pub name: String,
 }
 
 /// Outputs of a Rerun stream: a file, a server, or both.
 #[derive(Clone, Debug, Default)]
 pub struct StreamOutlets {
-    /// File to which the stream is written; `None` for no file.
     pub file: Option<PathBuf>,
     /// Address of the server for viewers; `true` if viewers get the whole stream, whatever its size.
     pub server: Option<(SocketAddr, bool)>,
@@ -94,9 +91,7 @@ struct OpenStream {
     gaze_every: SessionTime,
     /// Time of the last gaze sample in the stream.
     gaze_at: Option<SessionTime>,
-    /// Values of the stream's timelines for the rows that are written next.
     now: [i64; 3],
-    /// Gaze samples of the present piece.
     sights: Sights,
 }
 
@@ -105,7 +100,6 @@ struct OpenStream {
 #[derive(Default)]
 struct Sights {
     entity: String,
-    /// For each sample, the values of the stream's timelines.
     times: Vec<[i64; 3]>,
     at: Vec<[f32; 2]>,
     around: Vec<[f32; 2]>,
@@ -281,7 +275,6 @@ impl Drop for OpenStream {
     }
 }
 
-/// Name of a row's entity.
 fn entity(lane: &ShownRecording, row: &EntityUpdate) -> String {
     match lane.root.as_str() {
         "" => row.entity.clone(),
@@ -289,7 +282,6 @@ fn entity(lane: &ShownRecording, row: &EntityUpdate) -> String {
     }
 }
 
-/// Components of a row's entity, as Rerun writes them.
 fn components(row: &EntityUpdate) -> Vec<SerializedComponentBatch> {
     parts(&row.shown).iter().flat_map(|part| part.as_serialized_batches()).collect()
 }

@@ -31,9 +31,7 @@ pub fn mark() -> String {
 /// State of a Rerun file: missing, incomplete, outdated or complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RerunFileState {
-    /// The Rerun file does not exist.
     Missing,
-    /// The Rerun file was not written to its end.
     Cut,
     /// The Rerun file was written by another version, or begins in the middle of the session.
     Other,
@@ -43,7 +41,6 @@ pub enum RerunFileState {
     Damaged,
     /// The Rerun file was made from another log, or from this log before more was written to it.
     Stale,
-    /// The Rerun file shows the whole log as it is now.
     Whole,
 }
 

@@ -27,9 +27,7 @@ pub const PORTS: u16 = 20;
 /// Numbers of written and dropped rows of a Rerun stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamCounts {
-    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows that were dropped because the Rerun stream was too slow.
     pub dropped: u64,
 }
 
@@ -38,19 +36,16 @@ pub struct StreamCounts {
 struct Counters {
     written: AtomicU64,
     dropped: AtomicU64,
-    /// Whether the writing thread has to close the stream's file, which the session gave up.
     without_file: AtomicBool,
 }
 
 /// A live Rerun stream that is open.
 #[derive(Debug)]
 pub struct RerunStream {
-    /// Address at which viewers connect; `None` without a server.
     pub server: Option<SocketAddr>,
     file: Option<PathBuf>,
     news: SyncSender<Vec<SceneUpdate>>,
     counters: Arc<Counters>,
-    /// Receives a message when the stream's file is closed.
     closed: Receiver<()>,
 }
 

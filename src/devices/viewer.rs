@@ -25,11 +25,8 @@ const ANSWER_BYTES: u64 = 1 << 16;
 pub enum ViewerAvailability {
     /// A viewer whose version can read this program's streams is installed; the path of its program.
     Ready(PathBuf),
-    /// A viewer of another version is installed; that version.
     Other(String),
-    /// There is no screen on which the viewer could open a window.
     NoScreen,
-    /// No viewer program is installed.
     None,
 }
 

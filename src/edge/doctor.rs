@@ -35,7 +35,6 @@ const WRITTEN: &str = "2025-01-01";
 pub struct DoctorReport {
     /// Whether no check of `tomcom doctor` failed.
     pub healthy: bool,
-    /// Checks of the computer with their findings.
     pub checks: Vec<PreflightCheck>,
 }
 
@@ -57,7 +56,6 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     DoctorReport { healthy, checks }
 }
 
-/// The findings of `tomcom doctor` as text.
 pub fn describe(findings: &DoctorReport) -> String {
     let line = |check: &PreflightCheck| {
         let mark = match check.verdict {
@@ -146,7 +144,6 @@ fn mouse_mode() -> Option<bool> {
     Some(state != '0')
 }
 
-/// The nearest parent folder of a path that exists.
 fn existing(out: &Path) -> PathBuf {
     let there = out.ancestors().find(|folder| folder.is_dir());
     there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()

@@ -11,7 +11,6 @@ use tomcom_session::files::{self, KitchenWithSources, SessionSetup, overwrite};
 use tomcom_session::header::RecordedFile;
 use tomcom_study::analysis::fitting::FITTED;
 
-/// Reads a session file, the layout and the key file that it names, and the recipes that the layout names.
 pub fn read_session(path: &Path) -> FileResult<SessionSetup> {
     read_session_in(path, None)
 }

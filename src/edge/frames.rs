@@ -18,7 +18,6 @@ const PIECE: usize = 2048;
 /// State that the writing thread shares with the rest of the program.
 #[derive(Debug, Default)]
 struct Pending {
-    /// Next frame to be written to the terminal.
     frame: Option<Vec<u8>>,
     /// Last bytes for the terminal, which restore its modes.
     last: Option<Vec<u8>>,

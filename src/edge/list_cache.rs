@@ -32,7 +32,6 @@ const MAX_HEADER: u64 = 1 << 24;
 /// Numbers about a closed recording that the cache keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CachedRecordingNumbers {
-    /// Study arm of the recording's trial, as it was carried out.
     pub arm: StudyArm,
     /// Duration of the trial by its own clock, in seconds.
     pub trial_s: f64,
@@ -51,9 +50,7 @@ struct KeptLine {
 /// Digest of a closed log, and the values of its header that a list of recordings shows; no events are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLogHeader {
-    /// Digest of the log, by which the cache finds the recording.
     pub digest: String,
-    /// The participant's code.
     pub code: String,
     /// Condition of the trial: who could send signals.
     pub condition: Condition,

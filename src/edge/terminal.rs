@@ -19,8 +19,8 @@ use ratatui::backend::CrosstermBackend;
 
 use super::ask::ground;
 use super::frames::{FrameWriter, write_within};
-use crate::console::question::StartQuestion;
-use crate::console::recording_picker::RecordingPicker;
+use crate::console::lists::RecordingPicker;
+use crate::console::lists::StartPrompt;
 use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
@@ -99,7 +99,6 @@ impl TerminalScreen {
         })
     }
 
-    /// Sets up the screen of a terminal in raw mode.
     fn set_up(frames: Arc<FrameWriter>) -> io::Result<TerminalScreen> {
         let ground = ground().unwrap_or(TerminalBackground::Dark);
         frames.show(way_in()?);
@@ -139,7 +138,7 @@ impl TerminalScreen {
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn ask(&mut self, question: &StartQuestion, notice: Option<&str>, theme: Theme) -> io::Result<()> {
+    pub fn ask(&mut self, question: &StartPrompt, notice: Option<&str>, theme: Theme) -> io::Result<()> {
         self.compose(|frame| draw_question(question, notice, theme, frame))
     }
 

@@ -347,7 +347,6 @@ fn modifiers(mask: u32) -> KeyModifiers {
     held.fold(KeyModifiers::NONE, |all, (_, modifier)| all | *modifier)
 }
 
-/// The key of a sequence that ends in this letter.
 fn letter_key(letter: u8) -> Option<KeyCode> {
     Some(match letter {
         b'A' => KeyCode::Up,
@@ -362,7 +361,6 @@ fn letter_key(letter: u8) -> Option<KeyCode> {
     })
 }
 
-/// The key of a sequence `ESC [ number ~`.
 fn numbered_key(number: u32) -> Option<KeyCode> {
     Some(match number {
         1 | 7 => KeyCode::Home,

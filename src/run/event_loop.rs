@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 
-use super::desk::{OperatorDesk, PageInput};
 use super::error::TerminalError;
-use crate::console::question::StartQuestion;
-use crate::console::recording_picker::RecordingPicker;
+use super::operator_station::{OperatorStation, PageInput};
+use crate::console::lists::RecordingPicker;
+use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::edge::terminal::TerminalScreen;
@@ -34,23 +34,17 @@ pub(super) enum LoopEvent {
     EndRequest,
     /// An input from the terminal: key, mouse, pasted text, new size or focus.
     Terminal(ConsoleMessage),
-    /// An internal event of the session is due.
     EngineDue,
-    /// A step of a gaze accuracy check is due.
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
-    /// A recommendation of the assistant has arrived.
     Advice(Box<Recommendation>),
-    /// The mouse pointer is due to be sampled as gaze.
     PointerTick,
     /// Files that other programs or this one extend are due to be read or flushed.
     FileTick,
     /// The state of recording and devices is due to be checked.
     WatchTick,
-    /// A frame is due to be drawn.
     FrameDue,
-    /// The next sample of a replayed gaze file is due.
     FileGazeDue,
     /// Messages of the eye tracker, in order of arrival. This variant is last, so that a tracker that sends too much
     /// delays only itself.
@@ -78,7 +72,7 @@ impl Default for ShellDeadlines {
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
     /// A question to the wizard before a recording, with a notice below it.
-    Question(&'a StartQuestion, Option<&'static str>, Theme),
+    Question(&'a StartPrompt, Option<&'static str>, Theme),
     /// A list of recordings to choose from.
     Recordings(&'a RecordingPicker, Theme),
 }
@@ -118,7 +112,6 @@ pub(super) trait ConsoleShell {
     /// The content that the shell wants to be shown.
     fn view(&self) -> ShellView<'_>;
 
-    /// Notes that a frame was passed to the terminal for drawing.
     fn drawn(&mut self) {}
 }
 
@@ -126,15 +119,15 @@ pub(super) trait ConsoleShell {
 /// closed.
 pub(super) async fn run<S: ConsoleShell>(
     shell: &mut S,
-    desk: &mut OperatorDesk,
+    station: &mut OperatorStation,
 ) -> Result<Option<S::Outcome>, S::Error> {
     let mut ticks = LoopTicks::start();
-    while !desk.screen.is_lost() {
-        match next_event(shell, desk, &mut ticks).await {
+    while !station.screen.is_lost() {
+        match next_event(shell, station, &mut ticks).await {
             LoopEvent::EndRequest => return Ok(None),
             LoopEvent::FrameDue => {
                 ticks.frame = Some(Instant::now());
-                draw(shell, &mut desk.screen)?;
+                draw(shell, &mut station.screen)?;
             }
             event => {
                 if let Some(outcome) = shell.take(event)? {
@@ -166,23 +159,22 @@ impl LoopTicks {
     }
 }
 
-/// Waits for the next event of the console's event loop.
-async fn next_event<S: ConsoleShell>(shell: &mut S, desk: &mut OperatorDesk, ticks: &mut LoopTicks) -> LoopEvent {
+async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStation, ticks: &mut LoopTicks) -> LoopEvent {
     let (due, with_pointer) = (shell.deadlines(), shell.samples_pointer());
     let frame = ticks.frame.map_or_else(Instant::now, |last| last + due.frame_after);
     tokio::select! {
         biased;
-        message = desk.seat.next() => message.map_or(LoopEvent::EndRequest, LoopEvent::Terminal),
+        message = station.input.next() => message.map_or(LoopEvent::EndRequest, LoopEvent::Terminal),
         () = until(due.engine) => LoopEvent::EngineDue,
         () = until(due.target) => LoopEvent::TargetDue,
-        Some(input) = desk.wall.next() => LoopEvent::Page(input),
+        Some(input) = station.display.next() => LoopEvent::Page(input),
         Some(advice) = shell.advice() => LoopEvent::Advice(Box::new(advice)),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,
         _ = ticks.files.tick() => LoopEvent::FileTick,
         _ = ticks.watch.tick() => LoopEvent::WatchTick,
         () = sleep_until(frame) => LoopEvent::FrameDue,
         () = until(due.file_gaze) => LoopEvent::FileGazeDue,
-        Some(news) = desk.tracker.next() => LoopEvent::Gaze(news),
+        Some(news) = station.tracker.next() => LoopEvent::Gaze(news),
     }
 }
 

@@ -13,7 +13,6 @@ use tomcom_study::analysis::trial_summary::TrialSummary;
 pub enum LeavingReason {
     /// The wizard ended the program.
     Quit,
-    /// The wizard went on to the next recording of the participant's series.
     Next,
     /// The wizard repeats the trial in a new recording.
     Redo,
@@ -24,11 +23,8 @@ pub enum LeavingReason {
 pub struct TutorialProgress {
     /// Number of steps that the participant did.
     pub done: u64,
-    /// Number of steps in the tutorial.
     pub steps: u64,
-    /// Number of presses in the tutorial, right and wrong ones.
     pub presses: u64,
-    /// Number of wrong answers to the tutorial's questions.
     pub wrong_answers: u64,
 }
 
@@ -57,11 +53,9 @@ impl TutorialProgress {
 /// Result of a live session: its recording, its summary, and how the wizard left it.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
-    /// Folder of the recording.
     pub folder: PathBuf,
     /// How the wizard left the recording.
     pub leaving: LeavingReason,
-    /// Summary of the session's trial.
     pub figures: TrialSummary,
     /// How far the participant came, if the session was left in a tutorial.
     pub tutorial: Option<TutorialProgress>,

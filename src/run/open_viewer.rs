@@ -36,7 +36,6 @@ const NAMED: usize = 50;
 /// Error of showing recordings in the Rerun viewer.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RerunViewerError {
-    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
@@ -44,7 +43,6 @@ pub enum RerunViewerError {
     #[error("{}: the Rerun stream cannot be written: {reason}", path.display())]
     #[diagnostic(help("give a file that can be written to with --save=FILE"))]
     Unwritable {
-        /// Path of the stream file.
         path: PathBuf,
         /// Why the operating system could not write the file.
         reason: io::Error,
@@ -59,15 +57,10 @@ pub enum RerunViewerError {
     /// Another program is writing the stream file of this recording.
     #[error("{}: another program writes this recording and its Rerun stream", folder.display())]
     #[diagnostic(help("save the stream up to now with --save=FILE"))]
-    InUse {
-        /// Folder of the recording.
-        folder: PathBuf,
-    },
-    /// The viewer's program cannot be started.
+    InUse { folder: PathBuf },
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves a viewer for a browser"))]
     Viewer {
-        /// Path of the viewer's program.
         path: PathBuf,
         /// Why the operating system could not start the viewer's program.
         reason: io::Error,
@@ -83,7 +76,6 @@ impl From<FileError> for RerunViewerError {
 /// Request of `tomcom review`: which recordings to show in Rerun, and how.
 #[derive(Clone, Debug)]
 pub struct RerunReviewRequest {
-    /// Folders of the recordings to show.
     pub recordings: Vec<PathBuf>,
     /// Whether to write the stream file only, and to which path: beside the log by default.
     pub save: Option<Option<PathBuf>>,
@@ -96,7 +88,6 @@ pub struct RerunReviewRequest {
 /// A file with the Rerun stream of recordings, and whether the file had to be rebuilt.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RerunStreamFile {
-    /// Path of the stream file.
     pub path: PathBuf,
     /// Whether the file was just rebuilt from the log.
     pub made: bool,
@@ -107,7 +98,6 @@ pub struct RerunStreamFile {
 /// A recording that is still being written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OngoingRecording {
-    /// Folder of the recording.
     pub recording: PathBuf,
     /// Network address at which viewers of the running session connect; `None` if the session has no stream.
     pub viewers: Option<String>,
@@ -131,7 +121,6 @@ pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
 pub enum RerunReviewOutcome {
     /// The stream file was written, as requested, and no viewer was opened.
     Saved(RerunStreamFile),
-    /// A native viewer was opened on the stream file.
     Opened(RerunStreamFile),
     /// The web viewer is served to a browser until this value is dropped.
     Served {
@@ -139,7 +128,6 @@ pub enum RerunReviewOutcome {
         url: String,
         /// Why the web viewer is served instead of opening a native viewer.
         because: &'static str,
-        /// Servers of web viewer and stream, which end when they are dropped.
         _serving: Box<(RerunWriter, WebViewer)>,
     },
 }

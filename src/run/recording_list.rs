@@ -1,13 +1,23 @@
-//! Lists the recordings of a folder. Numbers about closed recordings are kept for the next list
-//! ([`crate::edge::list_cache`]).
+//! The list of recordings of a folder, and how the user chooses one from it.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use super::error::{ReviewError, TerminalError};
+use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
+use super::operator_station::OperatorStation;
+use crate::console::ConsoleMessage;
+use crate::console::lists::{RecordingPicker, RecordingReply};
+use crate::console::mouse::ClickAction;
+use crate::console::view::recordings_page::recording_targets;
+use crate::console::view::theme::Theme;
 use crate::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
+use crate::edge::terminal::TerminalScreen;
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_session::apply;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogEnding, LogReader};
+use tomcom_session::settings::ConsoleSpec;
 use tomcom_study::analysis::recording_summary::{ExclusionStatus, ListedRecording, RecordingList, RecordingState};
 use tomcom_study::files::recordings;
 use tomcom_study::kept_cost::KeptCost;
@@ -156,4 +166,90 @@ fn read(
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
     };
     Ok((row, at_console))
+}
+
+/// Period of redrawing the list of recordings, in case the terminal's size changed.
+const REDRAW: Duration = Duration::from_millis(100);
+
+/// Asks the person which recording of the folder to use; `None` if the person chooses no recording.
+///
+/// # Errors
+/// The folder cannot be read or has no recordings, or there is no terminal.
+pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
+    let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
+    // The list has no column of errors here, since counting errors takes long.
+    let without_errors = |cells: [String; 7]| {
+        let [code, condition, date, length, _, state, recording] = cells;
+        vec![code, condition, date, length, state, recording]
+    };
+    let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
+    let rows = list.recordings.iter().map(|one| without_errors(one.cells())).collect();
+    let title = format!("Which recording of {}?", list.folder);
+    let picker = RecordingPicker::new(title, headings, rows);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
+    let chosen = runtime.block_on(async {
+        let mut station = OperatorStation::without_devices(&ConsoleSpec::default())?;
+        let mut shell = OpenPicker { picker, theme: station.theme, dirty: true };
+        event_loop::run(&mut shell, &mut station).await
+    })?;
+    Ok(match chosen {
+        Some(RecordingReply::Chosen(index)) => paths.get(index).cloned(),
+        Some(RecordingReply::Leave) | None => None,
+    })
+}
+
+/// A list of recordings from which none has been chosen yet.
+struct OpenPicker {
+    picker: RecordingPicker,
+    theme: Theme,
+    /// Whether the list of recordings has to be redrawn.
+    dirty: bool,
+}
+
+impl OpenPicker {
+    fn click(&mut self, cell: (u16, u16)) -> Option<RecordingReply> {
+        let size = TerminalScreen::size().ok()?;
+        let targets = recording_targets(&self.picker, self.theme, size);
+        let target = targets.iter().rev().find(|target| target.cells.contains(cell.into()))?;
+        match target.action {
+            ClickAction::Row(row) => self.picker.click(row),
+            ClickAction::Key(chord) => self.picker.take(chord.code),
+            _ => None,
+        }
+    }
+}
+
+impl ConsoleShell for OpenPicker {
+    type Outcome = RecordingReply;
+    type Error = ReviewError;
+
+    fn deadlines(&mut self) -> ShellDeadlines {
+        ShellDeadlines { frame_after: if self.dirty { FRAME } else { REDRAW }, ..ShellDeadlines::default() }
+    }
+
+    fn take(&mut self, event: LoopEvent) -> Result<Option<RecordingReply>, ReviewError> {
+        let LoopEvent::Terminal(message) = event else { return Ok(None) };
+        self.dirty = true;
+        Ok(match message {
+            ConsoleMessage::Key(key) => self.picker.key(&key),
+            ConsoleMessage::Click(column, row) => self.click((column, row)),
+            ConsoleMessage::Wheel(_, _, steps) => {
+                self.picker.scroll(steps);
+                None
+            }
+            ConsoleMessage::Paste(text) => {
+                self.picker.cursor.paste(&text.unwrap_or_default());
+                None
+            }
+            _ => None,
+        })
+    }
+
+    fn view(&self) -> ShellView<'_> {
+        ShellView::Recordings(&self.picker, self.theme)
+    }
+
+    fn drawn(&mut self) {
+        self.dirty = false;
+    }
 }

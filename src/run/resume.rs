@@ -2,27 +2,31 @@
 //! recording, in a folder beside it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use super::error::LiveError;
+use super::options::SessionStart;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::header::PreviousPart;
 use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued};
+use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::verify::RepeatedRecording;
-use tomcom_session::{Event, LogHeader, TimestampedEvent};
+use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_session::{Event, LogHeader, SessionSpec, TimestampedEvent};
 
 /// Why a recording cannot be continued.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ResumeError {
-    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// The new part of the recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The session of this recording ended properly.
     #[error("{}: the session of this recording was brought to its end, so it cannot be continued", .0.display())]
     #[diagnostic(help("continue a recording that was cut; a new session: tomcom operate"))]
     Ended(PathBuf),
@@ -30,7 +34,6 @@ pub enum ResumeError {
     #[error("{}: the name of this recording's folder is not UTF-8, so a new part cannot name it", .0.display())]
     #[diagnostic(help("rename the folder; letters, digits and - are safe everywhere"))]
     Name(PathBuf),
-    /// The recording is of a simulated trial, which cannot be continued.
     #[error("{}: this recording is simulated, and only a person's session can be continued", .0.display())]
     #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
     Simulated(PathBuf),
@@ -41,7 +44,6 @@ pub enum ResumeError {
         "continue it with the version of tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"
     ))]
     Differs {
-        /// Path of the recording's log.
         log: PathBuf,
         /// Sequence number of the event that differs.
         seq: u64,
@@ -57,15 +59,11 @@ impl From<FileError> for ResumeError {
 /// A session that continues a recording after its cut.
 #[derive(Debug)]
 pub struct ResumedSession {
-    /// The engine, in the session's state at the cut.
     pub engine: SessionEngine,
     /// First events of the new part: events lost by the cut, and the pause of a running trial.
     pub first: Vec<TimestampedEvent>,
-    /// Header of the new part.
     pub header: LogHeader,
-    /// Session time at which the continued session goes on.
     pub time: SessionTime,
-    /// Folder of the previous part of the recording.
     pub folder: PathBuf,
     /// Lock that keeps other programs from the previous part.
     pub lock: RecordingLock,
@@ -109,4 +107,89 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     // All parts of a recording have the same version of the format.
     header.version = old.version;
     Ok(ResumedSession { engine: again.engine, first, header, time, folder, lock })
+}
+
+/// A session that is prepared to be run and recorded.
+pub(super) struct PreparedSession {
+    pub engine: SessionEngine,
+    pub header: LogHeader,
+    /// First events of the new recording, which exist before the session runs.
+    pub first: Vec<TimestampedEvent>,
+    /// The participant's consent, if it was asked for just before the session.
+    pub consent: Option<ProtocolEvent>,
+    /// Session time at which the session begins.
+    pub time: SessionTime,
+    /// Comparison of wizard and assistants, if the console shows it.
+    pub compare: Option<SenderComparisonSettings>,
+    pub place: RecordingPlace,
+}
+
+/// In which folder the recording's folder is created.
+pub(super) enum RecordingPlace {
+    In(PathBuf),
+    After(PathBuf, RecordingLock),
+}
+
+impl PreparedSession {
+    /// Prepares a session; nothing is recorded yet.
+    ///
+    /// # Errors
+    /// The recording that shall be continued cannot be continued.
+    pub fn new(beginning: SessionStart) -> Result<PreparedSession, LiveError> {
+        match beginning {
+            SessionStart::New { files, trial, out } => {
+                let kitchen = Arc::new(files.kitchen.kitchen);
+                let spec = files.spec;
+                let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+                header.keys = files.keys;
+                let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
+                let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
+                Ok(PreparedSession { engine, header, first, consent: None, time, compare: None, place })
+            }
+            SessionStart::Again { header, kitchen, out } => {
+                let engine =
+                    SessionEngine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
+                let (header, place) = (*header, RecordingPlace::In(out));
+                Ok(PreparedSession {
+                    engine,
+                    header,
+                    first: Vec::new(),
+                    consent: None,
+                    time: SessionTime::ZERO,
+                    compare: None,
+                    place,
+                })
+            }
+            SessionStart::Continued(recording) => {
+                let resumed = resume(&recording)?;
+                let place = RecordingPlace::After(resumed.folder, resumed.lock);
+                let (header, first, time) = (resumed.header, resumed.first, resumed.time);
+                Ok(PreparedSession {
+                    engine: resumed.engine.without_causes(),
+                    header,
+                    first,
+                    consent: None,
+                    time,
+                    compare: None,
+                    place,
+                })
+            }
+        }
+    }
+
+    pub fn with_consent(self, consent: Option<ProtocolEvent>) -> PreparedSession {
+        PreparedSession { consent, ..self }
+    }
+
+    pub fn comparing(self, compare: Option<SenderComparisonSettings>) -> PreparedSession {
+        PreparedSession { compare, ..self }
+    }
+
+    pub fn kitchen(&self) -> &Kitchen {
+        &self.engine.session().kitchen
+    }
+
+    pub fn spec(&self) -> &SessionSpec {
+        &self.engine.session().spec
+    }
 }

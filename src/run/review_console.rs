@@ -5,16 +5,16 @@ mod playing;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::coding_desk;
-use super::desk::OperatorDesk;
+use super::comparison_thread::ComparisonThreadHandle;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
+use super::operator_station::OperatorStation;
+use super::rater_files;
 use super::seekable_replay::SeekableReplay;
-use super::watch_desk::ComparisonThreadHandle;
-use crate::console::compared::SenderComparisonView;
-use crate::console::notice::NoticeLevel;
-use crate::console::playback::{Playback, ReplayAction};
-use crate::console::rater_session::RaterSession;
+use crate::console::coding::RaterSession;
+use crate::console::console_model::NoticeLevel;
+use crate::console::console_model::SenderComparisonView;
+use crate::console::console_model::{Playback, ReplayAction};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::TerminalScreen;
@@ -36,7 +36,7 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&SenderComparisonS
     // The console begins at once, and the rest is read beside it; a running session is shown at its end.
     let mut film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
     film.read_to_trial()?;
-    at_desk(film, recording, follow, compare, None)?;
+    at_station(film, recording, follow, compare, None)?;
     Ok(())
 }
 
@@ -49,8 +49,8 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&SenderComparisonS
 pub fn rate(recording: &Path, rater: &str) -> Result<String, ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &[rater])?;
-    let coding = coding_desk::of_rater(&film, rater)?;
-    at_desk(film, recording, false, None, Some(coding))?.end_coding()
+    let coding = rater_files::of_rater(&film, rater)?;
+    at_station(film, recording, false, None, Some(coding))?.end_coding()
 }
 
 /// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus
@@ -59,15 +59,15 @@ pub fn rate(recording: &Path, rater: &str) -> Result<String, ReviewError> {
 /// # Errors
 /// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording
 /// already, the consensus cannot be written, or there is no terminal.
-pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<String, ReviewError> {
+pub fn code_as_pair(recording: &Path, raters: [&str; 2]) -> Result<String, ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &raters)?;
-    let coding = coding_desk::of_pair(&film, raters)?;
-    at_desk(film, recording, false, None, Some(coding))?.end_coding()
+    let coding = rater_files::of_pair(&film, raters)?;
+    at_station(film, recording, false, None, Some(coding))?.end_coding()
 }
 
-/// Shows a recording at an operator's desk without devices, until the wizard or rater leaves it.
-fn at_desk(
+/// Shows a recording at an operator's station without devices, until the wizard or rater leaves it.
+fn at_station(
     film: SeekableReplay,
     recording: &Path,
     follow: bool,
@@ -76,9 +76,9 @@ fn at_desk(
 ) -> Result<Review, ReviewError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     runtime.block_on(async {
-        let mut desk = OperatorDesk::without_devices(&film.session.spec.console)?;
-        let mut review = Review::open(film, &desk, recording, follow, compare, coding)?;
-        event_loop::run(&mut review, &mut desk).await?;
+        let mut station = OperatorStation::without_devices(&film.session.spec.console)?;
+        let mut review = Review::open(film, &station, recording, follow, compare, coding)?;
+        event_loop::run(&mut review, &mut station).await?;
         Ok(review)
     })
 }
@@ -87,7 +87,6 @@ struct Review {
     film: SeekableReplay,
     model: ConsoleModel,
     opened: Instant,
-    /// Session time that is shown, and the instant at which that time was reached.
     now: SessionTime,
     at: Instant,
     /// Instant at which the newest event of a running session's recording was read.
@@ -103,7 +102,7 @@ struct Review {
 impl Review {
     fn open(
         film: SeekableReplay,
-        desk: &OperatorDesk,
+        station: &OperatorStation,
         recording: &Path,
         follow: bool,
         compare: Option<&SenderComparisonSettings>,
@@ -114,7 +113,7 @@ impl Review {
         let keys = KeyBindings::replay(&film.session.kitchen, &key_map(keys)?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
         let keys = if coding.is_some() { keys.with_coding(&film.session.kitchen) } else { keys };
-        let mut model = ConsoleModel::new(keys, desk.theme, size);
+        let mut model = ConsoleModel::new(keys, station.theme, size);
         model.comparison = compare.map(|_| SenderComparisonView::default());
         model.coding = coding;
         let comparison = compare.map(|request| {
@@ -189,7 +188,7 @@ impl Review {
             },
             (None, None) => "saved".to_string(),
         };
-        let saved = coding_desk::save(&self.film, coding);
+        let saved = rater_files::save(&self.film, coding);
         if let Some(coding) = &mut self.model.coding {
             coding.is_saved = saved.is_ok();
         }
@@ -202,7 +201,7 @@ impl Review {
     /// Saves codes that could not be saved before; returns what was coded and where it is saved, in words.
     fn end_coding(self) -> Result<String, ReviewError> {
         Ok(match &self.model.coding {
-            Some(coding) => coding_desk::farewell(&self.film, coding)?,
+            Some(coding) => rater_files::closing_words(&self.film, coding)?,
             None => String::new(),
         })
     }
@@ -210,7 +209,7 @@ impl Review {
     /// Goes to the first error without a code, and shows a message about it.
     fn begin_coding(&mut self) {
         let Some(coding) = &self.model.coding else { return };
-        let said = coding_desk::greeting(coding);
+        let said = rater_files::opening_words(coding);
         let first = coding.errors.get(coding.first_open().unwrap_or(0)).map(|error| error.press);
         if let Some(press) = first {
             self.go(ReplayAction::ToEvent(press));

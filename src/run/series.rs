@@ -3,14 +3,14 @@
 
 use std::path::Path;
 
-use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
+use super::operator_station::OperatorStation;
 use super::options::{SeriesRequest, SessionStart};
-use super::unfinished_recording::PreparedSession;
-use super::wizard_question::{ask, ask_consent};
-use crate::console::question::StartQuestion;
+use super::resume::PreparedSession;
+use super::start_prompt::{ask, ask_consent};
+use crate::console::lists::StartPrompt;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
@@ -40,10 +40,10 @@ pub fn operate(beginning: SessionStart, compare: Option<SenderComparisonSettings
         // The session's start is checked before the terminal is taken over and a recording is created, so that a
         // session that cannot start leaves nothing behind.
         let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
-        let mut desk = OperatorDesk::take(begun.spec(), begun.kitchen()).await?;
+        let mut station = OperatorStation::take(begun.spec(), begun.kitchen()).await?;
         let mut done = Vec::new();
         loop {
-            let mut end = live::run(begun, &mut desk).await?;
+            let mut end = live::run(begun, &mut station).await?;
             let again = end.again.take();
             done.push(end);
             match again {
@@ -121,16 +121,16 @@ impl Planned {
         if progress.next == NextRecording::Finished {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
-        let mut desk = OperatorDesk::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
+        let mut station = OperatorStation::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
         while progress.next != NextRecording::Finished {
-            let begun = match self.choose(&progress, &mut desk).await? {
+            let begun = match self.choose(&progress, &mut station).await? {
                 Choice::Begin(begun) => begun,
                 Choice::Leave(remark) => {
                     let remark = remark.unwrap_or_else(|| stands(&progress));
                     return Ok(SeriesOutcome { done, remark: Some(remark) });
                 }
             };
-            let end = live::run(*begun, &mut desk).await?;
+            let end = live::run(*begun, &mut station).await?;
             let (leaving, slot) = (end.leaving, progress.next.slot());
             done.push(end);
             progress = self.progress()?;
@@ -144,7 +144,7 @@ impl Planned {
     }
 
     /// Prepares the next recording of the series, after asking the wizard the questions that come before it.
-    async fn choose(&self, progress: &ParticipantProgress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
+    async fn choose(&self, progress: &ParticipantProgress, station: &mut OperatorStation) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
             NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
             NextRecording::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
@@ -159,7 +159,7 @@ impl Planned {
         let label = spec.step.as_ref().map_or(String::new(), |step| step.label());
         let continued = match open {
             None => None,
-            Some(recording) => match ask(desk, &which(progress, recording, slot)).await? {
+            Some(recording) => match ask(station, &which(progress, recording, slot)).await? {
                 Some(0) => Some(recording),
                 Some(_) => None,
                 None => return Ok(Choice::Leave(None)),
@@ -177,8 +177,8 @@ impl Planned {
             return Ok(Choice::Begin(Box::new(begun)));
         }
         let on_display = self.study.plan.consent_on == AnswerDevice::Display
-            && desk.wall.ask_consent(begun.engine.session(), &self.study.plan.consent);
-        match ask_consent(desk, &consent(&self.study, progress, &label, on_display), on_display).await? {
+            && station.display.ask_consent(begun.engine.session(), &self.study.plan.consent);
+        match ask_consent(station, &consent(&self.study, progress, &label, on_display), on_display).await? {
             Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
             Some(_) => {
                 let remark = format!("{} does not agree to be recorded: nothing was recorded", progress.code);
@@ -190,11 +190,11 @@ impl Planned {
 }
 
 /// The question to the wizard whether an unfinished recording is continued or its trial repeated.
-fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQuestion {
+fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartPrompt {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
     let presses = attempt.map_or(0, |attempt| attempt.presses);
-    StartQuestion {
+    StartPrompt {
         title: format!("{}: {name} is not done", progress.code),
         text: vec![format!(
             "The recording {recording} was cut, or left before everything was done. It has {presses} presses."
@@ -208,7 +208,7 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQ
 
 /// The question for the participant's consent, without which nothing is recorded. If the display asks for consent, the
 /// wizard can still confirm it at the console.
-fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_display: bool) -> StartQuestion {
+fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_display: bool) -> StartPrompt {
     let mut text = vec![study.plan.consent.clone()];
     if on_display {
         text.push("Waiting for the participant, who agrees on the display by holding a button.".to_string());
@@ -218,7 +218,7 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
     } else {
         "yes, the participant agrees"
     };
-    StartQuestion {
+    StartPrompt {
         title: format!("{}: {label}", progress.code),
         text,
         answers: vec![yes.to_string(), "no, the participant does not agree: nothing is recorded".to_string()],

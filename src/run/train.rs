@@ -5,13 +5,13 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop;
 use super::leaving::LeavingReason;
+use super::operator_station::OperatorStation;
 use super::seekable_replay::SeekableReplay;
 use super::training_shell::TrainingShell;
-use crate::console::playback::SPEEDS;
+use crate::console::console_model::SPEEDS;
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use tomcom_session::files::WallTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
@@ -25,11 +25,8 @@ use tomcom_study::files::training;
 pub struct WizardTrainingRequest {
     /// Recordings of simulated participants without signals, which the wizard watches.
     pub recordings: Vec<PathBuf>,
-    /// The wizard's pseudonymous code.
     pub wizard: String,
-    /// Folder in which the training record is saved.
     pub out: PathBuf,
-    /// Criterion for passing the training.
     pub criterion: TrainingCriterion,
     /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
@@ -82,15 +79,15 @@ async fn watch(
     before: &[WizardTrainingRecord],
 ) -> Result<Vec<WatchedRecording>, ReviewError> {
     let mut judged = Vec::new();
-    let mut desk = None;
+    let mut station = None;
     for ((film, periods), recording) in films.into_iter().zip(&lesson.recordings) {
-        let desk = match &mut desk {
-            Some(desk) => desk,
-            none => none.insert(OperatorDesk::without_devices(&film.session.spec.console)?),
+        let station = match &mut station {
+            Some(station) => station,
+            none => none.insert(OperatorStation::without_devices(&film.session.spec.console)?),
         };
         let mut shell =
-            TrainingShell::new(film, periods, name_of(recording, lesson), lesson.criterion, lesson.speed, desk)?;
-        let left = event_loop::run(&mut shell, desk).await?;
+            TrainingShell::new(film, periods, name_of(recording, lesson), lesson.criterion, lesson.speed, station)?;
+        let left = event_loop::run(&mut shell, station).await?;
         judged.push(shell.judged(before));
         if left != Some(LeavingReason::Next) {
             break;

@@ -3,15 +3,15 @@
 
 use std::time::Instant;
 
-use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{ConsoleShell, LoopEvent, ShellView};
 use super::leaving::LeavingReason;
+use super::operator_station::OperatorStation;
 use super::seekable_replay::SeekableReplay;
 use crate::console::console_model::Dialog;
-use crate::console::lesson::{TrainingFeedback, TrainingPanel};
-use crate::console::notice::NoticeLevel;
-use crate::console::playback::{Playback, SPEEDS};
+use crate::console::console_model::NoticeLevel;
+use crate::console::console_model::{Playback, SPEEDS};
+use crate::console::console_model::{TrainingFeedback, TrainingPanel};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
@@ -60,13 +60,13 @@ impl TrainingShell {
         name: String,
         criterion: TrainingCriterion,
         speed: usize,
-        desk: &OperatorDesk,
+        station: &OperatorStation,
     ) -> Result<TrainingShell, ReviewError> {
         let spec = &film.session.spec;
         let keys =
             KeyBindings::training(&film.session.kitchen, spec, &key_map(film.replay.log().header.keys.as_ref())?)?;
         let size = TerminalScreen::size().map_err(TerminalError)?;
-        let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
+        let mut model = ConsoleModel::new(keys, theme(&spec.console, station.screen.ground), size);
         model.playback = Some(Playback { speed, ..Playback::new(name.clone()) });
         model.lesson = Some(TrainingPanel { task: lesson_report::task(&criterion), ..Default::default() });
         let beliefs = periods.iter().map(|period| lesson_report::unheard(&film.session, period)).collect();
@@ -217,7 +217,7 @@ impl TrainingShell {
                     let time = stamped.time;
                     self.model.see(time, sample);
                 }
-                Event::ParticipantBelieves(witness) => self.hear(&witness),
+                Event::ParticipantBelieves(witness) => self.note_belief(&witness),
                 _ => {}
             }
         }
@@ -229,7 +229,7 @@ impl TrainingShell {
     }
 
     /// Updates the present false beliefs from a recorded belief of the participant.
-    fn hear(&mut self, witness: &RecordedBelief) {
+    fn note_belief(&mut self, witness: &RecordedBelief) {
         let session = &self.film.session;
         let clock = session.trial_clock(session.time);
         let open = self.periods.iter().zip(&mut self.beliefs).filter(|(period, _)| period.holds(clock));

@@ -8,9 +8,9 @@ use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
 use crate::console::beliefs::{BeliefCorrectness, EstimatedBelief, are_by_cost, name, percent, value, visibility};
-use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
-use crate::console::panel::Panel as PanelName;
+use crate::console::mouse::ClickAction;
+use crate::console::panels::Panel as PanelName;
 use crate::console::text_columns::{fit, width, wrap};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
@@ -26,6 +26,8 @@ const ONE_LINE: u16 = 66;
 const FRAMED: u16 = 5;
 /// Height of a chart of a belief over time, with its title.
 const CHART_ROWS: u16 = 5;
+/// Probability of the truth from which a chart of it would stand at 100 %.
+const CERTAIN: f64 = 0.9;
 /// Columns of the bar for a belief's probability and of the gap before it.
 const BAR: u16 = 7;
 /// Columns of the probability scale at the left of a chart.
@@ -45,7 +47,6 @@ struct Panel<'a> {
     beliefs: &'a [EstimatedBelief],
 }
 
-/// Draws the belief panel.
 pub fn draw(
     brush: &mut Painter,
     regions: &PanelAreas,
@@ -133,8 +134,12 @@ impl Panel<'_> {
             brush.text(area.x, y, area.width, &words, quiet);
             y += 2;
         }
-        // Charts beside the kitchen show only false and unsure beliefs; a wide panel also shows right ones.
-        for belief in self.beliefs.iter().filter(|belief| is_wide || belief.standing != BeliefCorrectness::Right) {
+        // A belief that was right all the time needs no chart.
+        let is_charted = |belief: &&EstimatedBelief| match belief.standing {
+            BeliefCorrectness::Right => is_wide && self.was_doubtful(belief, area.width.saturating_sub(SCALE)),
+            _ => true,
+        };
+        for belief in self.beliefs.iter().filter(is_charted) {
             if y + CHART_ROWS > area.bottom() {
                 return;
             }
@@ -143,6 +148,17 @@ impl Panel<'_> {
             brush.target(cells, ClickAction::Belief(belief.aspect));
             y += CHART_ROWS + 1;
         }
+    }
+
+    /// Whether a chart with this number of columns shows a time at which the truth was not almost certain.
+    fn was_doubtful(&self, belief: &EstimatedBelief, columns: u16) -> bool {
+        self.course(belief.aspect, columns).into_iter().flatten().any(|p| p < CERTAIN)
+    }
+
+    /// Estimated probability of the truth for each column of a chart; `None` where there is no estimate.
+    fn course(&self, aspect: AspectId, columns: u16) -> Vec<Option<f64>> {
+        let (aspect, columns) = (aspect.index(), usize::from(columns));
+        belief_track::course(self.moments, aspect, self.session, self.now, SHOWN_S, columns)
     }
 
     /// What the participant believes and what is true, in as few lines as the columns allow.
@@ -226,7 +242,6 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws an estimated belief in one line of a wide panel.
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
         let style = brush.style(role(belief));
         let end = self.end(belief, area.width);
@@ -243,7 +258,6 @@ impl Panel<'_> {
         brush.text(x, y, (area.x + room).saturating_sub(x), &is, text);
     }
 
-    /// Draws the beliefs as the few lines of a small screen.
     fn lines(&self, brush: &mut Painter, area: Rect) {
         let quiet = brush.style(TextRole::Quiet);
         let x = brush.text(area.x, area.y, area.width, " beliefs  ", quiet);
@@ -327,9 +341,7 @@ impl Panel<'_> {
     fn curve(&self, brush: &mut Painter, aspect: AspectId, area: Rect) {
         let Rect { x, y, width: columns, height: rows } = area;
         let levels = brush.theme.signs().levels;
-        let (moments, aspect, columns) = (self.moments, aspect.index(), usize::from(columns));
-        let course = belief_track::course(moments, aspect, self.session, self.now, SHOWN_S, columns);
-        for (column, p) in course.iter().enumerate() {
+        for (column, p) in self.course(aspect, columns).iter().enumerate() {
             let Some(p) = p else { continue };
             let style = brush.style(if *p < FALSE_BELOW { TextRole::FalseBelief } else { TextRole::Quiet });
             // Even a probability near zero is drawn, to be told from times without an estimate.

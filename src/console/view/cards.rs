@@ -3,16 +3,16 @@
 
 use ratatui::layout::Rect;
 
+use super::dialog::open;
 use super::footer::onward;
 use super::head;
 use super::paint::Painter;
-use super::popup::open;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
-use crate::console::hands::can_redo;
+use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use crate::console::text_columns::width;
 use tomcom_core::base::text::count;
@@ -85,7 +85,7 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     }
     let mut keys = Vec::new();
     keys.extend(model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
-    let preflight = KeyAction::Hand(ManualAction::Preflight);
+    let preflight = KeyAction::Manual(ManualAction::Preflight);
     keys.extend(model.keys.chord_for(&preflight).map(|key| (key, "show all preflight checks".to_string())));
     Card { title: "Ready to start".to_string(), facts, keys }
 }
@@ -139,11 +139,14 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     keys.extend(on.and_then(|on| Some((model.keys.chord_for(&KeyAction::Advance)?, on))));
     if can_redo(session) {
         keys.extend(
-            model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "repeat the trial".to_string())),
+            model
+                .keys
+                .chord_for(&KeyAction::Manual(ManualAction::Redo))
+                .map(|key| (key, "repeat the trial".to_string())),
         );
     }
     keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
-    let note = KeyAction::Hand(ManualAction::NoteInWords);
+    let note = KeyAction::Manual(ManualAction::NoteInWords);
     keys.extend(model.keys.chord_for(&note).map(|key| (key, "type note".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
 }

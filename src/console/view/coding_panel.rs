@@ -5,11 +5,9 @@ use ratatui::layout::Rect;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::console::click::ClickAction;
-use crate::console::codebook::{self, CodebookEntry};
-use crate::console::coding_list::ErrorListLayout;
+use crate::console::coding::{self, CodebookEntry, CodingRaters, ErrorListLayout, RaterSession};
 use crate::console::console_model::ConsoleModel;
-use crate::console::rater_session::{CodingRaters, RaterSession};
+use crate::console::mouse::ClickAction;
 use crate::console::text_columns::{fit, width, wrap};
 use tomcom_core::measures::raters::ErrorCauseCode;
 use tomcom_session::Session;
@@ -31,7 +29,7 @@ const BAR: u16 = 16;
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let Some(coding) = &model.coding else { return };
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
-    let is_panel = regions.room != ScreenSize::Small && model.alone.is_none();
+    let is_panel = regions.screen_size != ScreenSize::Small && model.alone.is_none();
     draw_codebook(brush, regions.codebook, session, model, is_panel);
     draw_errors(brush, regions, coding, events);
 }
@@ -47,8 +45,8 @@ fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &Con
     };
     let (left, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let lines = match is_panel {
-        true => codebook::full(&model.keys, &session.kitchen, columns),
-        false => codebook::compact(&model.keys, &session.kitchen, columns),
+        true => coding::full(&model.keys, &session.kitchen, columns),
+        false => coding::compact(&model.keys, &session.kitchen, columns),
     };
     for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
         for (before, CodebookEntry { key, words }) in line {

@@ -8,8 +8,7 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use super::timeline::{axis, columns_ago};
-use crate::console::compared::ComparisonAction;
-use crate::console::console_model::ConsoleModel;
+use crate::console::console_model::{ComparisonAction, ConsoleModel};
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::width;
 use tomcom_core::base::text::decimal;
@@ -25,11 +24,10 @@ const LABELS: u16 = 10;
 
 const TITLE: &str = "Signals of wizard and assistant compared";
 
-/// Draws the comparison of wizard and assistants.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.comparison;
     let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };
-    let is_small = regions.room == ScreenSize::Small;
+    let is_small = regions.screen_size == ScreenSize::Small;
     let window = compared.seen.as_ref().map(|seen| format!("signals match within {} presses", seen.window));
     let inside = match is_small {
         true => area,

@@ -1,19 +1,22 @@
-//! Dialogs above the panels: questions to confirm, and texts to read.
+//! Dialogs above the panels: their frame, questions to confirm, lists, text inputs, and texts to read.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
-use super::hands;
 use super::help;
 use super::paint::Painter;
-use super::picker;
-use super::popup::open;
-use super::regions::PanelAreas;
+use super::regions::{PanelAreas, inside};
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
-use crate::console::key_action::KeyAction;
+use crate::console::key_action::{KeyAction, KeyBinding};
+use crate::console::lists::{self, ListCursor, Picker};
+use crate::console::mouse::ClickAction;
+use crate::console::possible::is_possible_behind;
+use crate::console::preflight::{OVERRIDE, all_ok, checks};
 use crate::console::text_columns::{width, wrap};
+use crate::console::text_input::TextInput;
+use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use tomcom_session::{Session, TrialPhase};
 
 /// Draws the open dialog, if there is one.
@@ -21,12 +24,12 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
     match &model.dialog {
         // The question whether to send a clicked signal stands in the line of messages.
         None | Some(Dialog::Send(_)) => {}
-        Some(Dialog::Pick(list)) => picker::draw(brush, regions.middle(), session, list),
-        Some(Dialog::Palette(cursor)) => picker::draw_palette(brush, regions.middle(), session, model, cursor),
-        Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
-        Some(Dialog::Calibration) => super::gaze_targets::draw(brush, screen, session, model),
-        Some(Dialog::Note(line)) => hands::note(brush, screen, session, line),
-        Some(Dialog::Answer(line)) => hands::answer(brush, screen, session, line),
+        Some(Dialog::Pick(list)) => draw_answers(brush, regions.middle(), session, list),
+        Some(Dialog::Palette(cursor)) => draw_palette(brush, regions.middle(), session, model, cursor),
+        Some(Dialog::Preflight) => preflight(brush, screen, session, model),
+        Some(Dialog::Calibration) => super::gaze::draw_accuracy_check(brush, screen, session, model),
+        Some(Dialog::Note(line)) => note(brush, screen, session, line),
+        Some(Dialog::Answer(line)) => answer(brush, screen, session, line),
         Some(Dialog::Help(effects)) => help::draw(brush, screen, model, effects),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
@@ -65,7 +68,6 @@ fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str
     brush.hints(inside.x + 2, inside.bottom() - 1, inside.width - 3, &hints);
 }
 
-/// Draws the details of a difference between wizard and assistant.
 fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     let columns = (screen.width - 4).min(100);
     let wrapped: Vec<(bool, String)> = lines
@@ -101,7 +103,6 @@ pub fn report_rest(model: &ConsoleModel) -> usize {
     lines.len().saturating_sub(rows)
 }
 
-/// Draws the report of a wizard training.
 fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleModel) {
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
@@ -115,4 +116,228 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
     }
     let hints = [("enter", "continue; this report is saved", Some(KeyChord::plain(KeyCode::Enter)))];
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
+}
+
+const COLUMNS: u16 = 76;
+/// Label before the remedy of a failed preflight check.
+const FIX: &str = "fix: ";
+/// Column at which the findings of the preflight checks begin.
+const FOUND: u16 = 23;
+
+pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
+    let checks = checks(session, model);
+    let columns = (COLUMNS + 24).min(screen.width);
+    // Width left for a finding: inside the frame, after the names of the checks.
+    let room = columns.saturating_sub(2 + FOUND + 1);
+    let remedies: Vec<Vec<String>> = checks
+        .iter()
+        .map(|check| {
+            check.remedy.as_ref().map_or(Vec::new(), |remedy| wrap(remedy, room.saturating_sub(FIX.len() as u16)))
+        })
+        .collect();
+    let rows = checks.len() + remedies.iter().map(Vec::len).sum::<usize>();
+    let inside = open(brush, screen, (columns, rows as u16 + 5), "Checks before the trial", "space stops the robot");
+    let mut y = inside.y;
+    for (check, remedy) in checks.iter().zip(&remedies) {
+        line(brush, inside, y, check);
+        y += 1;
+        for (row, words) in remedy.iter().enumerate() {
+            let fix = if row == 0 { FIX } else { "     " };
+            brush.parts(inside.x + FOUND, y, room, &[(fix, TextRole::Quiet), (words, TextRole::Text)]);
+            y += 1;
+        }
+    }
+    let start = model.keys.chord_for(&KeyAction::Advance);
+    let (key, chord, does) = match all_ok(&checks) {
+        true => (start.map_or(String::new(), |key| key.to_string()), start, "start the trial"),
+        false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "start the trial anyway"),
+    };
+    let esc = ("esc", "close the list", Some(KeyChord::plain(KeyCode::Esc)));
+    let hints = [(key.as_str(), does, chord), esc];
+    let hints = if session.phase == TrialPhase::Ready { &hints[..] } else { &hints[1..] };
+    brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
+}
+
+fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
+    let (word, role) = match check.verdict {
+        PreflightVerdict::Ok => ("ok", TextRole::Text),
+        PreflightVerdict::Warning => ("warning", TextRole::Strong),
+        PreflightVerdict::Failed => ("FAILED", TextRole::Alarm),
+    };
+    brush.parts(inside.x + 1, y, 8, &[(word, role)]);
+    brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, TextRole::Text)]);
+    let x = inside.x + FOUND;
+    brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
+}
+
+pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
+    // A trial goes on by itself after a freeze probe.
+    let (remark, says) = match session.is_running() {
+        true => ("the trial runs: space stops the robot", "The trial goes on, so the space bar stops the robot."),
+        false => {
+            let says = "No trial runs and the robot stands, so the space bar types a space here.";
+            ("no trial is running: space types a space", says)
+        }
+    };
+    input_line(brush, screen, text, ("Note to be recorded", remark), says);
+}
+
+/// Draws the text input of a questionnaire answer below its item.
+pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
+    let shown = session.protocol.as_ref().map_or(0, |protocol| protocol.item);
+    let item = session.questionnaire().and_then(|asked| asked.items.get(shown));
+    let says = item.map_or("", |item| item.text.as_str());
+    input_line(brush, screen, text, ("Answer", "no trial is running: space types a space"), says);
+}
+
+fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remark): (&str, &str), says: &str) {
+    let lines = wrap(says, COLUMNS - 4);
+    let size = (COLUMNS, lines.len() as u16 + 7);
+    let inside = open(brush, screen, size, title, remark);
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let [before, under, after] = text.parts(usize::from(columns));
+    let style = brush.style(TextRole::Strong);
+    let badge = brush.theme.badge(TextRole::Text);
+    let at = brush.text(x, inside.y + 1, columns, &before, style);
+    let at = brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &under, badge);
+    brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &after, style);
+    let quiet = brush.style(TextRole::Quiet);
+    for (row, line) in lines.iter().enumerate() {
+        brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
+    }
+    let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
+    let hints = [("enter", "save the text", enter), ("esc", "cancel", esc)];
+    brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
+}
+
+/// Largest size of a list: columns and rows.
+const MOST: (u16, u16) = (72, 26);
+/// Rows around a list: frame, search line, separator, key hints.
+const AROUND: u16 = 6;
+/// Text that says how the entries of a list are filtered.
+pub(super) const TYPE: &str = "type to filter (no spaces): ";
+
+/// A row of a list: text, remark at the right, and whether choosing the row has an effect now.
+struct Row {
+    label: String,
+    remark: String,
+    counts: bool,
+}
+
+/// An open list (answers to a question, or all actions) as it is drawn.
+struct ListPage<'a> {
+    title: String,
+    cursor: &'a ListCursor,
+    rows: Vec<Row>,
+    /// Number of rows of the list before filtering.
+    all: usize,
+    space: &'a str,
+    takes: &'a str,
+}
+
+pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
+    let rows = picker.choices(session).into_iter();
+    let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();
+    let all = Picker::new(picker.kind).choices(session).len();
+    let title = picker.title(session);
+    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "choose" }.draw(brush, screen);
+}
+
+/// Text for what the space bar does in a list of a live session.
+const STOPS: &str = "space stops the robot";
+
+/// Draws the palette (the list of all actions): key, action, and group; actions without an effect now are grey.
+pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel, cursor: &ListCursor) {
+    let row = |line: &&KeyBinding| {
+        let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
+        Row {
+            label: format!("{key:>7}  {}", line.help),
+            remark: line.group.to_string(),
+            counts: is_possible_behind(session, model, &line.action),
+        }
+    };
+    let rows = lists::actions(model, cursor).iter().map(row).collect();
+    let all = lists::actions(model, &ListCursor::default());
+    let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
+    let takes = if has_signals { "run action (signal: show key)" } else { "run the action" };
+    let space = if model.playback.is_none() { STOPS } else { "" };
+    let title = "All actions".to_string();
+    ListPage { title, cursor, rows, all: all.len(), space, takes }.draw(brush, screen);
+}
+
+impl ListPage<'_> {
+    fn draw(&self, brush: &mut Painter, screen: Rect) {
+        // The height of the list stays the same while the filter changes.
+        let size = (MOST.0.min(screen.width), (self.all as u16 + AROUND).min(MOST.1).min(screen.height));
+        let inside = open(brush, screen, size, &self.title, self.space);
+        let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+        let typed = format!("{}_", self.cursor.filter);
+        let found = format!("{} of {}", self.rows.len(), self.all);
+        brush.parts(x, inside.y, columns, &[(TYPE, TextRole::Quiet), (&typed, TextRole::Strong)]);
+        let quiet = brush.style(TextRole::Quiet);
+        brush.text_right(x + columns, inside.y, 12, &found, quiet);
+        let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
+        let shown = usize::from(list.height).max(1);
+        let first = self.cursor.at.saturating_sub(shown / 2).min(self.rows.len().saturating_sub(shown));
+        for (line, row) in self.rows.iter().skip(first).take(shown).enumerate() {
+            let cells = Rect { y: list.y + line as u16, height: 1, ..list };
+            row.draw(brush, cells, first + line == self.cursor.at);
+            brush.target(cells, ClickAction::Row(first + line));
+        }
+        if self.rows.is_empty() {
+            brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", quiet);
+        }
+        let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
+        let hints = [("up/down", "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];
+        brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
+    }
+}
+
+impl Row {
+    fn draw(&self, brush: &mut Painter, cells: Rect, is_at: bool) {
+        let cursor = if is_at { brush.theme.signs().cursor } else { " " };
+        let role = match (is_at, self.counts) {
+            (true, _) => TextRole::Strong,
+            (false, true) => TextRole::Text,
+            (false, false) => TextRole::Quiet,
+        };
+        let remark = width(&self.remark).min(cells.width / 2);
+        let label = cells.width.saturating_sub(remark + 3);
+        let parts = [(cursor, TextRole::Signal), (" ", role), (self.label.as_str(), role)];
+        brush.parts(cells.x, cells.y, label + 2, &parts);
+        let quiet = brush.style(TextRole::Quiet);
+        brush.text_right(cells.right(), cells.y, remark, &self.remark, quiet);
+    }
+}
+
+/// Clears an area of the screen, so that a dialog, list or card can be drawn there.
+pub(super) fn blank(brush: &mut Painter, area: Rect) {
+    for y in area.y..area.bottom() {
+        for x in area.x..area.right() {
+            if let Some(cell) = brush.buffer.cell_mut((x, y)) {
+                cell.reset();
+            }
+        }
+    }
+}
+
+/// Clears and frames an area in the middle of the screen; returns the area inside the frame.
+pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
+    let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
+    let area = Rect {
+        x: screen.x + (screen.width - columns) / 2,
+        y: screen.y + (screen.height - rows) / 2,
+        width: columns,
+        height: rows,
+    };
+    // Click targets under the dialog are removed; those of the hint line are drawn later.
+    brush.targets.clear();
+    blank(brush, area);
+    let style = brush.style(TextRole::Strong);
+    brush.frame(area, &brush.theme.signs().frame, style);
+    brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
+    if !remark.is_empty() {
+        brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), style);
+    }
+    inside(area)
 }

@@ -9,12 +9,10 @@ use ratatui::style::Style;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
-use crate::console::click::ClickAction;
-use crate::console::console_model::{ConsoleModel, Dialog, Notice};
-use crate::console::hands::can_redo;
+use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, ReplayAction};
+use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
-use crate::console::notice::NoticeLevel;
-use crate::console::playback::ReplayAction;
+use crate::console::mouse::ClickAction;
 use crate::console::possible::is_possible;
 use crate::console::text_columns::width;
 use tomcom_session::history::wording;
@@ -28,7 +26,6 @@ struct Hint<'a> {
     role: TextRole,
 }
 
-/// Draws the line of key hints.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
@@ -50,14 +47,14 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     // are rarely needed; after the trial, the hints for the next step come first.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
-        true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
+        true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Manual(ManualAction::Redo)),
         false => matches!(
             binding.action,
-            KeyAction::EndTrial | KeyAction::Look(ViewAction::Next) | KeyAction::Hand(ManualAction::NoteInWords)
+            KeyAction::EndTrial | KeyAction::Look(ViewAction::Next) | KeyAction::Manual(ManualAction::NoteInWords)
         ),
     };
     let (mut late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
-    late.sort_by_key(|binding| binding.action != KeyAction::Hand(ManualAction::NoteInWords));
+    late.sort_by_key(|binding| binding.action != KeyAction::Manual(ManualAction::NoteInWords));
     // The first hint is the robot stop, the second is the key back to all panels while one is at full size, then follow
     // a rater's keys.
     first.sort_by_key(|binding| match binding.action {
@@ -139,8 +136,8 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
     if area.area() == 0 {
         return;
     }
-    if let Some(Dialog::Send(question)) = &model.dialog {
-        let words = wording::signal(&question.signal);
+    if let Some(Dialog::Send(confirmation)) = &model.dialog {
+        let words = wording::signal(&confirmation.signal);
         let strong = brush.theme.badge(TextRole::Strong);
         let text = format!(" Send {words}? enter or a second click sends it, esc cancels ");
         brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
@@ -167,7 +164,6 @@ fn style_of(brush: &Painter, notice: &Notice) -> Style {
     }
 }
 
-/// Whether the trial of a live session is over.
 fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed)
 }
@@ -192,7 +188,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     let plays = model.playback.as_ref().is_some_and(|playback| playback.playing);
     let is_over = is_over(session, model);
     let word = match binding.action {
-        KeyAction::Hand(ManualAction::Redo) => can_redo(session).then_some("repeat the trial"),
+        KeyAction::Manual(ManualAction::Redo) => can_redo(session).then_some("repeat the trial"),
         KeyAction::Advance if model.lesson.is_some() => {
             let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
             Some(if plays {

@@ -1,16 +1,21 @@
-//! The gaze panel (place, age and quality of the gaze), and the gaze map.
+//! The gaze: its panel, its map, its mark in the kitchen, and its accuracy check.
 
+use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
+use super::dialog::open;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::console::arrange::KitchenMap;
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
+use crate::console::gaze_check::{AS_IT_IS, AccuracyCheckAction, CORRECTED, REPEAT, chosen};
 use crate::console::key_action::KeyLayer;
+use crate::console::kitchen_map::KitchenMap;
 use crate::console::text_columns::{fit, width};
 use tomcom_core::base::text::count;
+use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use tomcom_core::gaze::nearest_location;
 use tomcom_core::kitchen::LocationId;
 use tomcom_session::Session;
@@ -20,19 +25,21 @@ use tomcom_session::gaze_samples::faults;
 const GAZE_S: f64 = 3.0;
 /// Longest time since the last gaze sample for which the participant counts as looking there now, in seconds.
 const NOW_S: f64 = 0.2;
+/// Time since the last usable gaze sample from which the gaze counts as unusable, in seconds.
+pub(super) const USABLE_S: f64 = 1.0;
 /// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
-/// Draws the gaze panel: place, age and quality of the gaze.
+/// Draws the gaze panel: place and age of the gaze, and what is wrong with its samples.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.gaze;
     if area.area() == 0 {
         return;
     }
-    if regions.room == ScreenSize::Small {
+    if regions.screen_size == ScreenSize::Small {
         brush.parts(area.x, area.y, area.width, &[(" gaze     ", TextRole::Quiet)]);
         let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
-        quality(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
+        alarm(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
         return;
     }
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
@@ -45,7 +52,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    quality(brush, x, inside.y + 1, columns, session, model);
+    alarm(brush, x, inside.y + 1, columns, session, model);
 }
 
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) -> u16 {
@@ -76,15 +83,17 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     )
 }
 
-fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+/// Draws why the gaze is of no use now; nothing while usable samples arrive.
+fn alarm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let gaze = &session.gaze;
-    let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
-    let text = match (session.gaze_hz(model.now), gaze.last) {
-        (Some(hz), Some((_, sample))) => {
-            format!("{hz:.0} Hz, conf {:.2}, {unusable:.0}% unusable", sample.confidence)
+    let is_usable = gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);
+    let text = match session.gaze_hz(model.now) {
+        Some(_) if is_usable => return,
+        Some(_) => {
+            let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
+            format!("unusable now; {unusable:.0} % of all samples are")
         }
-        (Some(hz), None) => format!("{hz:.0} Hz, conf -, {unusable:.0}% unusable"),
-        (None, _) => {
+        None => {
             let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
             pairing.unwrap_or("no samples arrive now".to_string())
         }
@@ -170,7 +179,6 @@ fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect
     (0..reach).flat_map(|by| [at(by), at(-by)]).find(is_free).unwrap_or(at(0))
 }
 
-/// Marks in the kitchen panel where the participant looks.
 pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
     let Some((at, sample)) = session.gaze.last else { return };
     let age_s = model.now.secs_since(at);
@@ -197,4 +205,104 @@ pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
         let beside = if brush.is_written(after, spot.cells.y) { spot.cells.x } else { after };
         brush.text(beside, spot.cells.y, 1, sign, style);
     }
+}
+
+const COLUMNS: u16 = 76;
+/// Column, inside the frame, at which the measured values of the gaze accuracy check begin.
+const VALUE: u16 = 15;
+
+/// Draws the present target of the gaze accuracy check in the kitchen panel.
+pub fn draw_target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session) {
+    let Some(check) = &session.calibration else { return };
+    let Some(((index, _), point)) = check.shown.zip(check.target()) else { return };
+    let Some((x, y)) = plan.cell(point) else { return };
+    let text = format!(" + look here: target {} of {} ", index + 1, check.targets.len());
+    let columns = width(&text).min(panel.width);
+    // The cross is on the target; the instruction stands to its right, or to its left if there is no room.
+    let before = if x + columns < panel.right() { 1 } else { columns.saturating_sub(2) };
+    let text =
+        if before == 1 { text } else { format!(" look here: target {} of {} + ", index + 1, check.targets.len()) };
+    let badge = brush.theme.badge(TextRole::Gaze);
+    let (x, y) = (x.saturating_sub(before).max(panel.x), y.clamp(panel.y, panel.bottom().saturating_sub(1)));
+    brush.text(x, y, columns, &text, badge);
+}
+
+pub fn draw_accuracy_check(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
+    let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
+    let inside = open(brush, screen, (COLUMNS, 13), "Gaze accuracy check", "space stops the robot");
+    let columns = inside.width.saturating_sub(2);
+    let mut y = inside.y + 1;
+    let mut line = |brush: &mut Painter, name: &str, text: &str, role: TextRole| {
+        brush.parts(inside.x + 1, y, VALUE, &[(name, TextRole::Quiet)]);
+        brush.parts(inside.x + 1 + VALUE, y, columns.saturating_sub(VALUE), &[(text, role)]);
+        y += 1;
+    };
+    let esc = KeyChord::plain(KeyCode::Esc);
+    let again = format!("enter or {REPEAT}");
+    let Some(found) = &outcome.found else {
+        line(brush, "accuracy", "not measured: too few usable gaze samples at the targets", TextRole::Alarm);
+        line(brush, "fix", "let the participant look at every target; check the tracker", TextRole::Text);
+        let hints = [
+            (again.as_str(), "repeat the gaze accuracy check", Some(KeyChord::char(REPEAT))),
+            ("esc", "cancel the check", Some(esc)),
+        ];
+        brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), columns, &hints);
+        return;
+    };
+    let (words, role) = verdict(found.accuracy_deg);
+    let cm = |deg: f64| deg.to_radians().tan() * session.spec.tracker.distance_m * 100.0;
+    line(
+        brush,
+        "accuracy",
+        &format!("{:.2} deg, {:.1} cm on the display: {words}", found.accuracy_deg, cm(found.accuracy_deg)),
+        role,
+    );
+    let (words, role) = verdict(found.corrected_deg);
+    line(
+        brush,
+        "corrected",
+        &format!("{:.2} deg, {:.1} cm without the offset: {words}", found.corrected_deg, cm(found.corrected_deg)),
+        role,
+    );
+    line(brush, "precision", &format!("{:.2} deg (RMS between samples)", found.precision_deg), TextRole::Text);
+    line(brush, "targets", &accuracy_at_targets(found), TextRole::Text);
+    let taken = chosen(model, Some(found));
+    let rows = [
+        (CORRECTED, "accept the gaze with its offset subtracted", AccuracyCheckAction::Corrected),
+        (AS_IT_IS, "accept the gaze without correction", AccuracyCheckAction::AsItIs),
+        (REPEAT, "repeat the gaze accuracy check", AccuracyCheckAction::Repeat),
+    ];
+    y += 1;
+    for (key, does, is) in rows {
+        let is_taken = is == taken;
+        let (enter, role) = if is_taken { ("enter    ", TextRole::Strong) } else { ("         ", TextRole::Quiet) };
+        let words = format!("{key}  ");
+        let parts = [(enter, TextRole::Strong), (words.as_str(), TextRole::Strong), (does, role)];
+        let end = brush.parts(inside.x + 1, y, columns, &parts);
+        // The first click on an action selects it, the next click carries it out.
+        let chord = if is_taken { KeyChord::plain(KeyCode::Enter) } else { KeyChord::char(key) };
+        brush.key_target(inside.x + 1, y, end, chord);
+        y += 1;
+    }
+    let parts = [("         esc  ", TextRole::Strong), ("cancel: the gaze stays as before", TextRole::Quiet)];
+    let end = brush.parts(inside.x + 1, y, columns, &parts);
+    brush.key_target(inside.x + 1, y, end, esc);
+}
+
+fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {
+    match accuracy_deg {
+        deg if deg <= GOOD_DEG => ("good", TextRole::Text),
+        deg if deg <= USABLE_DEG => ("usable", TextRole::Strong),
+        _ => ("too far off", TextRole::Alarm),
+    }
+}
+
+/// Measured gaze accuracy at every target, in degrees.
+fn accuracy_at_targets(found: &GazeAccuracy) -> String {
+    let one = |target: &tomcom_core::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
+        Some(deg) => format!("{deg:.1}"),
+        None => "no gaze".to_string(),
+    };
+    let each: Vec<String> = found.targets.iter().map(one).collect();
+    format!("{} deg, centre target first", each.join(", "))
 }

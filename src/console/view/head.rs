@@ -2,6 +2,7 @@
 
 use ratatui::style::Style;
 
+use super::gaze::USABLE_S;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
@@ -19,11 +20,11 @@ use tomcom_session::{Session, TrialPhase};
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
     // The head line is as wide as the screen even if one panel is at full size.
-    let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
-    let gap = if room == ScreenSize::Small { 1 } else { 3 };
+    let screen_size = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
+    let gap = if screen_size == ScreenSize::Small { 1 } else { 3 };
     let strong = brush.style(TextRole::Strong);
     // On small screens, the state of the robot takes the room of the program's name.
-    let is_small = room == ScreenSize::Small;
+    let is_small = screen_size == ScreenSize::Small;
     let name = if is_small { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     // A replay does not name the phase; whether it plays is shown beside its position.
@@ -57,7 +58,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         let text = brush.style(TextRole::Text);
         x = brush.text(x, area.y, 20, &counts, text) + gap;
     }
-    let mut healths = healths(session, model, room);
+    let mut healths = healths(session, model, screen_size);
     let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
     // If not all device states fit, those that are in order are left out first, from the last one on.
     while needed(&healths) > area.right().saturating_sub(x)
@@ -139,7 +140,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
 }
 
 /// States of recording, gaze, streams and robot in words, with their styles.
-pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
+pub(super) fn healths(session: &Session, model: &ConsoleModel, screen_size: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
         healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
@@ -152,10 +153,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
         Some(playback) => {
             let state = if playback.playing { "play" } else { "paused" };
             let follows = if playback.follows { " live" } else { "" };
-            let what = if room == ScreenSize::Small { "" } else { " event" };
-            let (speed, event, events) = (playback.speed_label(), playback.event, playback.events);
-            let label = format!("{state} {speed}{follows} {what} {event}/{events}");
-            healths.push((label, TextRole::Strong));
+            healths.push((format!("{state} {}{follows}", playback.speed_label()), TextRole::Strong));
             match (playback.follows, playback.running) {
                 (false, true) => healths.push(("recording goes on: --follow".to_string(), TextRole::Strong)),
                 (false, false) if playback.cut => healths.push(("recording cut".to_string(), TextRole::Alarm)),
@@ -168,7 +166,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
             RecordingStatus::Lost => (" RECORDING LOST ".to_string(), TextRole::Alarm),
         }),
     }
-    if room > ScreenSize::Small || model.playback.is_none() {
+    if screen_size > ScreenSize::Small || model.playback.is_none() {
         healths.push(gaze(session, model));
     }
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
@@ -213,7 +211,7 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         (TrackerConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
         _ => {}
     }
-    let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
+    let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);
     match (session.gaze_hz(model.now), session.gaze.arrived) {
         (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), TextRole::Alarm),
         (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), TextRole::Text),

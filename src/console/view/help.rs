@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
+use super::dialog::open;
 use super::paint::Painter;
-use super::popup::open;
 use super::theme::{Glyphs, TextRole};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
@@ -19,15 +19,12 @@ const HELP_INDENT: u16 = 7;
 #[derive(Clone, Copy)]
 enum Line<'a> {
     Heading(&'a str),
-    /// A key, and whether it has an effect now.
     Key(&'a KeyBinding, bool),
-    /// A sign that panels draw, with its meaning.
     Sign(&'static str, &'static str),
     Space,
 }
 
 impl Line<'_> {
-    /// Width of a line of the help, in characters.
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
@@ -48,7 +45,6 @@ fn key_indent(binding: &KeyBinding) -> u16 {
     HELP_INDENT.max(width(&key_name(binding)) + 1)
 }
 
-/// Legend of the signs that the console's panels use.
 fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
         (signs.gaze, "where the participant looks or just looked"),
@@ -69,7 +65,6 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.by_hand, "manual intervention of the experimenter"),
         (signs.stopped, "robot stopped"),
         (signs.touched, "a person touched the robot's arm"),
-        (signs.levels[3], "joint angles of the robot's arm, base first"),
         (signs.pause, "trial paused; robot held"),
         ("*", "note that the wizard typed"),
         (signs.cursor, "selected row of a list"),

@@ -4,19 +4,16 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::gaze;
-use super::offer_line;
 use super::paint::Painter;
-use super::place_buttons;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
-use crate::console::arrange::{KitchenMap, KitchenMapBox};
+use super::{gaze, offers};
 use crate::console::beliefs::EstimatedBelief;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
-use crate::console::map_items::KitchenMapElement;
-use crate::console::text_columns::{squeeze, width, wrap, wrap_to};
+use crate::console::kitchen_map::{KitchenMap, KitchenMapBox, KitchenMapElement};
+use crate::console::text_columns::{fit, squeeze, width, wrap, wrap_to};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use tomcom_session::Session;
@@ -31,7 +28,6 @@ const FRESH_S: f64 = 5.0;
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
 
-/// Draws the kitchen panel.
 pub fn draw(
     brush: &mut Painter,
     regions: &PanelAreas,
@@ -43,7 +39,7 @@ pub fn draw(
     if area.area() == 0 {
         return;
     }
-    if regions.room > ScreenSize::Small {
+    if regions.screen_size > ScreenSize::Small {
         let remark = match model.layer {
             KeyLayer::Wizard if model.coding.is_some() => "[key] codes a false belief about this place",
             KeyLayer::Wizard if model.playback.is_some() => "",
@@ -58,19 +54,19 @@ pub fn draw(
     }
     let plan = KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside());
     zones(brush, &plan);
-    let offered = offer_line::shown(session, model).and_then(|offer| offer.place(session));
+    let offered = offers::shown(session, model).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
             KitchenMapElement::Location(location) => {
                 let place = Place::new(session, model, location);
-                let thinks = offer_line::thinks(session, believed, location);
+                let thinks = offers::thinks(session, believed, location);
                 Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot);
             }
             KitchenMapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
     gaze::mark(brush, &plan, area, session, model);
-    super::gaze_targets::target(brush, &plan, area, session);
+    super::gaze::draw_target(brush, &plan, area, session);
 }
 
 fn zones(brush: &mut Painter, plan: &KitchenMap) {
@@ -140,16 +136,12 @@ struct Place<'a> {
     model: &'a ConsoleModel,
     id: LocationId,
     kitchen: &'a Kitchen,
-    /// Content of the location in words, and whether the location is empty.
     content: String,
     is_empty: bool,
     /// Seconds since a recent change of the location's content, and the agent that changed it.
     fresh: Option<(f64, Option<Agent>)>,
-    /// Whether the present signal highlights this kitchen location.
     is_shown: bool,
-    /// Whether the open offer is about this kitchen location.
     is_offered: bool,
-    /// Value that the participant falsely believes about this location.
     thinks: Option<String>,
 }
 
@@ -187,7 +179,7 @@ impl<'a> Place<'a> {
             (true, _) => self.order(brush, below),
             (false, 0) => {}
             (false, height) => {
-                let buttons = place_buttons::further(self.session, self.model, self.id);
+                let buttons = further_buttons(self.session, self.model, self.id);
                 let free = height - (buttons.len() as u16).min(height - 1);
                 let room = Rect { height: free, ..below };
                 let lines = self.contents(brush, room);
@@ -195,7 +187,7 @@ impl<'a> Place<'a> {
                     true => self.news_and_belief(brush, room, lines),
                     false => {
                         self.belief(brush, room, lines);
-                        place_buttons::draw(brush, below, &buttons);
+                        draw_buttons(brush, below, &buttons);
                     }
                 }
             }
@@ -414,4 +406,41 @@ impl<'a> Place<'a> {
 
 fn thinks_of(thought: &str) -> String {
     format!("thinks: {thought}")
+}
+
+/// Key and name of each further button at a place; none while the wizard's keys are active.
+pub(super) fn further_buttons(session: &Session, model: &ConsoleModel, place: LocationId) -> Vec<(KeyChord, String)> {
+    if model.layer != KeyLayer::Participant {
+        return Vec::new();
+    }
+    let kitchen = &session.kitchen;
+    let hand = kitchen.hands[Agent::Human.index()];
+    let is_here = |action: ButtonAction| match action {
+        ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand) == place,
+        ButtonAction::Trash => place == hand,
+        _ => false,
+    };
+    let buttons = kitchen.buttons[Agent::Human.index()].iter().enumerate();
+    let with_key = buttons.filter(|(_, button)| is_here(button.action)).filter_map(|(index, button)| {
+        let key = model.keys.of_button(ButtonId(index as u8))?;
+        Some((key, button.name.replace('_', " ")))
+    });
+    with_key.collect()
+}
+
+/// Draws the buttons one per line from the lower edge of the place's box upwards, or all in the last line if the box is
+/// too low.
+pub(super) fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(KeyChord, String)]) {
+    let style = brush.style(TextRole::Human).add_modifier(Modifier::BOLD);
+    let count = buttons.len() as u16;
+    for (index, (key, name)) in buttons.iter().enumerate() {
+        let index = index as u16;
+        let (x, y, columns) = match room.height > count {
+            true => (room.x, room.bottom() - count + index, room.width),
+            false => (room.x + index * room.width / count, room.bottom() - 1, room.width / count),
+        };
+        let name = fit(name, columns.saturating_sub(3), brush.theme.signs().ellipsis);
+        let end = brush.text(x, y, columns, &format!("[{key}]{name}"), style);
+        brush.key_target(x, y, end, *key);
+    }
 }

@@ -1,48 +1,35 @@
 //! `view(&Session, &Model, &mut Frame)`: draws the console from session and model, and changes neither.
 
+use paint::Painter;
+use ratatui::Frame;
+use regions::{LEAST, PanelAreas};
+use theme::TextRole;
+
+use super::beliefs::beliefs;
+use super::console_model::{ConsoleModel, Dialog};
+use super::mouse::ClickTarget;
+use super::text_columns::wrap;
+use tomcom_session::Session;
+
 pub mod belief_panel;
 mod cards;
 mod coding_panel;
 pub mod comparison_panel;
 pub mod dialog;
-pub mod events;
 pub mod footer;
 pub mod gaze;
-mod gaze_targets;
-pub mod hands;
 pub mod head;
 pub mod help;
 pub mod kitchen;
-pub mod lesson;
-pub mod offer_line;
+pub mod offers;
 pub mod paint;
-pub mod picker;
-mod place_buttons;
-mod popup;
-mod probe_sheet;
-pub mod recommendation_panel;
 pub mod recordings_page;
 pub mod regions;
-pub mod robot_panel;
-mod scrub;
 pub mod sheet;
-mod sheet_page;
-pub mod shown;
+pub mod side_panels;
 pub mod theme;
 pub mod timeline;
 
-use ratatui::Frame;
-
-use super::beliefs::beliefs;
-use super::click::ClickTarget;
-use super::console_model::{ConsoleModel, Dialog};
-use super::text_columns::wrap;
-use paint::Painter;
-use regions::{LEAST, PanelAreas};
-use theme::TextRole;
-use tomcom_session::Session;
-
-/// Draws the console.
 pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     draw(&mut Painter::new(frame.buffer_mut(), model.theme), session, model);
 }
@@ -61,23 +48,23 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let regions = PanelAreas::showing((area.width, area.height), session, model);
     head::draw(brush, &regions, session, model);
     let believed = beliefs(session, model);
-    offer_line::draw(brush, &regions, session, model, &believed);
+    offers::draw_offer(brush, &regions, session, model, &believed);
     kitchen::draw(brush, &regions, session, model, &believed);
     belief_panel::draw(brush, &regions, session, model, &believed);
-    recommendation_panel::draw(brush, &regions, session, model);
+    offers::draw_signals(brush, &regions, session, model);
     gaze::draw_map(brush, &regions, session, model);
-    lesson::draw(brush, &regions, model);
-    shown::draw(brush, &regions, session, model);
-    robot_panel::draw(brush, &regions, session, model);
+    side_panels::draw_training(brush, &regions, model);
+    side_panels::draw_display(brush, &regions, session, model);
+    side_panels::draw_robot(brush, &regions, session, model);
     gaze::draw(brush, &regions, session, model);
-    events::draw(brush, &regions, session, model);
+    timeline::draw_events(brush, &regions, session, model);
     timeline::draw(brush, &regions, session, model);
     comparison_panel::draw(brush, &regions, session, model);
     coding_panel::draw(brush, &regions, session, model);
-    scrub::draw(brush, &regions, session, model);
+    timeline::draw_position(brush, &regions, session, model);
     footer::message(brush, &regions, session, model);
     cards::draw(brush, &regions, session, model);
-    probe_sheet::hide(brush, regions.middle(), session, model);
+    sheet::hide_probe(brush, regions.middle(), session, model);
     sheet::draw(brush, area, session, model);
     dialog::draw(brush, area, &regions, session, model);
     footer::draw(brush, &regions, session, model);

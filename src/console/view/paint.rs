@@ -8,14 +8,12 @@ use ratatui::style::Style;
 use super::regions::below_title;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
-use crate::console::click::{ClickAction, ClickTarget};
+use crate::console::mouse::{ClickAction, ClickTarget};
 use crate::console::text_columns::{fit, width};
 
 /// Draws on a screen buffer in a theme, and collects click targets.
 pub struct Painter<'a> {
-    /// Buffer of terminal cells that is drawn on.
     pub buffer: &'a mut Buffer,
-    /// Colours and signs of the console.
     pub theme: Theme,
     /// Click targets in the order in which they were drawn.
     pub targets: Vec<ClickTarget>,
@@ -36,12 +34,10 @@ pub(super) fn targets(theme: Theme, size: (u16, u16), draw: impl FnOnce(&mut Pai
 }
 
 impl Painter<'_> {
-    /// A painter that draws on this buffer of terminal cells.
     pub fn new(buffer: &mut Buffer, theme: Theme) -> Painter<'_> {
         Painter { buffer, theme, targets: Vec::new() }
     }
 
-    /// Marks these terminal cells as clickable.
     pub fn target(&mut self, cells: Rect, action: ClickAction) {
         self.targets.push(ClickTarget { cells, action });
     }
@@ -81,7 +77,6 @@ impl Painter<'_> {
         self.buffer.set_stringn(x, y, &text, usize::from(columns), Style::reset().patch(style)).0
     }
 
-    /// Whether a terminal cell contains a visible character.
     pub fn is_written(&self, x: u16, y: u16) -> bool {
         self.buffer.cell((x, y)).is_some_and(|cell| cell.symbol() != " ")
     }

@@ -4,13 +4,12 @@ use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
+use super::dialog::{TYPE, open};
 use super::paint::{Painter, targets};
-use super::picker::TYPE;
-use super::popup::open;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
-use crate::console::click::{ClickAction, ClickTarget};
-use crate::console::recording_picker::RecordingPicker;
+use crate::console::lists::RecordingPicker;
+use crate::console::mouse::{ClickAction, ClickTarget};
 use crate::console::text_columns::{fit_end, width};
 
 /// Rows around the list of recordings: frame, search line, headings, key hints.
@@ -26,7 +25,6 @@ const LEAST_CELL: u16 = 6;
 /// Heading of the column whose cells are cut at their beginning: recordings of a day differ in the end of their names.
 const CUT_IN_FRONT: &str = "recording";
 
-/// Draws the list of recordings as large as the screen allows.
 pub fn draw_recordings(picker: &RecordingPicker, theme: Theme, frame: &mut Frame) {
     draw(&mut Painter::new(frame.buffer_mut(), theme), picker);
 }
@@ -73,7 +71,6 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
 
 /// The columns of the list that have room.
 struct ShownColumns {
-    /// Index and width of each column.
     widths: Vec<(usize, u16)>,
     /// Index of the column whose cells are cut at their beginning.
     cut_in_front: usize,

@@ -3,10 +3,9 @@
 use ratatui::layout::Rect;
 
 use crate::console::beliefs::visibility;
-use crate::console::codebook;
-use crate::console::compared::SenderComparisonView;
-use crate::console::console_model::ConsoleModel;
-use crate::console::panel::Panel;
+use crate::console::coding;
+use crate::console::console_model::{ConsoleModel, SenderComparisonView};
+use crate::console::panels::Panel;
 use tomcom_session::Session;
 use tomcom_session::settings::WizardVisibility;
 
@@ -21,7 +20,7 @@ pub const ROOMY_COLUMNS: u16 = 112;
 pub enum ScreenSize {
     /// Small terminal (80x24): panels shrink to lines.
     Small,
-    /// Medium terminal (120x40): all panels, without the list of events.
+    /// Medium terminal (120x40): all panels; the list of events only in place of beliefs that the wizard may not see.
     Medium,
     /// Large terminal (200x60): all panels and the list of events.
     Large,
@@ -30,43 +29,27 @@ pub enum ScreenSize {
 /// Screen areas of the console's panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelAreas {
-    /// Size class of the terminal: small, medium or large.
-    pub room: ScreenSize,
-    /// Screen area of the head line.
+    pub screen_size: ScreenSize,
     pub head: Rect,
     /// Area of the offer: one line, or two on narrow terminals.
     pub offer: Rect,
-    /// Screen area of the kitchen panel.
     pub kitchen: Rect,
-    /// Screen area of the belief panel.
     pub belief: Rect,
-    /// Screen area of the recommendation panel.
     pub recommendation: Rect,
-    /// Area of the gaze map, which replaces beliefs and recommendations where the wizard may not see those.
+    /// Area of the gaze map, which is shown at full size only: the kitchen panel marks the gaze, too.
     pub gaze_map: Rect,
-    /// Area of the panel that tells which signal the participant sees.
     pub shown: Rect,
     /// Area of the gaze panel: where the participant looks, and the gaze's quality.
     pub gaze: Rect,
-    /// Screen area of the robot panel.
     pub robot: Rect,
-    /// Screen area of the list of newest events.
     pub events: Rect,
-    /// Screen area of the timeline.
     pub timeline: Rect,
-    /// Area of the comparison of wizard and assistants, which replaces the timeline.
     pub comparison: Rect,
-    /// Screen area of the wizard training's panel.
     pub lesson: Rect,
-    /// Screen area of a rater's codebook.
     pub codebook: Rect,
-    /// Screen area of a rater's list of errors.
     pub errors: Rect,
-    /// Area of the bar that shows the position in a recording.
     pub scrub: Rect,
-    /// Screen area of the line of messages.
     pub message: Rect,
-    /// Screen area of the line of key hints.
     pub footer: Rect,
 }
 
@@ -74,14 +57,14 @@ pub struct PanelAreas {
 const OFFER_COLUMNS: u16 = 140;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
-/// Least width of the list of events on large terminals, in columns, and how many it gets more where the kitchen does not
-/// need them.
-const EVENT_COLUMNS: u16 = 44;
-const MORE_EVENT_COLUMNS: u16 = 8;
 /// Height of the timeline with its title, in rows.
 const TIMELINE_ROWS: u16 = 7;
 /// Height of the list of signals on large terminals, in rows.
-const RECOMMENDATION_ROWS: u16 = 9;
+const RECOMMENDATION_ROWS: u16 = 7;
+/// Least heights of the panels of display, gaze and robot, in rows.
+const SHOWN_ROWS: u16 = 4;
+const GAZE_ROWS: u16 = 3;
+const ROBOT_ROWS: u16 = 4;
 
 /// Height in rows of a rater's error list without a panel of its own: progress, and three errors.
 const ERROR_LINES: u16 = 4;
@@ -98,9 +81,7 @@ const ERRORS_ROWS: u16 = 6;
 struct LineRows {
     /// If a rater codes errors: rows of the codebook across the screen, and in a column beside the kitchen.
     codebook: Option<[u16; 2]>,
-    /// Number of compared assistants, if a comparison is shown.
     comparison: Option<u16>,
-    /// Whether there is a bar for the position in a recording.
     scrubs: bool,
 }
 
@@ -112,25 +93,25 @@ impl PanelAreas {
         let compared = model.comparison.as_ref().map(assistants);
         let codebook = model.coding.as_ref().map(|_| {
             let (keys, kitchen) = (&model.keys, &session.kitchen);
-            let compact = codebook::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
-            [compact, codebook::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
+            let compact = coding::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
+            [compact, coding::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
         });
         let lines = LineRows { codebook, comparison: compared, scrubs: model.playback.is_some() };
         let regions = PanelAreas::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
-    /// Adds the wizard training's panel: below the gaze map, or else above the timeline.
+    /// Adds the wizard training's panel: below the list of events, or else above the timeline.
     fn teaching(self) -> PanelAreas {
-        match self.gaze_map.area() {
+        match self.events.area() {
             0 if self.kitchen.area() == 0 => self,
             0 => {
-                let (kitchen, lesson) = bottom(self.kitchen, if self.room == ScreenSize::Small { 3 } else { 7 });
+                let (kitchen, lesson) = bottom(self.kitchen, if self.screen_size == ScreenSize::Small { 3 } else { 7 });
                 PanelAreas { kitchen, lesson, ..self }
             }
             _ => {
-                let (gaze_map, lesson) = bottom(self.gaze_map, self.gaze_map.height / 2);
-                PanelAreas { gaze_map, lesson, ..self }
+                let (events, lesson) = bottom(self.events, self.events.height / 2);
+                PanelAreas { events, lesson, ..self }
             }
         }
     }
@@ -142,7 +123,7 @@ impl PanelAreas {
 
     /// Computes the arrangement of panels with these additional rows.
     fn with(size: (u16, u16), visibility: WizardVisibility, alone: Option<Panel>, lines: LineRows) -> PanelAreas {
-        let room = match size {
+        let screen_size = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
             (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => ScreenSize::Medium,
             _ => ScreenSize::Small,
@@ -156,7 +137,7 @@ impl PanelAreas {
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
         let (rest, codebook, errors) = match lines.codebook {
-            Some([rows, _]) if alone.is_some() || room == ScreenSize::Small => {
+            Some([rows, _]) if alone.is_some() || screen_size == ScreenSize::Small => {
                 let few = size.1 < FEW_ERROR_LINES.0;
                 let (rest, errors) = bottom(rest, if few { FEW_ERROR_LINES.1 } else { ERROR_LINES });
                 let (rest, codebook) = bottom(rest, rows);
@@ -164,10 +145,11 @@ impl PanelAreas {
             }
             _ => (rest, Rect::default(), Rect::default()),
         };
-        let rows = lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
+        let rows =
+            lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(screen_size, number));
         let (rest, comparison) = bottom(rest, rows);
         let bare = PanelAreas {
-            room,
+            screen_size,
             head,
             offer,
             kitchen: rest,
@@ -187,7 +169,7 @@ impl PanelAreas {
             message,
             footer,
         };
-        let regions = match room {
+        let regions = match screen_size {
             _ if let Some(panel) = alone => return bare.alone(panel),
             ScreenSize::Small => bare.small(visibility),
             ScreenSize::Medium => bare.medium(visibility),
@@ -199,7 +181,7 @@ impl PanelAreas {
     /// Gives the codebook and the error list the areas of panels that a rater must not see: signals and estimates.
     fn coding(self, codebook_rows: u16) -> PanelAreas {
         let blank = Rect::default();
-        match self.room {
+        match self.screen_size {
             // On small terminals the robot's state and the gaze share a line, and the timeline has one row less.
             ScreenSize::Small => {
                 let (_, timeline) = bottom(self.timeline, self.timeline.height.saturating_sub(1));
@@ -209,15 +191,13 @@ impl PanelAreas {
                 PanelAreas { kitchen, robot, gaze, timeline, shown: blank, ..self }
             }
             ScreenSize::Medium => {
-                let (codebook, errors) = codes_and_errors(self.gaze_map.union(self.shown), codebook_rows);
-                PanelAreas { codebook, errors, gaze_map: blank, shown: blank, ..self }
+                let (codebook, errors) = codes_and_errors(self.events.union(self.shown), codebook_rows);
+                PanelAreas { codebook, errors, events: blank, shown: blank, ..self }
             }
             ScreenSize::Large => {
-                let (codebook, errors) = codes_and_errors(self.gaze_map, codebook_rows);
-                let gaze = self.shown.union(self.gaze);
-                let gaze_map =
-                    Rect { x: gaze.right(), width: self.kitchen.right().saturating_sub(gaze.right()), ..gaze };
-                PanelAreas { codebook, errors, gaze, gaze_map, shown: blank, ..self }
+                let (column, events) = bottom(self.events, self.events.height / 3);
+                let (codebook, errors) = codes_and_errors(column, codebook_rows);
+                PanelAreas { codebook, errors, events, gaze: self.shown.union(self.gaze), shown: blank, ..self }
             }
         }
     }
@@ -225,7 +205,7 @@ impl PanelAreas {
     fn alone(self, panel: Panel) -> PanelAreas {
         let blank = Rect::default();
         let body = self.kitchen;
-        let mut regions = PanelAreas { kitchen: blank, room: self.room.max(ScreenSize::Medium), ..self };
+        let mut regions = PanelAreas { kitchen: blank, screen_size: self.screen_size.max(ScreenSize::Medium), ..self };
         match panel {
             Panel::Kitchen => regions.kitchen = body,
             Panel::Belief => regions.belief = body,
@@ -238,7 +218,6 @@ impl PanelAreas {
         regions
     }
 
-    /// Screen area of a panel of the console.
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
@@ -271,41 +250,40 @@ impl PanelAreas {
     fn medium(self, visibility: WizardVisibility) -> PanelAreas {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
-        let (side, robot) = bottom(side, 4);
-        let (side, gaze) = bottom(side, 3);
-        let (side, shown) = bottom(side, 4);
-        PanelAreas { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
+        let (side, robot) = bottom(side, ROBOT_ROWS);
+        let (side, gaze) = bottom(side, GAZE_ROWS);
+        let (side, shown) = bottom(side, SHOWN_ROWS);
+        let regions = PanelAreas { kitchen, shown, robot, gaze, timeline, ..self };
+        match visibility {
+            WizardVisibility::State => PanelAreas { events: side, ..regions },
+            WizardVisibility::Belief | WizardVisibility::Recommendation => PanelAreas { belief: side, ..regions },
+        }
     }
 
-    /// Arrangement for large terminals in three columns: kitchen and gaze map, beliefs and recommendations, events.
+    /// Arrangement for large terminals in two columns: at the left the kitchen, and below it display, gaze, robot and
+    /// the list of events; at the right beliefs and recommendations or, where the wizard may not see them, the events.
     fn large(self, visibility: WizardVisibility) -> PanelAreas {
         // The timeline has one more row where offers are shown.
         let rows = TIMELINE_ROWS + u16::from(visibility == WizardVisibility::Recommendation);
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
-        let kitchen_columns = (rest.width.saturating_sub(EVENT_COLUMNS) * 11 / 20).max(KITCHEN_COLUMNS);
-        let more = (kitchen_columns - KITCHEN_COLUMNS).min(MORE_EVENT_COLUMNS);
-        let (rest, events) = right(rest, EVENT_COLUMNS + more);
-        let (kitchen, side) = left(rest, kitchen_columns - more);
-        let (kitchen, below) = bottom(kitchen, kitchen.height * 2 / 5);
-        let (participant, map) = left(below, below.width * 2 / 5);
-        let (shown, gaze) = top(participant, 5);
-        let (side, robot) = bottom(side, 6);
+        let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
+        if visibility == WizardVisibility::State {
+            let (kitchen, below) = bottom(kitchen, SHOWN_ROWS + 1);
+            let (shown, below) = left(below, below.width / 3);
+            let (gaze, robot) = left(below, below.width / 2);
+            return PanelAreas { kitchen, shown, gaze, robot, events: side, timeline, ..self };
+        }
+        let (kitchen, below) = bottom(kitchen, (kitchen.height * 2 / 5).max(SHOWN_ROWS + GAZE_ROWS + ROBOT_ROWS));
+        let (devices, events) = left(below, below.width * 2 / 5);
+        let (devices, robot) = bottom(devices, devices.height / 3);
+        let (shown, gaze) = bottom(devices, robot.height);
         let regions = PanelAreas { kitchen, shown, gaze, robot, events, timeline, ..self };
         match visibility {
-            WizardVisibility::State => PanelAreas { gaze_map: side, ..regions },
-            WizardVisibility::Belief => PanelAreas { gaze_map: map, ..regions.judge(side, visibility) },
             WizardVisibility::Recommendation => {
-                let (side, recommendation) = bottom(side, RECOMMENDATION_ROWS);
-                PanelAreas { gaze_map: map, recommendation, ..regions.judge(side, visibility) }
+                let (belief, recommendation) = bottom(side, RECOMMENDATION_ROWS);
+                PanelAreas { belief, recommendation, ..regions }
             }
-        }
-    }
-
-    /// Gives the side area to the belief panel, or to the gaze map where the wizard may not see beliefs.
-    fn judge(self, side: Rect, visibility: WizardVisibility) -> PanelAreas {
-        match visibility {
-            WizardVisibility::State => PanelAreas { gaze_map: side, ..self },
-            WizardVisibility::Belief | WizardVisibility::Recommendation => PanelAreas { belief: side, ..self },
+            _ => PanelAreas { belief: side, ..regions },
         }
     }
 
@@ -339,7 +317,7 @@ impl PanelAreas {
 
     /// Area of the kitchen panel without its title, which corresponds to the wall display.
     pub fn kitchen_inside(&self) -> Rect {
-        match self.room {
+        match self.screen_size {
             ScreenSize::Small => self.kitchen,
             _ => below_title(self.kitchen),
         }
@@ -353,8 +331,8 @@ fn codes_and_errors(column: Rect, codebook_rows: u16) -> (Rect, Rect) {
 
 /// Height of the comparison: axis, first lane, three rows for each assistant (lane, lines between matches, statistics),
 /// differences, and a title if there is room.
-fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
-    match room {
+fn comparison_rows(screen_size: ScreenSize, assistants: u16) -> u16 {
+    match screen_size {
         // On small terminals, only the first of the compared assistants has a row of statistics.
         ScreenSize::Small => 4 + if assistants == 1 { 2 } else { assistants },
         ScreenSize::Medium => 4 + 3 * assistants,
@@ -362,7 +340,6 @@ fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
     }
 }
 
-/// Screen area inside the frame of a panel.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
 }

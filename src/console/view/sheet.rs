@@ -1,25 +1,30 @@
-//! Sheets (forms at full size) around a trial: instruction, questionnaire, debriefing, and questions before a
-//! recording.
+//! Sheets (forms at full size) around a trial: instruction, questionnaire, debriefing, freeze probes, and questions
+//! before a recording.
 
 use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::paint::Painter;
-use super::probe_sheet;
-use super::sheet_page::{Page, Pen, plain};
+use super::dialog::{blank, open};
+use super::paint::{KeyHint, Painter};
 use super::theme::{TextRole, Theme};
+use crate::console::beliefs::visibility;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
-use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::form::{FormContent, WAIVERS, sheet};
-use crate::console::question::StartQuestion;
-use crate::console::text_columns::width;
+use crate::console::key_action::{KeyAction, ManualAction};
+use crate::console::lists::StartPrompt;
+use crate::console::preflight::{ParticipantDisplayHealth, is_wanted};
+use crate::console::probe_keys::{ProbeAnswerer, ProbeEntry, answerer, status};
+use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
-use tomcom_session::Session;
+use tomcom_devices::sight::{ProbeWording, probe_left, probe_wording};
 use tomcom_session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
+use tomcom_session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
 use tomcom_session::protocol::{ItemAnswer, StudyProtocolState};
 use tomcom_session::questionnaire::AnswerValue;
+use tomcom_session::settings::WizardVisibility;
+use tomcom_session::{Session, TrialPhase};
 
 /// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
@@ -27,7 +32,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     let sheet = sheet(session);
     if let Some(FormContent::Probe(open)) = sheet {
-        return probe_sheet::draw(pen, screen, open, session, model);
+        return draw_probe(pen, screen, open, session, model);
     }
     let (Some(sheet), Some((step, protocol))) = (sheet, session.step()) else { return };
     let where_ = format!("{}  {}", session.spec.participant.code, step.label());
@@ -280,7 +285,7 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
 }
 
 /// Draws a question to the user before a recording, and a notice below it, on an otherwise empty screen.
-pub fn draw_question(question: &StartQuestion, notice: Option<&str>, theme: Theme, frame: &mut Frame) {
+pub fn draw_question(question: &StartPrompt, notice: Option<&str>, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
     let mut brush = Painter::new(frame.buffer_mut(), theme);
     let mut page = Page::new(screen);
@@ -298,4 +303,243 @@ pub fn draw_question(question: &StartQuestion, notice: Option<&str>, theme: Them
     }
     let keys = [("esc", "quit without recording", plain(KeyCode::Esc))];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
+}
+
+/// Largest width of a line, in columns, for readability.
+const WIDEST: u16 = 84;
+
+/// Drawing context of a sheet (a form at full size).
+pub(super) struct Pen<'a, 'b> {
+    pub brush: &'a mut Painter<'b>,
+    pub with_keys: bool,
+}
+
+/// A text within a line: its indent in columns, the text, and its style.
+type PagePart = (u16, String, TextRole);
+
+/// Text page of a sheet (a form at full size).
+#[derive(Default)]
+pub(super) struct Page {
+    columns: u16,
+    lines: Vec<Vec<PagePart>>,
+    /// Index of the line that must be visible if the page is longer than the screen.
+    focus: usize,
+    keys: Vec<(usize, KeyChord)>,
+}
+
+impl Page {
+    /// An empty text page that fits this screen area.
+    pub(super) fn new(screen: Rect) -> Page {
+        Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
+    }
+
+    /// Width of the page's text, in columns.
+    pub(super) fn columns(&self) -> u16 {
+        self.columns
+    }
+
+    /// Adds a text to the page, in as many lines as it needs.
+    pub(super) fn text(&mut self, indent: u16, text: &str, role: TextRole) {
+        let lines = wrap(text, self.columns.saturating_sub(indent));
+        self.lines.extend(lines.into_iter().map(|line| vec![(indent, line, role)]));
+    }
+
+    /// Adds a line whose texts stand in columns of this width.
+    pub(super) fn cells(&mut self, width: u16, cells: Vec<(&str, TextRole)>) {
+        let part = |(index, (text, role)): (usize, (&str, TextRole))| (index as u16 * width, text.to_string(), role);
+        self.lines.push(cells.into_iter().enumerate().map(part).collect());
+    }
+
+    /// Marks the next line as the one that must be visible, or the last line if none follows.
+    pub(super) fn focus_here(&mut self) {
+        self.focus = self.lines.len();
+    }
+
+    /// Adds a text with a mark before its first line.
+    pub(super) fn marked(&mut self, mark: &str, text: &str, role: TextRole) {
+        let first = self.lines.len();
+        self.text(width(mark) + 1, text, role);
+        if let Some([(indent, text, _)]) = self.lines.get_mut(first).map(Vec::as_mut_slice) {
+            (*indent, *text) = (0, format!("{mark} {text}"));
+        }
+    }
+
+    /// Adds a numbered choice, which can be clicked.
+    pub(super) fn choice(&mut self, index: usize, mark: &str, text: &str, role: TextRole) {
+        let digit = char::from_digit(index as u32 + 1, 10).unwrap_or(' ');
+        self.keys.push((self.lines.len(), KeyChord::char(digit)));
+        self.marked(mark, text, role);
+    }
+
+    /// Adds an empty line to the page.
+    pub(super) fn space(&mut self) {
+        self.lines.push(Vec::new());
+    }
+
+    /// Draws the part of the page around the line that must be visible, with key hints in the last line.
+    pub(super) fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[KeyHint]) {
+        let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
+        let brush = &mut *pen.brush;
+        let inside = open(brush, screen, (self.columns + 4, rows), title, remark);
+        let room = usize::from(inside.height.saturating_sub(3));
+        let last = self.lines.len().saturating_sub(room);
+        let from = (self.focus + 2).saturating_sub(room).min(last);
+        for (row, line) in self.lines.iter().skip(from).take(room).enumerate() {
+            let (x, y) = (inside.x + 1, inside.y + 1 + row as u16);
+            let end = line.iter().fold(x, |_, (indent, text, role)| {
+                let style = brush.style(*role);
+                brush.text(x + indent, y, self.columns - indent, text, style)
+            });
+            let key = self.keys.iter().find(|(line, _)| *line == from + row);
+            if let Some((_, chord)) = key.filter(|_| pen.with_keys) {
+                brush.key_target(x, y, end, *chord);
+            }
+        }
+        if pen.with_keys {
+            brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 1, keys);
+        }
+    }
+}
+
+/// The key that a click on a key hint stands for.
+pub(super) fn plain(code: KeyCode) -> Option<KeyChord> {
+    Some(KeyChord::plain(code))
+}
+
+/// Confidence of the participant in an answer, in words.
+const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];
+
+/// Clears the area under a freeze probe's sheet where the participant answers at the console, so that the state that is
+/// asked about is not visible.
+pub(super) fn hide_probe(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
+    let is_open = session.probes.open.is_some() && session.phase == TrialPhase::Paused;
+    if is_open && model.playback.is_none() && answerer(session, model) == ProbeAnswerer::Console {
+        blank(brush, area);
+    }
+}
+
+pub(super) fn draw_probe(pen: &mut Pen, screen: Rect, open: &StartedProbe, session: &Session, model: &ConsoleModel) {
+    let mut page = Page::new(screen);
+    let who = answerer(session, model);
+    if let Some(address) =
+        model.display.as_ref().and_then(ParticipantDisplayHealth::to_open).filter(|_| is_wanted(session))
+    {
+        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
+    }
+    let question =
+        open.shown.filter(|_| open.closed.is_none()).and_then(|shown| Some((shown, open.questions.get(shown)?)));
+    match question {
+        _ if open.is_paused() => page.text(0, "The probe is paused, and so is its time limit.", TextRole::Strong),
+        Some((index, question)) => draw_probe_question(&mut page, (open, index, question), (session, model), who),
+        None if open.closed.is_some() => {
+            page.text(0, "No more questions: the trial continues by itself after the count-down.", TextRole::Text);
+        }
+        None => page.text(0, "The kitchen is hidden on the display; the first question follows.", TextRole::Text),
+    }
+    draw_probe_answers(&mut page, open, session, model);
+    let title = status(session, model).unwrap_or_default();
+    let left = probe_left(session, model.now)
+        .map_or(String::new(), |left| format!("{:.0} s left to answer", left.as_secs_f64().ceil()));
+    let chord = |action| model.keys.chord_for(&action);
+    let (pause, skip) = (chord(KeyAction::Advance), chord(KeyAction::Manual(ManualAction::SkipProbe)));
+    let [pause_key, skip_key] = [pause, skip].map(|chord| chord.map(|chord| chord.to_string()).unwrap_or_default());
+    let mut hints: Vec<KeyHint> = Vec::new();
+    if question.is_some() && who == ProbeAnswerer::Console && !open.is_paused() {
+        hints.push(("0-9", "type number", None));
+        hints.push(("enter", "confirm answer", plain(KeyCode::Enter)));
+    }
+    if open.closed.is_none() && skip.is_some() {
+        hints.push((&skip_key, "skip the probe", skip));
+    }
+    if pause.is_some() {
+        hints.push((&pause_key, if open.is_paused() { "resume" } else { "pause" }, pause));
+    }
+    page.draw(pen, screen, &capital(&title), &left, &hints);
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Draws the question with its numbered choices, in as many columns as have room.
+fn draw_probe_question(
+    page: &mut Page,
+    (open, index, question): (&StartedProbe, usize, &ProbeQuestion),
+    (session, model): (&Session, &ConsoleModel),
+    who: ProbeAnswerer,
+) {
+    let ProbeWording { question: asked, choices } = probe_wording(session, question);
+    page.text(0, &asked, TextRole::Strong);
+    page.text(
+        0,
+        match who {
+            ProbeAnswerer::Display => "The participant answers on the display.",
+            ProbeAnswerer::Console => "Read the question out, and enter the number of the answer.",
+            ProbeAnswerer::Simulated => "The simulated participant answers.",
+        },
+        TextRole::Quiet,
+    );
+    page.space();
+    let entry = model.probe_entry.for_question(open.number, index);
+    let is_chosen = |number: usize| who == ProbeAnswerer::Console && entry.choice == Some(number);
+    let numbered = choices.iter().enumerate().map(|(index, choice)| (index + 1, choice.as_str()));
+    let cells: Vec<(usize, String)> = numbered
+        .chain([(0, "does not know")])
+        .map(|(number, words)| (number, choice_cell(number, words, is_chosen(number))))
+        .collect();
+    let widest = cells.iter().map(|(_, text)| width(text)).max().unwrap_or(1) + 2;
+    let columns = usize::from((page.columns() / widest).clamp(1, if cells.len() > 8 { 4 } else { 1 }));
+    let rows = cells.len().div_ceil(columns);
+    for row in 0..rows {
+        let line: Vec<&(usize, String)> = (0..columns).filter_map(|column| cells.get(column * rows + row)).collect();
+        let parts = line
+            .iter()
+            .map(|(number, text)| (text.as_str(), if is_chosen(*number) { TextRole::Strong } else { TextRole::Text }));
+        if line.iter().any(|(number, _)| is_chosen(*number)) {
+            page.focus_here();
+        }
+        page.cells(widest, parts.collect());
+    }
+    if entry.asks_sure {
+        page.space();
+        sure(page, entry);
+    }
+}
+
+fn choice_cell(number: usize, words: &str, is_chosen: bool) -> String {
+    match is_chosen {
+        true => format!("[{number:>2}] {words}"),
+        false => format!(" {number:>2}  {words}"),
+    }
+}
+
+fn sure(page: &mut Page, entry: ProbeEntry) {
+    let steps = SURE.iter().zip(1..).map(|(words, step)| choice_cell(step, words, entry.sure == Some(step as u8)));
+    page.text(0, &format!("How sure? {}", steps.collect::<Vec<_>>().join("  ")), TextRole::Strong);
+    page.focus_here();
+}
+
+/// Draws the progress of the answers. Their content is shown only where the study shows beliefs to the wizard, and
+/// never to raters.
+fn draw_probe_answers(page: &mut Page, open: &StartedProbe, session: &Session, model: &ConsoleModel) {
+    let is_shown = visibility(session, model) >= WizardVisibility::Belief && model.coding.is_none();
+    let given =
+        open.questions.iter().zip(&open.answers).filter_map(|(question, given)| Some((question, given.as_ref()?)));
+    for (index, (question, given)) in given.enumerate() {
+        if index == 0 {
+            page.space();
+        }
+        let wording = probe_wording(session, question);
+        let answer = if is_shown { answered(&wording, question, given) } else { "answered".to_string() };
+        page.text(0, &format!("{} {} {answer}", index + 1, wording.question), TextRole::Quiet);
+    }
+}
+
+fn answered(wording: &ProbeWording, question: &ProbeQuestion, given: &ProbeAnswer) -> String {
+    let Some(name) = &given.answer else { return "does not know".to_string() };
+    let index = question.choices.iter().position(|choice| choice == name);
+    let words = index.and_then(|index| wording.choices.get(index)).unwrap_or(name);
+    let sure = given.confidence.and_then(|step| SURE.get(usize::from(step).checked_sub(1)?));
+    sure.map_or(words.clone(), |sure| format!("{words} ({sure})"))
 }

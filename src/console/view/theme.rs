@@ -7,23 +7,14 @@ use ratatui::style::{Color, Modifier, Style};
 /// Role of a text on the screen, such as a title or an alarm, from which its style follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextRole {
-    /// Style of ordinary text.
     Text,
-    /// Style of labels and normal states.
     Quiet,
-    /// Style of frames and separators.
     Frame,
-    /// Style of titles and contents.
     Strong,
-    /// Style of the participant and of the participant's presses.
     Human,
-    /// Style of the robot and of its presses.
     Robot,
-    /// Style of the wizard's keys, and of signals.
     Signal,
-    /// Style of the participant's gaze.
     Gaze,
-    /// Style of alarms: stopped, lost, failed.
     Alarm,
     /// Style of false beliefs, and of nothing else.
     FalseBelief,
@@ -32,9 +23,7 @@ pub enum TextRole {
 /// Brightness of the terminal's background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TerminalBackground {
-    /// A terminal with light text on a dark background.
     Dark,
-    /// A terminal with dark text on a light background.
     Light,
 }
 
@@ -43,9 +32,7 @@ pub enum TerminalBackground {
 pub struct Theme {
     /// Whether colours are used; without colours, weight and signs tell the same.
     pub colour: bool,
-    /// Whether the signs may be Unicode characters outside ASCII.
     pub unicode: bool,
-    /// Terminal background that the colours must contrast with.
     pub ground: TerminalBackground,
 }
 
@@ -56,45 +43,26 @@ pub struct Glyphs {
     pub frame: [&'static str; 6],
     /// Vertical rules of a location's box: normal, just changed, highlighted by a signal.
     pub rules: [&'static str; 3],
-    /// Sign for a full cell of a bar.
     pub bar_full: &'static str,
-    /// Sign for an empty cell of a bar.
     pub bar_empty: &'static str,
-    /// Sign for where the participant looks.
     pub gaze: &'static str,
-    /// Sign for where the participant looked before.
     pub trail: &'static str,
-    /// Sign for a press.
     pub press: &'static str,
-    /// Sign for a press without an effect.
     pub no_effect: &'static str,
-    /// Sign for a press that was an error.
     pub error: &'static str,
-    /// Sign for an order that was served.
     pub served: &'static str,
-    /// Sign for a signal that was taken back.
     pub taken_back: &'static str,
-    /// Sign for a stopped robot.
     pub stopped: &'static str,
-    /// Sign for a contact with the robot arm.
     pub touched: &'static str,
-    /// Sign for a manual intervention of the experimenter.
     pub by_hand: &'static str,
-    /// Sign for a direction: an arrow from one thing to another.
     pub to: &'static str,
-    /// Sign for the selected row of a list.
     pub cursor: &'static str,
-    /// Sign for a content that has just changed.
     pub changed: &'static str,
-    /// Sign for a session that is recorded.
     pub recording: &'static str,
-    /// Sign for a paused trial.
     pub pause: &'static str,
-    /// Sign for text that was cut off: an ellipsis.
     pub ellipsis: &'static str,
     /// Signs for curves: vertical bars from low to full.
     pub levels: [&'static str; 8],
-    /// Sign for a missing value.
     pub dash: &'static str,
 }
 
@@ -188,7 +156,6 @@ impl Theme {
         }
     }
 
-    /// Style of a badge, an inverse label in the colour of a text role.
     pub fn badge(&self, role: TextRole) -> Style {
         self.style(role).remove_modifier(Modifier::DIM).add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }

@@ -1,4 +1,6 @@
-//! The timeline on the trial's clock, which stands during pauses: one row per kind of event, columns of half a second,
+//! What happened, over time: the timeline, the list of events in words, and the position in a recording.
+//!
+//! The timeline is on the trial's clock, which stands during pauses: one row per kind of event, columns of half a second,
 //! the present at the right edge.
 
 use ratatui::layout::Rect;
@@ -7,18 +9,18 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::beliefs::visibility;
-use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
+use crate::console::mouse::ClickAction;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferKeyKind;
 use tomcom_core::kitchen::Agent;
 use tomcom_session::event::SignalEndReason;
-use tomcom_session::offers;
+use tomcom_session::history::wording;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Session, TimelineEntry, TimelineEvent, TrialPhase};
+use tomcom_session::{Session, TimelineEntry, TimelineEvent, TrialPhase, offers};
 
 /// Time that one terminal column of the timeline stands for, in seconds.
 const COLUMN_S: f64 = 0.5;
@@ -27,13 +29,12 @@ const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
 const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 
-/// Draws the timeline of presses, signals, orders and notes.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.timeline;
     if area.area() == 0 {
         return;
     }
-    let is_small = regions.room == ScreenSize::Small;
+    let is_small = regions.screen_size == ScreenSize::Small;
     let inside = if is_small { area } else { brush.panel(area, "Timeline", &legend(brush)) };
     let rows: &[&str] = match is_small {
         // In a low timeline, signals, orders and notes share a row.
@@ -257,4 +258,82 @@ fn mark(
 fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
     let location = signal.location(&session.kitchen);
     location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
+}
+
+/// Words before the times while the trial has not started: the longest of all phases.
+const BEFORE: &str = " before the trial, ";
+
+pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
+    if area.area() == 0 {
+        return;
+    }
+    let clock = session.trial_clock(model.now);
+    let part = match session.phase {
+        TrialPhase::Ready => BEFORE,
+        TrialPhase::Over(_) | TrialPhase::Closed => " after the trial, ",
+        TrialPhase::Running | TrialPhase::Paused => " ",
+    };
+    let times = format!("{clock} of {} ", playback.trial_length.max(clock));
+    let end = format!("{part}{times}");
+    let quiet = brush.style(TextRole::Quiet);
+    brush.text(area.x, area.y, area.width, " recording ", quiet);
+    brush.text_right(area.right(), area.y, area.width, &end, quiet);
+    let x = area.x + 11;
+    // The bar has one length in all phases, so that a place on it always means the same time.
+    let columns = area.right().saturating_sub(x + width(BEFORE) + width(&times) + 1);
+    let share = session.time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
+    let line = brush.theme.signs().frame[4].repeat(usize::from(columns));
+    let (thin, strong) = (brush.style(TextRole::Frame), brush.style(TextRole::Strong));
+    brush.text(x, area.y, columns, &line, thin);
+    let here = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
+    brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), strong);
+    let sign = brush.theme.signs().recording;
+    brush.text(x + here, area.y, 1, sign, strong);
+    if model.lesson.is_some() {
+        return;
+    }
+    let length_s = playback.length.max(session.time).as_secs_f64();
+    for column in 0..columns {
+        let share = f64::from(column) / f64::from(columns.saturating_sub(1).max(1));
+        let time = SessionTime::from_secs_f64(length_s * share);
+        brush.target(Rect { x: x + column, width: 1, ..area }, ClickAction::Seek(time));
+    }
+}
+
+/// Columns for the name of the agent; the longest is "assistant".
+const WHO: u16 = 10;
+
+pub fn draw_events(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    if regions.events.area() == 0 {
+        return;
+    }
+    let remark = match model.events_back {
+        0 => "newest event first".to_string(),
+        back => format!("{back} newer events hidden"),
+    };
+    let inside = brush.panel(regions.events, "Events", &remark);
+    let clock = session.trial_clock(model.now);
+    let newest = session.timeline.iter().rev().skip(model.events_back);
+    for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
+        let y = inside.y + row as u16;
+        let at = (clock - session.age(entry.time, model.now)).to_string();
+        let (who, what) = wording::happening(&session.kitchen, &entry.what);
+        let is_error = model.is_error(entry);
+        let role = match &entry.what {
+            TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
+            TimelineEvent::Press { agent: Agent::Robot, .. } => TextRole::Robot,
+            TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_) => TextRole::Signal,
+            TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => TextRole::Alarm,
+            TimelineEvent::ArmTouched { .. } => TextRole::Robot,
+            _ => TextRole::Strong,
+        };
+        let quiet = brush.style(TextRole::Quiet);
+        brush.text_right(inside.x + 6, y, 6, &at, quiet);
+        let x = inside.x + 7;
+        let columns = inside.right().saturating_sub(x + WHO);
+        brush.parts(x, y, WHO - 1, &[(who, role)]);
+        let mark = if is_error { format!("{} ", brush.theme.signs().error) } else { String::new() };
+        brush.parts(x + WHO, y, columns, &[(&mark, TextRole::Strong), (&what, TextRole::Text)]);
+    }
 }

@@ -10,11 +10,8 @@ use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
 use tokio::sync::watch;
 use tokio::time::{sleep_until, timeout};
 
-use super::message::{MessageFromPage, MessageToPage, read, text};
-use super::page_input::PageInput;
-use super::page_life::PageLife;
-use super::server_state::{PageFeed, ServerState};
-use super::status::{ActivePage, count};
+use super::message::{MessageFromPage, MessageToPage, PageInput, read, text};
+use super::server_state::{ActivePage, PageFeed, ServerState, count};
 use crate::connection_table::ConnectionHandle;
 use crate::pairing::PairingVerdict;
 
@@ -32,46 +29,45 @@ const FAULTS: u32 = 100;
 const BOUNCE_MS: f64 = 50.0;
 
 /// Connection with a participant page and the page's state.
-struct Talk {
+struct PageConnection {
     socket: WebSocket,
     hub: Arc<ServerState>,
     place: Arc<ConnectionHandle>,
     life: PageLife,
     page: String,
-    /// Whether the page wants to watch while another page takes part.
     waits: bool,
     size: ActivePage,
     faults: u32,
     /// Budget of messages that the page may still send (token bucket), with the time of the budget's last update.
     allowed: (f64, Instant),
-    /// Number of the last press on the participant's page.
     pressed: u64,
     /// Name of the button that was pressed last, and the time of that press on the server's clock, in milliseconds.
     last: Option<(String, f64)>,
 }
 
 /// Serves a participant page until one side closes the connection.
-pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionHandle>) {
+pub(super) async fn serve_page(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionHandle>) {
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));
     let (waits, faults, allowed, pressed) = (false, 0, (PER_SECOND, now), 0);
-    let mut talk = Talk { socket, hub, place, life, page, waits, size, faults, allowed, pressed, last: None };
-    let Some(waits) = talk.greet().await else { return };
+    let mut connection =
+        PageConnection { socket, hub, place, life, page, waits, size, faults, allowed, pressed, last: None };
+    let Some(waits) = connection.identify().await else { return };
     // Beyond the limit of watching pages, only the page that takes part is admitted to the display.
-    if !talk.take_seat(waits).await && !talk.place.admit() {
-        count(&talk.hub.status.refused);
+    if !connection.take_part(waits).await && !connection.place.admit() {
+        count(&connection.hub.status.refused);
         return;
     }
-    talk.hub.status.pages.fetch_add(1, Ordering::Relaxed);
-    talk.run().await;
-    talk.hub.status.pages.fetch_sub(1, Ordering::Relaxed);
-    talk.leave_seat().await;
+    connection.hub.status.pages.fetch_add(1, Ordering::Relaxed);
+    connection.run().await;
+    connection.hub.status.pages.fetch_sub(1, Ordering::Relaxed);
+    connection.stop_taking_part().await;
 }
 
-impl Talk {
+impl PageConnection {
     /// Sends the display texts to a new page, and waits until the page has identified itself and, if a pairing code is
     /// required, sent the right code. Returns whether the page wants to watch while another page takes part.
-    async fn greet(&mut self) -> Option<bool> {
+    async fn identify(&mut self) -> Option<bool> {
         self.say(&MessageToPage::Words { words: self.hub.words.clone() }).await?;
         let hello_by = tokio::time::Instant::now() + HELLO;
         let (mut has_said, mut attempts) = (false, 0);
@@ -189,7 +185,7 @@ impl Talk {
 
     /// Lets the page take part if no other page does and the page does not want to wait, or if the page took part
     /// before it was loaded again. Returns whether this page takes part now.
-    async fn take_seat(&mut self, waits: bool) -> bool {
+    async fn take_part(&mut self, waits: bool) -> bool {
         let mut took = false;
         self.hub.acting.send_if_modified(|acting| {
             took = acting.as_ref().map_or(!waits, |(_, other)| *other == self.page);
@@ -200,7 +196,7 @@ impl Talk {
         });
         if took {
             self.place.reserve(true);
-            self.tell_size().await;
+            self.report_size().await;
         }
         took
     }
@@ -211,7 +207,7 @@ impl Talk {
     }
 
     /// Reports to the session that a page takes part, with the page's size.
-    async fn tell_size(&mut self) -> Option<()> {
+    async fn report_size(&mut self) -> Option<()> {
         let ActivePage { width_px, height_px, upright, .. } = self.size;
         self.hub.status.page(|page| {
             let page = page.get_or_insert_default();
@@ -220,7 +216,7 @@ impl Talk {
         self.hub.inputs.send(PageInput::Connected { width_px, height_px }).await.ok()
     }
 
-    async fn leave_seat(&mut self) {
+    async fn stop_taking_part(&mut self) {
         let left = self.acts();
         if left {
             self.hub.acting.send_replace(None);
@@ -250,7 +246,7 @@ impl Talk {
                     self.say(&MessageToPage::Ended).await?;
                     return None;
                 }
-                said = self.socket.recv() => self.hear(said?.ok()?).await?,
+                said = self.socket.recv() => self.take(said?.ok()?).await?,
                 changed = scene.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut scene).await?;
@@ -292,7 +288,7 @@ impl Talk {
     }
 
     /// Handles a message of the page; `None` if the connection is to be closed.
-    async fn hear(&mut self, message: Message) -> Option<()> {
+    async fn take(&mut self, message: Message) -> Option<()> {
         match self.message(message)? {
             None => Some(()),
             Some(MessageFromPage::Ping { t, took, hidden }) => {
@@ -304,10 +300,10 @@ impl Talk {
             }
             Some(MessageFromPage::Size { width, height, upright }) => {
                 self.note_size(width, height, upright);
-                if self.acts() { self.tell_size().await } else { Some(()) }
+                if self.acts() { self.report_size().await } else { Some(()) }
             }
             Some(MessageFromPage::TakePart) => {
-                self.take_seat(false).await;
+                self.take_part(false).await;
                 Some(())
             }
             Some(_) if !self.acts() => {
@@ -369,5 +365,101 @@ impl Talk {
             self.last = Some((button.to_string(), at));
         }
         is_new
+    }
+}
+
+/// Interval of the server's pings to a page.
+const PING: Duration = Duration::from_secs(2);
+/// Silence of a browser (no answer to pings) after which it counts as gone.
+const SILENCE: Duration = Duration::from_secs(8);
+/// Time without a message after which a visible page counts as hanging; a visible page sends one message per second.
+const VISIBLE: Duration = Duration::from_secs(8);
+/// Time without a message after which a hidden page counts as hanging.
+const HIDDEN: Duration = Duration::from_secs(90);
+
+/// Times of a participant page's last signs of life.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PageLife {
+    /// Arrival of the last WebSocket frame of any kind, answers to pings included.
+    heard: Instant,
+    /// Arrival of the last message that the page itself sent (not the browser).
+    spoke: Instant,
+    pinged: Instant,
+    is_hidden: bool,
+}
+
+impl PageLife {
+    /// Signs of life of a page that has just sent something.
+    pub fn new(now: Instant) -> PageLife {
+        PageLife { heard: now, spoke: now, pinged: now, is_hidden: false }
+    }
+
+    /// Records the arrival of a WebSocket frame; `is_message` says that the page itself sent it.
+    pub fn heard(&mut self, now: Instant, is_message: bool) {
+        self.heard = now;
+        if is_message {
+            self.spoke = now;
+        }
+    }
+
+    pub fn hide(&mut self, is_hidden: bool) {
+        self.is_hidden = is_hidden;
+    }
+
+    pub fn pinged(&mut self, now: Instant) {
+        self.pinged = now;
+    }
+
+    /// Time of the server's next ping to the page, or of giving up the page.
+    pub fn next(&self) -> Instant {
+        (self.pinged + PING).min(self.gone_at())
+    }
+
+    /// Whether nothing was heard from the page for too long.
+    pub fn is_gone(&self, now: Instant) -> bool {
+        now >= self.gone_at()
+    }
+
+    fn gone_at(&self) -> Instant {
+        let patience = if self.is_hidden { HIDDEN } else { VISIBLE };
+        (self.heard + SILENCE).min(self.spoke + patience)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Test: number of seconds, out of six hours, for which a page stays connected.
+    fn stays_s(answers: bool, is_hidden: bool, message_s: u64) -> u64 {
+        let start = Instant::now();
+        let mut life = PageLife::new(start);
+        life.hide(is_hidden);
+        let hours_s = 6 * 3600;
+        let gone = (1..=hours_s).find(|second| {
+            let now = start + Duration::from_secs(*second);
+            if now >= life.next() && !life.is_gone(now) {
+                life.pinged(now);
+                if answers {
+                    life.heard(now, false);
+                }
+            }
+            if second % message_s == 0 {
+                life.heard(now, true);
+            }
+            life.is_gone(now)
+        });
+        gone.unwrap_or(hours_s)
+    }
+
+    #[test]
+    fn a_page_stays_for_hours_as_long_as_its_browser_answers_and_it_says_something() {
+        let hours_s = 6 * 3600;
+        assert_eq!(stays_s(true, false, 1), hours_s, "a visible page");
+        assert_eq!(stays_s(true, true, 60), hours_s, "a hidden page, whose timers are slowed down");
+        assert_eq!(stays_s(false, false, hours_s), 8, "a browser that is gone");
+        assert_eq!(stays_s(true, false, hours_s), 8, "a visible page that hangs");
+        assert_eq!(stays_s(true, true, hours_s), 90, "a hidden page that hangs");
+        assert_eq!(stays_s(false, true, 60), 8, "a hidden page whose browser is gone");
     }
 }

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::page_input::ParticipantResponse;
 use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 use tomcom_session::questionnaire::AnswerValue;
 
@@ -27,16 +27,11 @@ const MAX_PIXELS: u32 = 100_000;
 pub enum MessageFromPage {
     /// First message of a page, with which it identifies itself.
     Hello {
-        /// Random name of the page, which the page keeps when it is loaded again.
         page: String,
-        /// Width of the participant's page in pixels.
         width: u32,
-        /// Height of the participant's page in pixels.
         height: u32,
-        /// Whether the page shows the layout of upright screens.
         #[serde(default)]
         upright: bool,
-        /// Pairing code that somebody typed into the page.
         code: Option<String>,
         /// Whether the page only watched before it was reconnected, so that it lets another page take part.
         #[serde(default)]
@@ -44,55 +39,42 @@ pub enum MessageFromPage {
     },
     /// New size of the participant's page, after its window was resized.
     Size {
-        /// Width of the participant's page in pixels.
         width: u32,
-        /// Height of the participant's page in pixels.
         height: u32,
-        /// Whether the page shows the layout of upright screens.
         #[serde(default)]
         upright: bool,
     },
-    /// A watching page asks to take part.
     TakePart,
-    /// Ping of the page, by which the page measures the round-trip time.
     Ping {
         /// Time on the page's clock, in milliseconds.
         t: f64,
-        /// Round-trip time of the page's previous ping, in milliseconds.
         took: Option<f64>,
-        /// Whether the page is hidden, such as behind another browser tab.
         #[serde(default)]
         hidden: bool,
     },
-    /// A press of a kitchen button on the page.
     Press {
         /// Number of the press among all presses on this page, counted from 1.
         number: u64,
-        /// Name of the pressed kitchen button.
         button: String,
         /// Time of the press, in milliseconds on the server's clock.
         at: f64,
     },
-    /// Position of the mouse pointer on the page.
     Pointer {
         /// Horizontal position of the pointer, as a fraction of the display's width.
         x: f64,
         /// Vertical position of the pointer, as a fraction of the display's height, downwards.
         y: f64,
     },
-    /// Report that the page has drawn the event with this sequence number.
     Drawn {
         /// Sequence number of the event that was drawn.
         cue: u64,
         /// Time of the drawing, in milliseconds on the server's clock.
         at: f64,
     },
-    /// Report that the effect of a press has been drawn.
     Redrawn {
         /// Time from the press until its effect was drawn, in milliseconds.
         took: f64,
     },
-    /// What the participant does on the page apart from the task: consent, answers, tutorial pages.
     #[serde(untagged)]
     Reply(ParticipantResponse),
 }
@@ -102,16 +84,25 @@ pub enum MessageFromPage {
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum MessageToPage {
     /// Answer to a page's ping: the time in the ping, and the server's time, both in milliseconds.
-    Pong { t: f64, at: f64 },
-    /// Texts of the page in the participant's language.
-    Words { words: BTreeMap<String, String> },
+    Pong {
+        t: f64,
+        at: f64,
+    },
+    Words {
+        words: BTreeMap<String, String>,
+    },
     /// Role of the page: taking part, watching while another page takes part, or watching while it could take part.
-    Role { acts: bool, free: bool },
+    Role {
+        acts: bool,
+        free: bool,
+    },
     /// Result of pairing: "code" asks for the pairing code; "wrong" says that the code was wrong; "locked" says that
     /// the code was not checked, since too many wrong ones came before. The next code is checked after `wait_s`
     /// seconds.
-    Pairing { why: &'static str, wait_s: u64 },
-    /// The program ends as intended, so the connection will not come back by itself.
+    Pairing {
+        why: &'static str,
+        wait_s: u64,
+    },
     Ended,
 }
 
@@ -198,7 +189,6 @@ pub(super) fn sight(sight: &DisplayContent, left: Option<(f64, f64)>) -> Arc<str
     text(&Message { kind: "sight", sight, at, left_s })
 }
 
-/// The message to the page with the robot's pose.
 pub(super) fn robot(pose: &RobotHandPose) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -211,6 +201,80 @@ pub(super) fn robot(pose: &RobotHandPose) -> Arc<str> {
 pub(super) fn text(message: &impl Serialize) -> Arc<str> {
     // Messages have only string keys, so serialisation cannot fail.
     Arc::from(serde_json::to_string(message).unwrap_or_default())
+}
+
+/// An input to the session from the participant page that takes part.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PageInput {
+    Connected {
+        width_px: u32,
+        height_px: u32,
+    },
+    Lost,
+    Press {
+        button: String,
+        at: Instant,
+    },
+    Pointer {
+        /// Horizontal position of the pointer, as a fraction of the display's width.
+        x: f64,
+        /// Vertical position of the pointer, as a fraction of the display's height, downwards.
+        y: f64,
+    },
+    Reply(ParticipantResponse),
+    Drawn {
+        /// Sequence number of the event that was drawn.
+        cue: u64,
+        /// Time of the drawing, on this computer's clock.
+        at: Instant,
+    },
+}
+
+/// What the participant does on the page apart from the task: consents, answers a questionnaire or a freeze probe,
+/// reads the tutorial.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum ParticipantResponse {
+    Answer {
+        item: String,
+        /// The answer to the questionnaire item; `None` leaves the item unanswered.
+        answer: Option<AnswerValue>,
+    },
+    Next,
+    Back {
+        item: String,
+    },
+    Hold {
+        held: bool,
+    },
+    /// Consent of the participant, who held the consent button for as long as the page asks. It counts if the program
+    /// was told of the hold, and it lasted that long.
+    Consent,
+    Confirm,
+    Turn {
+        step: String,
+        /// Whether the participant turns to the next tutorial step; false: to the previous one.
+        forward: bool,
+    },
+    Choose {
+        step: String,
+        /// Number of the chosen answer to the tutorial's question, counted from 1.
+        choice: u8,
+    },
+    CardsShown {
+        step: String,
+    },
+    /// Answer to a freeze probe's question: a choice, or a stack of items; with neither, "I don't know".
+    Believe {
+        probe: u32,
+        /// Number of the question in the freeze probe, counted from 1.
+        question: u32,
+        /// Number of the chosen answer to the probe's question, counted from 1.
+        choice: Option<u16>,
+        items: Vec<String>,
+        /// How sure the participant is of the answer, from 1 to 3; `None` if that is not asked.
+        sure: Option<u8>,
+    },
 }
 
 #[cfg(test)]

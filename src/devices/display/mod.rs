@@ -5,13 +5,12 @@
 //! the pointer. One page takes part (its inputs count), all others watch.
 
 mod connection;
-mod host_check;
 pub mod message;
-mod page_input;
-mod page_life;
 mod server;
 mod server_state;
-mod status;
+
+pub use message::{PageInput, ParticipantResponse};
+pub use server_state::{ActivePage, DisplayCounts};
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
@@ -23,13 +22,10 @@ use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
-pub use self::page_input::{PageInput, ParticipantResponse};
 use self::server::serve;
-use self::server_state::{PageFeed, ServerState};
-use self::status::DisplayStatus;
-pub use self::status::{ActivePage, DisplayCounts};
+use self::server_state::{DisplayStatus, PageFeed, ServerState};
 use crate::outer_address::reachable;
-use crate::pairing_code::pairing_code;
+use crate::pairing::pairing_code;
 use crate::sight::page_language::DisplayWords;
 use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 
@@ -53,7 +49,6 @@ pub struct DisplayHandle {
     sight: watch::Sender<Arc<str>>,
     robot: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
-    /// Instant at which the display server's clock was zero.
     began: Instant,
 }
 
@@ -89,7 +84,6 @@ impl DisplayServer {
         Ok(DisplayServer { address, code, inputs, screen, thread })
     }
 
-    /// Waits for the next input of the page that takes part in the session.
     pub async fn next(&mut self) -> Option<PageInput> {
         self.inputs.recv().await
     }
@@ -105,7 +99,6 @@ impl DisplayServer {
         self.code.as_deref()
     }
 
-    /// Handle with which content is sent to the pages.
     pub fn screen(&self) -> DisplayHandle {
         self.screen.clone()
     }
@@ -133,12 +126,10 @@ impl DisplayHandle {
         self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));
     }
 
-    /// Sends the pose of the robot's hand to the pages.
     pub fn move_robot(&self, pose: &RobotHandPose) {
         self.robot.send_replace(message::robot(pose));
     }
 
-    /// State and counters of the connected pages.
     pub fn counts(&self) -> DisplayCounts {
         self.status.counts()
     }

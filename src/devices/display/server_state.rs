@@ -1,15 +1,15 @@
-//! State that all connections of the participant's display share.
+//! State that all connections of the participant's display share, and counters of its pages.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::Sender;
 use tokio::sync::watch;
 
-use super::page_input::PageInput;
-use super::status::DisplayStatus;
+use super::message::PageInput;
 use crate::connection_table::{ConnectionLimits, ConnectionTable};
 use crate::pairing::{PairingCodeCheck, PairingVerdict};
 
@@ -29,7 +29,6 @@ const LIMITS: ConnectionLimits = ConnectionLimits {
 pub(super) struct PageFeed {
     pub scene: watch::Receiver<Arc<str>>,
     pub sight: watch::Receiver<Arc<str>>,
-    /// Message with the pose of the robot's hand on the display.
     pub robot: watch::Receiver<Arc<str>>,
 }
 
@@ -37,10 +36,8 @@ pub(super) struct PageFeed {
 pub(super) struct ServerState {
     /// Check of pairing codes for participant pages; `None` if no code is required.
     pairing: Option<Mutex<PairingCodeCheck>>,
-    /// Texts of the participant's page, by key.
     pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
-    /// Newest messages for the participant's pages.
     pub told: PageFeed,
     pub status: Arc<DisplayStatus>,
     /// Connection number and page name of the page that takes part.
@@ -63,24 +60,23 @@ impl ServerState {
         ServerState { pairing, words, inputs, told, status, acting, connections, began }
     }
 
-    /// Whether participant pages need a pairing code.
     pub fn has_code(&self) -> bool {
         self.pairing.is_some()
     }
 
     /// Time to wait before a pairing code that was typed into a page is to be checked.
     pub fn pairing_delay(&self, page: &str, typed: &str) -> Duration {
-        let Some(desk) = &self.pairing else { return Duration::ZERO };
-        let desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
-        desk.delay(Some(page), typed, Instant::now())
+        let Some(check) = &self.pairing else { return Duration::ZERO };
+        let check = check.lock().unwrap_or_else(PoisonError::into_inner);
+        check.delay(Some(page), typed, Instant::now())
     }
 
     /// Checks a pairing code that was typed into a page. Attempts of all connections are checked one after another.
     pub fn pair(&self, address: IpAddr, page: &str, typed: &str) -> PairingVerdict {
         match &self.pairing {
-            Some(desk) => {
-                let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
-                desk.attempt(address, Some(page), typed, Instant::now())
+            Some(check) => {
+                let mut check = check.lock().unwrap_or_else(PoisonError::into_inner);
+                check.attempt(address, Some(page), typed, Instant::now())
             }
             None => PairingVerdict::Right,
         }
@@ -100,4 +96,56 @@ impl ServerState {
         let age_ms = (self.now_ms() - at_ms).clamp(0.0, OLDEST_MS);
         now.checked_sub(Duration::from_secs_f64(age_ms / 1000.0)).unwrap_or(now)
     }
+}
+
+/// State of the participant page that takes part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ActivePage {
+    pub width_px: u32,
+    pub height_px: u32,
+    /// Whether the page shows the layout of upright screens, on which gaze is not mapped.
+    pub upright: bool,
+    pub round_trip_ms: Option<f64>,
+    pub redraw_ms: Option<f64>,
+}
+
+/// State and counters of the participant's pages.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DisplayCounts {
+    pub page: Option<ActivePage>,
+    pub watching: u64,
+    pub malformed: u64,
+    /// Number of refused pages and messages: wrong pairing code, too many, too fast, or from a watching page.
+    pub refused: u64,
+}
+
+#[derive(Debug, Default)]
+pub(super) struct DisplayStatus {
+    pub pages: AtomicU64,
+    pub malformed: AtomicU64,
+    pub refused: AtomicU64,
+    page: Mutex<Option<ActivePage>>,
+}
+
+impl DisplayStatus {
+    /// The present state and counters of the participant's pages.
+    pub fn counts(&self) -> DisplayCounts {
+        let page = *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        DisplayCounts {
+            page,
+            watching: self.pages.load(Ordering::Relaxed).saturating_sub(u64::from(page.is_some())),
+            malformed: self.malformed.load(Ordering::Relaxed),
+            refused: self.refused.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Updates the state of the participant page that takes part.
+    pub fn page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
+        change(&mut self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
+    }
+}
+
+/// Adds 1 to a counter of the participant's pages.
+pub(super) fn count(counter: &AtomicU64) {
+    counter.fetch_add(1, Ordering::Relaxed);
 }

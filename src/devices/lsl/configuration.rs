@@ -38,6 +38,35 @@ fn quiet(text: &str) -> String {
     kept + QUIET
 }
 
+/// Why the Lab Streaming Layer (LSL) cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LslError {
+    #[error("the library of the Lab Streaming Layer (liblsl) cannot be loaded: {0}")]
+    Missing(String),
+    #[error("{place} is no liblsl of version 1.17.7 or newer: it lacks {lacks}")]
+    Unfit { place: String, lacks: &'static str },
+    #[error("liblsl does not offer the stream {0}")]
+    Refused(String),
+    /// The sending thread cannot be started, or does not answer in time.
+    #[error("the thread for the Lab Streaming Layer cannot be started")]
+    NoThread,
+}
+
+impl LslError {
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            LslError::Missing(_) | LslError::Unfit { .. } => {
+                "name it in the session file, under [lsl]: library = \"…/liblsl.so\". The package pylsl has one (pip \
+                 install pylsl, folder \
+                 pylsl/lib); others are at github.com/sccn/liblsl/releases"
+            }
+            LslError::Refused(_) | LslError::NoThread => {
+                "see docs/lsl.md; without [lsl] in the session file no streams are sent"
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use libloading::Library;
 
-use super::lsl_error::LslError;
+use super::configuration::LslError;
 use crate::lsl::{MetadataNode, StreamDescription};
 
 /// Pointer to an object of liblsl, or to an element of its metadata.
@@ -300,7 +300,6 @@ impl LslOutletHandle {
             && unsafe { (self.functions.push_sample_strt)(self.pointer, pointers.as_ptr(), time_s) } == 0
     }
 
-    /// Whether any program reads the outgoing stream.
     pub fn has_consumers(&self) -> bool {
         // SAFETY: the outlet exists as long as this value.
         unsafe { (self.functions.have_consumers)(self.pointer) != 0 }
@@ -322,7 +321,6 @@ pub struct DiscoveredLslStream {
 }
 
 impl DiscoveredLslStream {
-    /// Name and content type of the stream, and name of the computer that offers it.
     pub fn identity(&self) -> [String; 3] {
         let functions = self.functions;
         // SAFETY: the description exists as long as this value, and its texts with it; the texts are copied.
@@ -342,13 +340,11 @@ impl DiscoveredLslStream {
         unsafe { Functions::read((self.functions.get_uid)(self.info)) }
     }
 
-    /// Whether the samples of the LSL stream are texts.
     pub fn is_text(&self) -> bool {
         // SAFETY: the description exists as long as this value.
         unsafe { (self.functions.get_channel_format)(self.info) == STRING }
     }
 
-    /// Number of channels of the LSL stream.
     pub fn channel_count(&self) -> usize {
         // SAFETY: the description exists as long as this value.
         usize::try_from(unsafe { (self.functions.get_channel_count)(self.info) }).unwrap_or(0)

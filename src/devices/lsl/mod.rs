@@ -7,26 +7,21 @@
 
 mod configuration;
 mod gaze_inlet;
-mod gaze_stamps;
 #[allow(unsafe_code)]
 mod library;
-mod lsl_error;
-mod marker_text;
-mod outlet_thread;
-mod stream_description;
-mod stream_samples;
+mod outlets;
+
+pub use configuration::LslError;
+pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
+pub use library::{DiscoveredLslStream, LslLibrary};
+pub use outlets::{
+    LslCounts, LslSample, LslSampleConverter, LslSampleValues, LslStreams, MetadataNode, SOURCE, StreamChannel,
+    StreamDescription, StreamSample, code, describe, event_text,
+};
 
 use std::path::absolute;
 
 use tomcom_session::settings::{LslGazeSpec, LslSpec};
-
-pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
-pub use library::{DiscoveredLslStream, LslLibrary};
-pub use lsl_error::LslError;
-pub use marker_text::{code, event_text};
-pub use outlet_thread::{LslCounts, LslSample, LslStreams};
-pub use stream_description::{MetadataNode, SOURCE, StreamChannel, StreamDescription, describe};
-pub use stream_samples::{LslSampleConverter, LslSampleValues, StreamSample};
 
 /// Loads the LSL library that the settings name, or the installed library.
 ///

@@ -21,7 +21,6 @@ const APART_S: f64 = 1.0;
 /// A window of a fixation as Capture sends it, or several merged windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixationFragment {
-    /// Pupil Capture's id of the fixation.
     pub id: u64,
     /// Position of the fixation on the display, in fractions; `None` if unknown.
     pub at: Option<[f64; 2]>,
@@ -43,7 +42,6 @@ pub struct FixationMerger {
 #[derive(Clone, Copy, Debug)]
 struct MergedWindows {
     merged: FixationFragment,
-    /// Number of merged windows, and number of merged windows with a position.
     windows: f64,
     places: f64,
     heard: Instant,

@@ -38,7 +38,6 @@ pub struct SurfaceGaze {
 /// A fixation as Capture sends it; messages with the same id repeat while the fixation lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilFixation {
-    /// Pupil Capture's id of the fixation.
     pub id: u64,
     /// Position of the fixation on the surface; `None` if the position is given in the scene camera's image.
     pub on_surface: Option<[f64; 2]>,
@@ -75,7 +74,6 @@ pub enum CaptureNotification {
 /// Content of a message from Capture after parsing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PupilMessage {
-    /// Whether the message is about the requested surface, which shows that the tracker detects it.
     pub sees_surface: bool,
     /// Gaze samples in the message, in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
@@ -83,7 +81,6 @@ pub struct PupilMessage {
     pub fixations: Vec<PupilFixation>,
     /// Onset or offset of a blink, if the message contains one.
     pub blink: Option<PupilBlink>,
-    /// Name of another surface that the tracker detects.
     pub other_surface: Option<String>,
     /// Notification of Capture's recorder, if the message contains one.
     pub recorder: Option<CaptureNotification>,
@@ -224,7 +221,6 @@ fn time(item: &Value) -> Option<f64> {
     number(item, "timestamp").filter(|value| value.abs() < MAX_SECONDS)
 }
 
-/// The payload of a notification with which Capture starts a plugin.
 pub fn start_plugin(name: &str) -> Vec<u8> {
     let text = |text: &str| Value::from(text);
     encode(vec![

@@ -2,7 +2,7 @@
 //! subscription, recording, annotations. The program tries to connect again without limit when Capture is missing,
 //! ends, hangs or restarts.
 
-mod capture_desk;
+mod capture_client;
 pub mod eye_events;
 mod listener;
 pub mod message;
@@ -18,7 +18,7 @@ use tokio::time::sleep;
 
 use super::compared_clock::ClockOffsetEstimator;
 use super::gaze_input::{TrackerMessage, WAITING};
-use capture_desk::CaptureClient;
+use capture_client::CaptureClient;
 use listener::Listener;
 use message::{SURFACES, TOPICS};
 use recorder::CaptureRecordingControl;
@@ -36,11 +36,8 @@ const RECORDER_NEWS: usize = 16;
 /// Network address of Pupil Capture, and what to receive from it.
 #[derive(Clone, Debug)]
 pub struct CaptureConfiguration {
-    /// Host on which Capture runs.
     pub address: String,
-    /// Port of Capture's plugin Pupil Remote.
     pub port: u16,
-    /// Name of the surface that Capture defines by the display's markers.
     pub surface: String,
     /// Map from the surface to the wall display.
     pub map: SurfaceHomography,
@@ -106,12 +103,12 @@ impl Follower {
             backbone.subscribe(topic).await.map_err(never)?;
         }
         let annotations = ZmtpConnection::open(&address, pub_port, SocketRole::Pub).await.map_err(never)?;
-        let mut desk = CaptureClient { remote, annotations, news: self.news.clone() };
-        let listens = desk.start_plugin().await.map_err(never)?;
+        let mut client = CaptureClient { remote, annotations, news: self.news.clone() };
+        let listens = client.start_plugin().await.map_err(never)?;
         self.tell(TrackerMessage::Connected(format!("Pupil Capture {version}"))).await;
         let run = [sub_port, pub_port];
         let is_same_run = self.run.replace(run) == Some(run);
-        let ended = self.attend(desk, backbone, &clock, is_same_run, listens).await;
+        let ended = self.attend(client, backbone, &clock, is_same_run, listens).await;
         self.recorder.disconnected();
         Err(Lost { reason: ended, was_there: true })
     }
@@ -119,7 +116,7 @@ impl Follower {
     /// Listens to Capture, compares clocks, and passes requests on, until one of these three fails.
     async fn attend(
         &mut self,
-        mut desk: CaptureClient,
+        mut client: CaptureClient,
         mut backbone: ZmtpConnection,
         clock: &Mutex<ClockOffsetEstimator>,
         is_same_run: bool,
@@ -132,7 +129,7 @@ impl Follower {
         let mut listener = Listener::new(self.news.clone(), recorder, surface, clock, &mut self.lost);
         let reason = tokio::select! {
             reason = listener.listen(&mut backbone) => reason,
-            reason = desk.attend(&mut self.orders, told, &mut self.recorder, clock, actions) => reason,
+            reason = client.attend(&mut self.orders, told, &mut self.recorder, clock, actions) => reason,
         };
         listener.end();
         reason

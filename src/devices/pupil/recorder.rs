@@ -1,5 +1,5 @@
 //! Decides what is requested of Pupil Capture's recorder, and when Capture's recording is annotated; the module
-//! `capture_desk` carries the decisions out.
+//! `capture_client` carries the decisions out.
 //!
 //! Capture answers `OK` to a request for a recording before the recording has begun: an annotation before
 //! `recording.started` is in no recording. A request while Capture is already recording has no effect and no
@@ -25,26 +25,20 @@ const LAST_FRAMES: Duration = Duration::from_millis(500);
 /// A request of the session to Capture.
 #[derive(Debug)]
 pub enum CaptureRequest {
-    /// Start a recording in Capture.
     Record {
-        /// Name of Capture's recording.
         name: String,
         /// Whether a recording that this program began for the trial may still run: the program was cut off, and goes
         /// on with the trial.
         goes_on: bool,
     },
-    /// End Capture's recording.
     StopRecording,
-    /// Annotate Capture's recording with an event.
     Annotate {
         /// Name of the event that is annotated.
         label: String,
-        /// Instant at which the annotated event happened.
         at: Instant,
         /// Labels of the trial's state from now on; a recording that begins later is first annotated with these labels.
         state: Vec<String>,
     },
-    /// Report when all earlier requests to Capture have been carried out.
     Report(oneshot::Sender<()>),
 }
 
@@ -53,20 +47,15 @@ pub enum CaptureRequest {
 pub enum CaptureAction {
     /// Request a recording with this name from Capture.
     Start(String),
-    /// Request the end of Capture's recording.
     Stop,
-    /// Send an annotation to Capture.
     Annotate {
         /// Name of the event that is annotated.
         label: String,
-        /// Instant at which the annotated event happened.
         at: Instant,
         /// Beginning of Capture's recording; an event from before it is annotated at this instant instead.
         not_before: Option<Instant>,
     },
-    /// Report the state of Capture's recording to the session.
     Tell(TrackerRecording),
-    /// Report that all earlier requests have been carried out.
     Report(oneshot::Sender<()>),
 }
 
@@ -75,7 +64,6 @@ pub enum CaptureAction {
 enum RecordingOwner {
     /// No recording of Capture is known.
     Nobody,
-    /// This program started Capture's recording.
     Us,
     /// The lab started Capture's recording, or none could be started.
     Lab,
@@ -86,7 +74,6 @@ enum RecordingOwner {
 enum Hold {
     /// Capture's recording is about to begin, at this instant at the latest.
     Beginning(Instant),
-    /// Capture's recording will be ended at this instant.
     Ending(Instant),
     /// Capture was asked to end its recording, and has not answered yet.
     Stopping,
@@ -176,7 +163,6 @@ impl CaptureRecordingControl {
         (self.hold, self.listens_by) = (None, None);
     }
 
-    /// Handles a request of the session to Capture.
     pub fn order(&mut self, request: CaptureRequest, now: Instant) -> Vec<CaptureAction> {
         self.waiting.push_back(request);
         let mut actions = Vec::new();
@@ -192,7 +178,6 @@ impl CaptureRecordingControl {
         actions
     }
 
-    /// Handles a notification of Capture's recorder.
     pub fn heard(&mut self, news: CaptureNotification, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         let is_beginning = matches!(self.hold, Some(Hold::Beginning(_)));
@@ -240,7 +225,6 @@ impl CaptureRecordingControl {
         hold.into_iter().chain(self.listens_by).min()
     }
 
-    /// Does what is due at this instant, such as ending Capture's recording.
     pub fn pass(&mut self, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         if self.listens_by.is_some_and(|by| by <= now) {
@@ -300,7 +284,6 @@ impl CaptureRecordingControl {
         actions.push(CaptureAction::Stop);
     }
 
-    /// Handles Capture's answer to the request to end its recording.
     pub fn stop_answered(&mut self, now: Instant) -> Vec<CaptureAction> {
         (self.hold, self.owner, self.since) = (None, RecordingOwner::Nobody, None);
         let mut actions = Vec::new();

@@ -32,7 +32,6 @@ const PROBABILITY: [f64; 2] = [-0.03, 1.03];
 pub struct ShownRecording {
     /// Path of the entity that contains all entities of the recording; empty for the top level.
     pub root: String,
-    /// Title of the recording in the viewer.
     pub title: String,
 }
 
@@ -42,7 +41,6 @@ type Property = (String, Vec<SerializedComponentBatch>);
 /// What a Rerun viewer does when it has opened a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ViewerStart {
-    /// The viewer waits at the beginning of the recording.
     Waiting,
     /// The viewer follows the newest data of a running session.
     Following,
@@ -57,7 +55,6 @@ pub(super) struct ViewerLayout {
 }
 
 impl ViewerLayout {
-    /// The viewer's layout for these recordings.
     pub(super) fn from_lanes(lanes: &[ShownRecording], opens: ViewerStart) -> ViewerLayout {
         let mut properties = Vec::new();
         let root: ContainerLike = match lanes {
@@ -111,7 +108,6 @@ impl ViewerLayout {
     }
 }
 
-/// Viewer layout for a single recording.
 fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
     let wrong = StateTimelineView::new("False beliefs")

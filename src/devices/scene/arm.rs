@@ -2,8 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
-use super::colours::{self, SceneColour};
-use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SeriesStyle, slug};
+use super::entity_content::{self, EntityData, EntityUpdate, SceneColour, ScenePoint, SeriesStyle, slug};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::kinematics::{CollisionSolid, LinkShape};
 use tomcom_arm::physics::bodies::HandPose;
@@ -44,12 +43,12 @@ const HAND: &str = "human/hand/shape";
 
 /// The joints of a UR5 from base to tool, each with the colour of its curve.
 const JOINTS: [(&str, SceneColour); 6] = [
-    ("base", colours::ROBOT),
-    ("shoulder", colours::HUMAN),
-    ("elbow", colours::ASSISTANT),
-    ("wrist 1", colours::WIZARD),
-    ("wrist 2", colours::SIGNAL),
-    ("wrist 3", colours::FULL),
+    ("base", entity_content::ROBOT),
+    ("shoulder", entity_content::HUMAN),
+    ("elbow", entity_content::ASSISTANT),
+    ("wrist 1", entity_content::WIZARD),
+    ("wrist 2", entity_content::SIGNAL),
+    ("wrist 3", entity_content::FULL),
 ];
 
 /// Arm, table, buttons and hand as the viewer shows them.
@@ -61,12 +60,10 @@ pub struct RobotArmScene {
     /// Session time and joint angles of the last update.
     until: SessionTime,
     joints: JointAngles,
-    /// Whether the arm's tip shows a contact force at present.
     feels: bool,
 }
 
 impl RobotArmScene {
-    /// Creates the scene of the arm with the arm's pose in this session.
     pub fn new(session: &Session) -> RobotArmScene {
         let arm = SerialArm::ur5();
         let motion = JointMotion::new(&session.kitchen, &arm);
@@ -83,7 +80,7 @@ impl RobotArmScene {
             rows.push(EntityUpdate::new(format!("robot/buttons/{name}"), buttons(kitchen, alone)));
         }
         for (index, link) in self.arm.links.iter().enumerate() {
-            let colour = if index % 2 == 0 { colours::JOINT } else { colours::STEEL };
+            let colour = if index % 2 == 0 { entity_content::JOINT } else { entity_content::STEEL };
             rows.push(EntityUpdate::new(entity(&link.name), EntityData::Solids(link.solids.clone(), colour)));
         }
         for (name, colour) in JOINTS {
@@ -92,16 +89,16 @@ impl RobotArmScene {
         }
         if self.motion.is_none() {
             rows.extend(hand_shapes());
-            for (entity, name, colour) in
-                [(FORCE, "force on the arm (N)", colours::ROBOT), (AWAY, "hand away (cm)", colours::HUMAN)]
-            {
+            for (entity, name, colour) in [
+                (FORCE, "force on the arm (N)", entity_content::ROBOT),
+                (AWAY, "hand away (cm)", entity_content::HUMAN),
+            ] {
                 rows.push(EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name: name.to_string(), colour })));
             }
         }
         rows
     }
 
-    /// Entity updates with the poses of the arm and of the hand at the beginning of the session.
     pub fn opening(&self, session: &Session) -> Vec<EntityUpdate> {
         let mut rows = places(&self.arm, &self.joints);
         if self.motion.is_none() {
@@ -190,7 +187,7 @@ impl RobotArmScene {
             at_m: self.arm.tip(&self.joints).translation.vector.into(),
             radius_m: FELT_M,
             words: format!("{:.0} N", moment.force_n),
-            colour: colours::SIGNAL,
+            colour: entity_content::SIGNAL,
         });
         if felt.is_some() || self.feels {
             rows.push(EntityUpdate::new(FELT, EntityData::Points(felt.iter().cloned().collect())));
@@ -209,7 +206,6 @@ impl RobotArmScene {
     }
 }
 
-/// Entity updates with the poses of the arm's links, and the joint angles.
 fn places(arm: &SerialArm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
     let links = links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place)));
@@ -234,7 +230,7 @@ fn hand_shapes() -> Vec<EntityUpdate> {
     let length_m = (to - from).norm() + 2.0 * forearm.radius_m;
     let shape = LinkShape::Cylinder { radius_m: forearm.radius_m, length_m };
     let forearm = CollisionSolid { shape, link_from_solid: Isometry3::from_parts(middle, along) };
-    vec![EntityUpdate::new(HAND, EntityData::Solids(vec![ball, forearm], colours::SKIN))]
+    vec![EntityUpdate::new(HAND, EntityData::Solids(vec![ball, forearm], entity_content::SKIN))]
 }
 
 /// A mark at the position of the participant's hand, labelled with these words.
@@ -242,7 +238,7 @@ fn touched(session: &Session, words: String) -> EntityUpdate {
     let at_m = session.robot.arm.last.map_or([0.0; 3], |(_, moment)| moment.hand_m);
     EntityUpdate::new(
         CONTACT,
-        EntityData::Points(vec![ScenePoint { at_m, radius_m: CONTACT_M, words, colour: colours::ERROR }]),
+        EntityData::Points(vec![ScenePoint { at_m, radius_m: CONTACT_M, words, colour: entity_content::ERROR }]),
     )
 }
 
@@ -250,14 +246,13 @@ fn entity(link: &str) -> String {
     format!("robot/arm/{link}")
 }
 
-/// A mark on the button that an agent presses, labelled with the button's name.
 fn mark(kitchen: &Kitchen, agent: Agent, button: ButtonId) -> ScenePoint {
     let [x, y] = kitchen.button(agent, button).at_m;
     ScenePoint {
         at_m: [x, y, kitchen.table_height_m + BUTTON_M],
         radius_m: MARK_M,
         words: format!("{}: {}", agent.name(), wording::button(kitchen, agent, button)),
-        colour: colours::agent_colour(agent),
+        colour: entity_content::agent_colour(agent),
     }
 }
 
@@ -279,7 +274,7 @@ fn table(kitchen: &Kitchen) -> EntityData {
     let centre = at((high[0] + low[0]) / 2.0, (high[1] + low[1]) / 2.0, kitchen.table_height_m - THICK_M / 2.0);
     EntityData::Solids(
         vec![CollisionSolid { shape: LinkShape::Box { half_m }, link_from_solid: centre }],
-        colours::TABLE,
+        entity_content::TABLE,
     )
 }
 
@@ -294,5 +289,5 @@ fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> EntityData {
     };
     let agent = alone.unwrap_or(Agent::Human);
     let those = of(agent).iter().filter(|button| is_shared(agent, button) == alone.is_none());
-    EntityData::Solids(those.map(solid).collect(), alone.map_or(colours::BUTTON, colours::agent_colour))
+    EntityData::Solids(those.map(solid).collect(), alone.map_or(entity_content::BUTTON, entity_content::agent_colour))
 }

@@ -1,8 +1,7 @@
 //! Text log of events, and the net benefit of signals, for Rerun.
 
 use super::EntityUpdate;
-use super::colours::{self, SceneColour};
-use super::entity_content::{EntityData, MarkShape, SceneLogLevel, SeriesStyle, slug};
+use super::entity_content::{self, EntityData, MarkShape, SceneColour, SceneLogLevel, SeriesStyle, slug};
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
@@ -35,13 +34,14 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
         .iter()
         .map(|(_, signal)| {
             let place = signal.location(kitchen);
-            let colour = place.map_or(colours::QUIET, |place| colours::of_aspect(AspectId::of_location(place)));
+            let colour =
+                place.map_or(entity_content::QUIET, |place| entity_content::of_aspect(AspectId::of_location(place)));
             line(benefit(signal), wording::signal(signal), colour)
         })
         .collect();
     let worth = format!("worth its cost ({}) above this line", assistant.price());
-    rows.push(line(COST_LINE.to_string(), worth, colours::SIGNAL));
-    let marks = SeriesStyle { name: "errors".to_string(), colour: colours::ERROR };
+    rows.push(line(COST_LINE.to_string(), worth, entity_content::SIGNAL));
+    let marks = SeriesStyle { name: "errors".to_string(), colour: entity_content::ERROR };
     rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks, MarkShape::Cross)));
     rows
 }
@@ -66,31 +66,32 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
             match error.filter(|_| agent == Agent::Human) {
                 Some(press) => {
                     let text = format!("{text} ({})", wording::error(&session.kitchen, press));
-                    say(&entity, SceneLogLevel::Error, text, colours::ERROR)
+                    say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
-                None if no_effect.is_none() => say(&entity, SceneLogLevel::Info, text, colours::agent_colour(agent)),
-                None => say(&entity, SceneLogLevel::Warning, text, colours::agent_colour(agent)),
+                None if no_effect.is_none() => {
+                    say(&entity, SceneLogLevel::Info, text, entity_content::agent_colour(agent))
+                }
+                None => say(&entity, SceneLogLevel::Warning, text, entity_content::agent_colour(agent)),
             }
         }
         TimelineEvent::Signal { by: Sender::Wizard, .. } => {
-            say("wizard/signals", SceneLogLevel::Info, text, colours::WIZARD)
+            say("wizard/signals", SceneLogLevel::Info, text, entity_content::WIZARD)
         }
         TimelineEvent::Signal { by: Sender::Assistant, .. } => {
-            say("assistant/signals", SceneLogLevel::Info, text, colours::ASSISTANT)
+            say("assistant/signals", SceneLogLevel::Info, text, entity_content::ASSISTANT)
         }
         TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => {
-            say("wizard/signals", SceneLogLevel::Warning, text, colours::WIZARD)
+            say("wizard/signals", SceneLogLevel::Warning, text, entity_content::WIZARD)
         }
-        TimelineEvent::ArmStopped { .. } => say("robot/events", SceneLogLevel::Error, text, colours::ERROR),
-        TimelineEvent::ArmTouched { .. } => say("robot/events", SceneLogLevel::Warning, text, colours::ROBOT),
-        _ if who == "wizard" || who == "note" => say("wizard/hands", SceneLogLevel::Info, text, colours::WIZARD),
-        _ => say("trial/events", SceneLogLevel::Info, text, colours::QUIET),
+        TimelineEvent::ArmStopped { .. } => say("robot/events", SceneLogLevel::Error, text, entity_content::ERROR),
+        TimelineEvent::ArmTouched { .. } => say("robot/events", SceneLogLevel::Warning, text, entity_content::ROBOT),
+        _ if who == "wizard" || who == "note" => say("wizard/hands", SceneLogLevel::Info, text, entity_content::WIZARD),
+        _ => say("trial/events", SceneLogLevel::Info, text, entity_content::QUIET),
     }
 }
 
-/// A line of the text log for an event of the study protocol.
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
-    say("trial/events", SceneLogLevel::Info, wording::protocol(event), colours::QUIET)
+    say("trial/events", SceneLogLevel::Info, wording::protocol(event), entity_content::QUIET)
 }
 
 /// The judgement of the press in this event, if the press was an error.
@@ -99,7 +100,6 @@ pub fn error<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Optio
     press.filter(|press| press.verdict.error)
 }
 
-/// Entity update that marks an error below the belief curves.
 pub fn mark() -> EntityUpdate {
     EntityUpdate::new(ERROR_MARKS, EntityData::Value(0.0))
 }
@@ -117,23 +117,21 @@ pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
         let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
         let why = reason.map_or_else(String::new, |reason| format!("; {}", reason.words()));
         let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
-        rows.push(say("assistant/advice", SceneLogLevel::Info, text, colours::ASSISTANT));
+        rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::ASSISTANT));
     }
     if let Some(proposal) = &advice.proposal {
         let text = format!("assistant proposes: {}", wording::proposal(&proposal.presses));
-        rows.push(say("assistant/advice", SceneLogLevel::Info, text, colours::ASSISTANT));
+        rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::ASSISTANT));
     }
     rows
 }
 
-/// A line of the text log for the opening of an offer to the wizard.
 pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
     let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
     let text = format!("offer to the wizard: {}{unseen}", wording::offered(&offer.what));
-    say("assistant/offers", SceneLogLevel::Info, text, colours::ASSISTANT)
+    say("assistant/offers", SceneLogLevel::Info, text, entity_content::ASSISTANT)
 }
 
-/// A line of the text log for the closing of an offer to the wizard.
 pub fn offer_closed(reason: OfferCloseReason) -> EntityUpdate {
-    say("assistant/offers", SceneLogLevel::Info, format!("offer closes: {}", reason.words()), colours::ASSISTANT)
+    say("assistant/offers", SceneLogLevel::Info, format!("offer closes: {}", reason.words()), entity_content::ASSISTANT)
 }

@@ -5,17 +5,15 @@
 //! viewer.
 
 mod arm;
-mod belief_entities;
-mod colours;
+mod entities;
 pub mod entity_content;
 mod happenings;
-mod place_entities;
-mod probe_entities;
+
+pub use entity_content::{EntityData, EntityUpdate};
 
 use arm::RobotArmScene;
-use belief_entities::BeliefScene;
-pub use entity_content::{EntityData, EntityUpdate};
-use probe_entities::ProbeScene;
+use entities::{BeliefScene, ProbeScene};
+
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::measures::JudgedPress;
@@ -28,20 +26,16 @@ pub const VERSION: u32 = 6;
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneUpdate {
-    /// Session time of the updates.
     pub time: SessionTime,
-    /// Time on the trial's clock, which starts with the trial and stops in pauses, as on the console.
     pub trial: SessionTime,
     /// Sequence number of the newest event at the time of the updates.
     pub step: u64,
-    /// The entities that change, with their new content.
     pub rows: Vec<EntityUpdate>,
 }
 
 /// What the scene shows beside the session itself: judged presses and the estimate of the participant's belief.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInputs<'a> {
-    /// Every press of the human so far, with its judgement.
     pub judged: &'a [JudgedPress],
     /// The belief estimate after all events so far; `None` while further events have the same time.
     pub belief: Option<&'a DirichletBelief>,
@@ -56,7 +50,6 @@ pub struct SessionScene {
     probes: ProbeScene,
     /// Sequence number of the first event that the scene has not shown yet.
     next: u64,
-    /// Number of timeline entries that the scene has shown.
     told: usize,
 }
 
@@ -76,18 +69,17 @@ impl SessionScene {
     /// Entities that do not change during the session.
     pub fn fixed(&self) -> Vec<EntityUpdate> {
         let kitchen = &self.session.kitchen;
-        let mut rows = place_entities::fixed(kitchen);
+        let mut rows = entities::fixed_places(kitchen);
         rows.extend(self.arm.fixed(kitchen));
-        rows.extend(belief_entities::fixed(kitchen));
+        rows.extend(entities::fixed_beliefs(kitchen));
         rows.extend(happenings::fixed(&self.session));
         rows
     }
 
-    /// Entities at the beginning of the session.
     pub fn opening(&mut self) -> SceneUpdate {
         let (kitchen, state) = (self.session.kitchen.clone(), self.session.state);
-        let mut rows: Vec<EntityUpdate> = place_entities::contents(&kitchen, None, state).collect();
-        rows.extend(place_entities::shown_signal(&self.session));
+        let mut rows: Vec<EntityUpdate> = entities::contents(&kitchen, None, state).collect();
+        rows.extend(entities::shown_signal(&self.session));
         rows.extend(self.arm.opening(&self.session));
         let time = self.session.time;
         SceneUpdate { time, trial: self.session.trial_clock(time), step: self.step(), rows }
@@ -136,14 +128,13 @@ impl SessionScene {
     ) -> Vec<EntityUpdate> {
         let session = &self.session;
         let changed = change.states().into_iter();
-        let mut rows: Vec<EntityUpdate> = changed
-            .flat_map(|(before, after)| place_entities::contents(&session.kitchen, Some(before), after))
-            .collect();
+        let mut rows: Vec<EntityUpdate> =
+            changed.flat_map(|(before, after)| entities::contents(&session.kitchen, Some(before), after)).collect();
         match &stamped.event {
-            Event::Gaze(sample) => rows.push(place_entities::gaze(session, *sample)),
-            Event::SignalShown { .. } | Event::SignalEnded { .. } => rows.extend(place_entities::shown_signal(session)),
+            Event::Gaze(sample) => rows.push(entities::gaze(session, *sample)),
+            Event::SignalShown { .. } | Event::SignalEnded { .. } => rows.extend(entities::shown_signal(session)),
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => {
-                rows.extend(place_entities::shown_signal(session));
+                rows.extend(entities::shown_signal(session));
             }
             Event::Advised(advice) => rows.extend(happenings::advice(&session.kitchen, advice)),
             Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),

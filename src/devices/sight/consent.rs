@@ -34,7 +34,6 @@ pub fn consent_sight(session: &Session, text: &str) -> DisplayContent {
 pub struct ConsentHold {
     /// Time since which the button is held.
     since: Option<SessionTime>,
-    /// Whether the page says that the participant consented.
     is_told: bool,
 }
 

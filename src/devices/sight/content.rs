@@ -2,11 +2,10 @@
 
 use serde::Serialize;
 
-use super::display_place::{SceneElement, spot};
-use super::displayed_item::{DisplayedQuestionnaireItem, question};
-use super::probe_page::{DisplayedProbe, probe};
-use super::shown_clock::TrialClockState;
+use super::displayed_item::{DisplayedQuestionnaireItem, SceneElement, question, spot};
+use super::probe_page::{DisplayedProbe, probe, probe_left};
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
@@ -19,9 +18,7 @@ use tomcom_session::{Session, TimelineEvent, TrialPhase, proposals};
 /// Everything that changes on the participant's display; each update is complete.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayContent {
-    /// Stage of the session, which decides which page the display shows.
     pub stage: DisplayStage,
-    /// Whether the trial is for practice.
     pub practice: bool,
     /// What each location shows, in the order of [`super::DisplayScene::locations`]; empty during a freeze probe.
     pub contents: Vec<ShownContent>,
@@ -36,15 +33,11 @@ pub struct DisplayContent {
     pub intention: Option<SceneElement>,
     /// What the idle robot waits for, if the display shows the robot.
     pub robot_waits: Option<RobotWait>,
-    /// The signal that the display shows, if any.
     pub signal: Option<DisplayedSignal>,
     /// Number of the newest event that is marked by a flash.
     pub cue: Option<u64>,
-    /// The questionnaire item that the participant is asked, if any.
     pub question: Option<DisplayedQuestionnaireItem>,
-    /// The present step of the tutorial, if any.
     pub tutorial: Option<DisplayedTutorial>,
-    /// The open freeze probe, if any.
     pub probe: Option<DisplayedProbe>,
     /// Target for the eyes while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
@@ -57,27 +50,17 @@ pub struct DisplayContent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayStage {
-    /// A greeting before a trial or before the first step of the protocol.
     Welcome,
-    /// Instruction: the experimenter instructs the participant.
     Instruction,
-    /// The participant goes through a tutorial.
     Tutorial,
-    /// The tutorial is over, and the participant is asked to tell the experimenter.
     TutorialOver,
-    /// The kitchen is shown before the trial starts.
     Ready,
-    /// The trial is running.
     Running,
-    /// The trial is paused.
     Paused,
     /// A freeze probe is open: the trial stands still, and the participant is asked what they believe.
     Probe,
-    /// The trial is over.
     Over,
-    /// The participant is asked an item of a questionnaire.
     Questionnaire,
-    /// All items are answered, and the participant confirms the answers.
     Answered,
     /// The participant is thanked, in the debriefing and after the session's end.
     Thanks,
@@ -88,9 +71,7 @@ pub enum DisplayStage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RobotWait {
-    /// The robot waits for a press of the human.
     Human,
-    /// The robot waits for an order.
     Order,
 }
 
@@ -98,9 +79,7 @@ pub enum RobotWait {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShownContent {
-    /// The location is empty.
     Empty,
-    /// A single item, by the item's name.
     Item(String),
     /// A stack of items, by the items' names; a stack that is a dish of the menu is shown as that dish.
     Stack(Vec<String>),
@@ -113,11 +92,8 @@ pub enum ShownContent {
 /// A press and its effect, as the participant's display shows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DisplayedPress {
-    /// Number of presses that the agent has made so far.
     pub number: u32,
-    /// Location or storage of the pressed button.
     pub at: SceneElement,
-    /// Whether the press changed the kitchen.
     pub effective: bool,
     /// Why the human's press had no effect, if the session shows reasons.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -137,13 +113,10 @@ pub struct DisplayedNoEffectReason {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedSignal {
-    /// A signal that shows the recipe of the dish that an order asks for.
     Recipe {
         /// The order's location, by its index in the scene.
         order: usize,
-        /// Name of the ordered dish.
         dish: String,
-        /// Ingredients of the dish.
         items: Vec<String>,
     },
     /// A signal that highlights a location, given by its index in the scene.
@@ -287,7 +260,6 @@ fn practised_press(session: &Session) -> Option<DisplayedPress> {
     Some(DisplayedPress { number: press.number, at, effective: press.is_right, why })
 }
 
-/// The signal that a step of the tutorial explains.
 fn explained(kitchen: &Kitchen, state: State, step: &TutorialStep) -> Option<DisplayedSignal> {
     if step.kind != TutorialStepKind::Signal {
         return None;
@@ -323,4 +295,24 @@ fn told(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<DisplayedSig
             Some(DisplayedSignal::Recipe { order: location.index(), dish, items })
         }
     }
+}
+
+/// Whether the trial's clock on the display goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrialClockState {
+    Goes,
+    /// The trial's clock stands still: before the trial, in a pause, and at the end.
+    Stands,
+}
+
+/// The time left that the page shows at `now`: the time that an open probe still has, or else the time that the trial
+/// still has, if the display shows the trial's clock.
+pub fn time_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
+    let of_trial = || {
+        let limit = SessionTime::from_secs_f64(session.spec.trial.seconds);
+        let passed = session.trial_clock(now);
+        session.spec.display.clock.then(|| SessionTime(limit.0.saturating_sub(passed.0)))
+    };
+    probe_left(session, now).or_else(of_trial)
 }

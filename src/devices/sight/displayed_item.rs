@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::page_language::DisplayWords;
+use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
 use tomcom_session::Session;
 use tomcom_session::plan::{AnswerFormat, ItemOption};
 use tomcom_session::questionnaire::AnswerValue;
@@ -11,7 +12,6 @@ use tomcom_session::wall_display::AnswerDevice;
 /// A questionnaire item as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedQuestionnaireItem {
-    /// Heading above the questionnaire's items.
     pub title: String,
     /// Name of the item; `None` when all items are answered and the participant only has to confirm the answers.
     pub item: Option<String>,
@@ -19,13 +19,10 @@ pub struct DisplayedQuestionnaireItem {
     pub text: String,
     /// Number of the item, counted from 1.
     pub number: usize,
-    /// Number of items of the questionnaire.
     pub of: usize,
     /// Kind of answer that the item takes; `None` when all items are answered.
     pub form: Option<DisplayedAnswerForm>,
-    /// The participant's earlier answer to this item.
     pub answer: Option<AnswerValue>,
-    /// Name of the previous item, to which the participant can go back.
     pub before: Option<String>,
     /// When all items are answered: each item with its answer, if it got one.
     pub given: Vec<DisplayedAnswer>,
@@ -35,9 +32,7 @@ pub struct DisplayedQuestionnaireItem {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum DisplayedAnswerForm {
-    /// A point on a rating scale.
     Scale {
-        /// Number of points of the scale.
         points: u8,
         /// Meaning of the scale's first point.
         low: String,
@@ -48,7 +43,6 @@ pub enum DisplayedAnswerForm {
     Choice {
         /// Options from which to choose, in their order.
         options: Vec<ItemOption>,
-        /// Whether several options can be chosen.
         several: bool,
     },
     /// A whole number that the participant enters.
@@ -84,7 +78,6 @@ pub enum DisplayedAnswerForm {
 /// A questionnaire item with the participant's answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedAnswer {
-    /// Statement of the answered item.
     pub text: String,
     /// The answer in words; `None` if the participant left the item out.
     pub answer: Option<String>,
@@ -137,4 +130,35 @@ pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> 
         given: given.collect(),
         before: before.map(|item| item.id.clone()),
     })
+}
+
+/// A location or a storage on the participant's display, by its index in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SceneElement {
+    /// A location, by its index in the scene.
+    Location(usize),
+    /// A storage, by its index in the scene.
+    Storage(usize),
+}
+
+/// The location or storage where a press of an agent happens.
+pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> SceneElement {
+    let hand = kitchen.hands[agent.index()];
+    let location = match action {
+        ButtonAction::Take(item) => {
+            let is_it =
+                |storage: &tomcom_core::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
+            // Every button that takes an item belongs to a storage (`src/core/kitchen/compile/buttons.rs`).
+            match kitchen.storages.iter().position(is_it) {
+                Some(storage) => return SceneElement::Storage(storage),
+                None => hand,
+            }
+        }
+        ButtonAction::Use(location) => location,
+        ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
+        ButtonAction::Trash => hand,
+        ButtonAction::Serve(order) => order,
+    };
+    SceneElement::Location(location.index())
 }

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::display_place::{SceneElement, spot};
+use super::displayed_item::{SceneElement, spot};
 use super::page_language::DisplayWords;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
@@ -17,26 +17,20 @@ const MOST_CARDS: usize = 16;
 /// last question. The page contains nothing about the truth, the drawing of the question, or earlier answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedProbe {
-    /// Number of the probe in its trial, which the page sends back with the answer.
     pub probe: u32,
     /// Number of the question within the probe, from 1; 0 before the first question.
     pub question: u32,
-    /// Number of questions in the probe.
     pub of: usize,
-    /// Text of the freeze probe question.
     pub text: String,
-    /// Picture of the thing that the question is about.
     pub about: Option<ProbePicture>,
     /// Choices of the question, in the order of the log; empty if no question is shown.
     pub choices: Vec<ProbeChoice>,
     /// Lists of items from which the participant composes a stack, with at most one item of each list; empty if the
     /// answer is one of the choices.
     pub parts: Vec<Vec<String>>,
-    /// Whether the participant is asked how confident they are in the answer.
     pub confidence: bool,
     /// Longest duration of the freeze probe, in seconds.
     pub limit_s: f64,
-    /// Whether all questions are done and the count-down to the trial runs.
     pub closed: bool,
 }
 
@@ -45,7 +39,6 @@ pub struct DisplayedProbe {
 pub struct ProbeChoice {
     /// Number of the choice within the question, from 1.
     pub number: usize,
-    /// Text of the choice.
     pub words: String,
     /// Picture beside the text of this answer choice; `None` for a choice without a picture.
     pub shows: Option<ProbePicture>,
@@ -55,28 +48,19 @@ pub struct ProbeChoice {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbePicture {
-    /// Picture of an empty location.
     Empty,
-    /// Picture of a single item, by the item's name.
     Item(String),
-    /// Picture of a stack of items, by the items' names.
     Stack(Vec<String>),
-    /// Picture of a dish, by the dish's name.
     Dish(String),
-    /// A recipe card with the ingredients of a dish.
     Recipe(Vec<String>),
-    /// Picture of an order, by its index among the orders.
     Order(usize),
-    /// Picture of a location, by its index in the scene.
     Location(usize),
-    /// Picture of a storage, by its index in the scene.
     Storage(usize),
 }
 
 /// Text of a freeze probe question and of its choices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeWording {
-    /// Text of the question.
     pub question: String,
     /// Texts of the question's choices, in the order of the choices.
     pub choices: Vec<String>,
@@ -227,7 +211,6 @@ fn recipe(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Optio
     (joined(words, &names), Some(ProbePicture::Recipe(names)))
 }
 
-/// Text and picture of a press of the robot.
 fn press(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option<ProbePicture>) {
     let Some(button) = kitchen.button_named(Agent::Robot, name) else { return (words.of_name(name), None) };
     let action = kitchen.button(Agent::Robot, button).action;

@@ -7,12 +7,17 @@
 //! covered the same share of its way as the arm's tip has covered of the way to the button, so that the hand slows down
 //! and stops with the arm.
 
-#[cfg(feature = "physics")]
-use super::arm_tip::ArmTip;
+use serde::Serialize;
+
 use super::content::button_place;
-use super::robot_pose::RobotHandPose;
+#[cfg(feature = "physics")]
+use tomcom_arm::kinematics::SerialArm;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
+#[cfg(feature = "physics")]
+use tomcom_core::robot::ArmPhase;
+#[cfg(feature = "physics")]
+use tomcom_session::settings::ArmKind;
 use tomcom_session::wall_display::RobotDepiction;
 use tomcom_session::{Session, TrialPhase};
 
@@ -144,4 +149,44 @@ impl RobotHand {
 
 fn eased(share: f64) -> f64 {
     share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share)
+}
+
+/// Kinematics of the session's physical arm, from which the tip's position follows.
+#[cfg(feature = "physics")]
+#[derive(Clone, Debug)]
+struct ArmTip(SerialArm);
+
+#[cfg(feature = "physics")]
+impl ArmTip {
+    /// The kinematics of a session's arm; `None` if the session has no physical arm.
+    pub fn of_session(session: &Session) -> Option<ArmTip> {
+        (session.spec.robot.arm == ArmKind::Physics).then(|| ArmTip(SerialArm::ur5()))
+    }
+
+    /// Position of the arm's tip at the last recorded pose, in metres in the frame of the arm's base, and whether the
+    /// tip is down on a button; `None` before the first pose.
+    pub fn at(&self, session: &Session) -> Option<([f64; 2], bool)> {
+        let (_, sample) = session.robot.arm.last.as_ref()?;
+        let tip = self.0.tip(&sample.joints).translation.vector;
+        Some(([tip.x, tip.y], sample.phase == ArmPhase::Presses))
+    }
+}
+
+/// Pose of the robot's hand on the participant's display.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RobotHandPose {
+    /// Horizontal position of the hand, as a fraction of the display's width.
+    pub x: f64,
+    /// Vertical position of the hand, as a fraction of the display's height, downwards.
+    pub y: f64,
+    /// How far the hand is lowered: 0 above the display, 1 at a press.
+    pub down: f64,
+}
+
+impl RobotHandPose {
+    /// The pose rounded to thousandths, which nobody can see, so that a resting hand causes no messages.
+    pub(super) fn rounded(self) -> RobotHandPose {
+        let to_thousandth = |value: f64| (1000.0 * value).round() / 1000.0;
+        RobotHandPose { x: to_thousandth(self.x), y: to_thousandth(self.y), down: to_thousandth(self.down) }
+    }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::display_place::{SceneElement, spot};
+use super::displayed_item::{SceneElement, spot};
 use super::page_language::DisplayWords;
 use tomcom_core::gaze::tags::DisplayTags;
 use tomcom_core::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
@@ -20,7 +20,6 @@ type Rect = [f64; 4];
 /// The constant part of the participant's display, which the page builds once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayScene {
-    /// Title that the page shows for the kitchen.
     pub title: String,
     /// Language code for the browser, such as "en".
     pub language: String,
@@ -28,40 +27,30 @@ pub struct DisplayScene {
     pub display_m: [f64; 2],
     /// Locations on the display, in the order of [`super::DisplayContent::contents`].
     pub locations: Vec<DisplayLocation>,
-    /// The storages with their areas and pictures.
     pub storages: Vec<DisplayStorage>,
-    /// Buttons of the human, as the display shows them.
     pub buttons: Vec<DisplayButton>,
     /// AprilTags in the corners of the display; empty if the session wants no tags or there is no room for them.
     pub tags: Vec<TagPicture>,
-    /// Appearance of items, by their names.
     pub items: BTreeMap<String, LabelledAppearance>,
     /// Appearance of dishes, by their names; their recipes are not included.
     pub dishes: BTreeMap<String, LabelledAppearance>,
-    /// The page's own texts in the display's language.
     pub words: BTreeMap<String, String>,
-    /// Names of the kitchen's things in the display's language.
     pub names: DisplayedNames,
-    /// Whether the page shows the keys of the buttons.
     pub keys: bool,
     /// How the display shows the robot: "none", "hand" or "arm".
     pub arm: &'static str,
-    /// Whether the display marks new events by a flash, for recordings with a camera.
     pub flash: bool,
     /// Whether the page has room for the time that the trial still has.
     pub clock: bool,
-    /// Whether the page has room for the number of served orders.
     pub served: bool,
     /// Whether the page makes a sound at a press without effect and at a signal.
     pub sound: bool,
-    /// Whether the mouse pointer stands for the participant's gaze.
     pub pointer: bool,
 }
 
 /// Picture and area of an AprilTag.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagPicture {
-    /// Area of the tag with its white border.
     pub area: Rect,
     /// Rows of the tag's cells from the top, "#" for black cells.
     pub rows: Vec<String>,
@@ -70,13 +59,10 @@ pub struct TagPicture {
 /// A location on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayLocation {
-    /// The location's name in the layout file.
     pub name: String,
-    /// Name of the location in the display's language.
     pub label: String,
     /// Kind of the location: "order", "human_hand", "robot_hand" or "place".
     pub kind: &'static str,
-    /// Area of the location on the display.
     pub area: Rect,
     /// Appearance of the location, if the layout file sets one.
     pub look: Option<Appearance>,
@@ -89,26 +75,18 @@ pub struct DisplayStorage {
     pub agent: Agent,
     /// Item that the storage holds, by its name in [`DisplayScene::items`].
     pub item: String,
-    /// Name of the storage in the display's language.
     pub label: String,
-    /// Area of the storage on the display.
     pub area: Rect,
 }
 
 /// A button of the human, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayButton {
-    /// The button's name in logs.
     pub name: String,
-    /// Name of the button in the display's language.
     pub label: String,
-    /// Key of the button on the keyboard.
     pub key: Option<char>,
-    /// Number of the gamepad button that presses this button.
     pub gamepad: Option<u8>,
-    /// Colour of the button's cap on the table.
     pub colour: Option<ButtonColour>,
-    /// Name of the button's area on the table.
     pub area: Option<String>,
     /// What a press of the button does, in a word: "take", "use", "process", "trash" or "serve".
     pub does: &'static str,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::display_place::{SceneElement, spot};
+use super::displayed_item::{SceneElement, spot};
 use tomcom_core::kitchen::{Agent, DishId, Kitchen};
 use tomcom_session::Session;
 use tomcom_session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
@@ -11,9 +11,7 @@ use tomcom_session::tutorial::TutorialState;
 /// A step of the tutorial, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedTutorial {
-    /// Identifier of the tutorial's step, as in the tutorial file.
     pub step: String,
-    /// Kind of the tutorial's step.
     pub kind: TutorialStepKind,
     /// Heading of the step's page.
     pub title: String,
@@ -21,11 +19,9 @@ pub struct DisplayedTutorial {
     pub text: String,
     /// Number of the tutorial's step, from 1.
     pub number: usize,
-    /// Number of steps in the tutorial.
     pub of: usize,
     /// Whether the step of the tutorial is completed, so that the participant can go on.
     pub done: bool,
-    /// Things that the page marks with a frame.
     pub frames: Vec<TutorialFrameTarget>,
     /// The button that the participant has to press now.
     pub hint: Option<RequestedTutorialButton>,
@@ -50,18 +46,15 @@ pub struct DisplayedTutorial {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialFrameTarget {
-    /// The locations and storages of an agent.
     Area(Agent),
     /// A location or storage of the kitchen.
     Place(SceneElement),
-    /// A button of the human, by its name.
     Button(String),
 }
 
 /// The button that the tutorial asks the participant to press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RequestedTutorialButton {
-    /// Name of the button.
     pub button: String,
     /// Time without the right press after which the page marks the button, in seconds.
     pub after_s: f64,
@@ -70,7 +63,6 @@ pub struct RequestedTutorialButton {
 /// The recipe card of a dish in the tutorial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecipeCard {
-    /// Name of the dish.
     pub dish: String,
     /// Ingredients of the dish.
     pub items: Vec<String>,
@@ -88,11 +80,9 @@ pub struct DisplayedTutorialQuestion {
     pub explanation: Option<String>,
     /// Number of characters of the explanation, for which the page keeps room before it knows the explanation.
     pub explanation_length: usize,
-    /// Number of the right answer, once the participant has given it.
     pub right: Option<u8>,
 }
 
-/// Makes the recipe card of a dish for the tutorial.
 pub(super) fn card(kitchen: &Kitchen, dish: DishId) -> RecipeCard {
     let dish = kitchen.dish(dish);
     let items = kitchen.content(dish.stack()).items.iter();

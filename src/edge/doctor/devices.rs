@@ -18,7 +18,6 @@ use tomcom_session::tracker::TrackerSpec;
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;
 
-/// Checks whether the participant's page can be served.
 pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     let address = SocketAddr::new(spec.display.listen, spec.display.port);
     let is_used = spec.participant.kind == ParticipantKind::Display;
@@ -31,7 +30,6 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     }
 }
 
-/// Checks the session's gaze source.
 pub(super) fn gaze(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     match spec.participant.gaze {
         GazeSource::Pupil => vec![eye_tracker(&spec.tracker, true)],
@@ -53,7 +51,6 @@ fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -
     }
 }
 
-/// Checks whether the eye tracker's program Pupil Capture responds.
 fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     let (address, port) = (&tracker.address, tracker.port);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -72,7 +69,6 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     }
 }
 
-/// Checks whether the port of the JSON gaze input is free.
 fn lines(spec: &ParticipantSpec) -> PreflightCheck {
     let address = SocketAddr::new(spec.gaze_listen, spec.gaze_port);
     match TcpListener::bind(address).and_then(|_| UdpSocket::bind(address)) {
@@ -89,7 +85,6 @@ fn lines(spec: &ParticipantSpec) -> PreflightCheck {
     }
 }
 
-/// Checks whether a library of the Lab Streaming Layer can be loaded.
 pub(super) fn lsl(spec: &SessionSpec) -> PreflightCheck {
     match lsl::load(spec.lsl.as_ref()) {
         Ok(library) => {
@@ -165,7 +160,6 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
     )
 }
 
-/// Checks whether the session's gaze file can be replayed.
 fn file(tracker: &TrackerSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     let path = tracker.file.as_deref().unwrap_or_default();
     let failed = |found: String, remedy| vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
@@ -179,7 +173,6 @@ fn file(tracker: &TrackerSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     }
 }
 
-/// The remedy that a file error names for the user.
 fn told(error: &FileError) -> String {
     match error {
         FileError::Unreadable { remedy, .. }

@@ -14,15 +14,12 @@ use tomcom_session::log::{LOG_NAME, RecordingLock, RecordingWriteError, SETTINGS
 /// Why no data of a participant were deleted.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ParticipantDeletionError {
-    /// A recording of the participant is being written, or its folder cannot be written to.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     Recording(RecordingWriteError),
-    /// A file with possible data of the participant cannot be read.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     File(Box<FileError>),
-    /// A file with data of the participant cannot be deleted or rewritten.
     #[error("nothing was deleted: {}: cannot be deleted or written again: {reason}", path.display())]
     #[diagnostic(help("the right to write to the file's folder, on a disk with free space"))]
     Unwritable {
@@ -34,10 +31,7 @@ pub enum ParticipantDeletionError {
     /// Files have changed since the participant's data were listed.
     #[error("nothing was deleted: files in {} have changed since they were listed", folder.display())]
     #[diagnostic(help("run the command again, when nothing else writes there"))]
-    Changed {
-        /// Folder with files that have changed.
-        folder: PathBuf,
-    },
+    Changed { folder: PathBuf },
 }
 
 /// Deletes the participant's data that were found. Files that could not be deleted in the end are listed in the result.

@@ -48,13 +48,9 @@ pub struct RetainedFile {
 pub struct ParticipantData {
     /// Code of the participant whose data are to be deleted.
     pub code: String,
-    /// Folder that was searched for data of the participant.
     pub root: PathBuf,
-    /// The system's folder for temporary files, which was searched as well.
     pub temporary: PathBuf,
-    /// Folders of the participant's recordings, including later parts of continued recordings.
     pub recordings: Vec<PathBuf>,
-    /// Files in the folders of the participant's recordings that will be deleted.
     pub recording_files: Vec<PathBuf>,
     /// Other files about the participant that will be deleted as a whole.
     pub files: Vec<PathBuf>,
@@ -63,7 +59,6 @@ pub struct ParticipantData {
     pub tables: Vec<(PathBuf, Vec<Range<u64>>)>,
     /// Training records of wizards that name recordings of the participant, each with its text without them.
     pub trainings: Vec<(PathBuf, String)>,
-    /// Files that are or may be about the participant and that will be kept, with the reason.
     pub left: Vec<RetainedFile>,
     /// Folders that are removed if they are empty after the deletion; a folder comes after the one that contains it.
     folders: Vec<PathBuf>,
@@ -128,7 +123,6 @@ enum EntryKind {
 struct WalkedFolder {
     path: PathBuf,
     files: Vec<PathBuf>,
-    /// Whether the folder is, or is inside, the folder of one of the participant's recordings.
     is_own: bool,
 }
 
@@ -358,7 +352,6 @@ fn is_of_recording(path: &Path) -> bool {
     is_codes_file(name) || is_damaged_log(name) || NAMES.contains(&name) || seal == RRD_NAME
 }
 
-/// Whether this file is the lock of a recording.
 fn is_lock(path: &Path) -> bool {
     let name = file_name(path);
     name == LOCK_NAME || name.starts_with(CODES_LOCK)

@@ -172,7 +172,6 @@ impl ForgetSubject {
         }
     }
 
-    /// Whether a stream with this identity shows a recording of the participant.
     pub(super) fn is_streamed(&self, identity: &str) -> bool {
         let identity = format!(" {identity} ");
         let has = |words: &str| identity.contains(&format!(" {words} "));

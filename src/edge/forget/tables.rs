@@ -23,8 +23,10 @@ pub(super) enum TableMatch {
     /// This program did not write the table.
     Foreign,
     /// This program wrote the table: byte ranges of the participant's rows, and whether there are other rows.
-    Own { cut: Vec<Range<u64>>, has_others: bool },
-    /// The table may name the participant but is kept as it is, for this reason.
+    Own {
+        cut: Vec<Range<u64>>,
+        has_others: bool,
+    },
     Unclear(String),
 }
 

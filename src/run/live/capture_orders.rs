@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use tokio::sync::mpsc::Sender;
 
-use crate::run::desk::GazeTracker;
+use crate::run::operator_station::GazeTracker;
 use tomcom_devices::pupil::CaptureRequest;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::{Event, Session, TrialPhase};
@@ -25,7 +25,6 @@ pub(super) struct CaptureRequestSender {
     /// Label of the trial's phase that was sent to Pupil Capture last.
     phase: Option<&'static str>,
     signal: Option<String>,
-    /// Number of the freeze probe that is open.
     probe: Option<u32>,
 }
 
@@ -47,7 +46,6 @@ impl CaptureRequestSender {
         capture
     }
 
-    /// Reports an event of the trial, which happened at the instant `at`, to Pupil Capture.
     pub fn tell(&mut self, event: &Event, at: Instant) {
         if self.orders.is_none() {
             return;

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use crate::console::display_status::ParticipantDisplayHealth;
-use crate::console::notice::NoticeLevel;
-use crate::run::desk::{OperatorDesk, PageInput};
+use crate::console::console_model::NoticeLevel;
+use crate::console::preflight::ParticipantDisplayHealth;
+use crate::run::operator_station::{OperatorStation, PageInput};
 use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
@@ -35,14 +35,14 @@ pub(super) struct ParticipantDisplay {
 }
 
 impl ParticipantDisplay {
-    /// The participant's display of the operator's desk, if there is one, with the display's state for the wizard.
-    pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
+    /// The participant's display of the operator's station, if there is one, with the display's state for the wizard.
+    pub fn at(station: &OperatorStation) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         let health = |display: &DisplayServer| ParticipantDisplayHealth {
             url: display.url(),
             code: display.code().map(str::to_string),
             ..ParticipantDisplayHealth::default()
         };
-        let display = desk.wall.display();
+        let display = station.display.server();
         (
             display.map(|display| ParticipantDisplay { screen: display.screen(), shown: None, hand: None, told: None }),
             display.map(health),

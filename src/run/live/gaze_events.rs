@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::run::desk::GazeTracker;
+use crate::run::operator_station::GazeTracker;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::device_clock::StampFault;
@@ -134,7 +134,6 @@ impl GazeInput {
         session.is_running().then(|| session_time_in_file(session, *at_s))
     }
 
-    /// The next sample of replayed gaze, as an event.
     pub fn next_of_file(&mut self, session: &Session) -> Option<Event> {
         let (at_s, sample) = self.file.as_ref()?.samples.get(self.next).copied()?;
         self.next += 1;
@@ -152,7 +151,6 @@ fn session_time(taken: TrackerTime, now: SessionTime) -> SessionTime {
     taken.at.map_or(now, |at| ago(now, at))
 }
 
-/// Session time of the earlier instant `at`.
 fn ago(now: SessionTime, at: Instant) -> SessionTime {
     now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
 }

@@ -2,10 +2,10 @@
 
 use super::display::PageEvent;
 use super::live_session::Live;
-use crate::console::notice::NoticeLevel;
+use crate::console::console_model::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
-use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
+use crate::run::operator_station::PageInput;
 use tomcom_core::gaze::GazeSample;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::history::wording;
@@ -52,8 +52,7 @@ impl Live {
         }
     }
 
-    /// Handles an input of the participant's page.
-    pub(super) fn hear(&mut self, input: PageInput) {
+    pub(super) fn take_page_input(&mut self, input: PageInput) {
         if self.engine.session().phase == TrialPhase::Closed {
             return;
         }
@@ -66,7 +65,6 @@ impl Live {
         }
     }
 
-    /// Handles a message of the eye tracker in the live session.
     pub(super) fn take_gaze(&mut self, news: TrackerMessage) {
         if let TrackerMessage::Rejected { from, why, senders } = &news {
             let told = format!("gaze from {from} is rejected: {}", why.words());

@@ -7,22 +7,22 @@ use super::display::ParticipantDisplay;
 use super::gaze_events::GazeInput;
 use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
-use crate::console::compared::SenderComparisonView;
+use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
-use crate::console::notice::NoticeLevel;
+use crate::console::console_model::SenderComparisonView;
 use crate::console::{ConsoleModel, KeyBindings};
 use crate::edge::clock::SessionClock;
 use crate::edge::doctor::free_bytes;
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
-use crate::run::advisor_desk::{AdvisorThreadHandle, next_advice};
-use crate::run::desk::{GazeTracker, OperatorDesk};
+use crate::run::advisor_thread::{AdvisorThreadHandle, next_advice};
+use crate::run::comparison_thread::ComparisonThreadHandle;
 use crate::run::error::{LiveError, TerminalError};
 use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialProgress};
+use crate::run::operator_station::{GazeTracker, OperatorStation};
 use crate::run::options::SessionStart;
-use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
-use crate::run::watch_desk::ComparisonThreadHandle;
+use crate::run::resume::{PreparedSession, RecordingPlace};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::engine::SessionEngine;
@@ -51,7 +51,6 @@ pub(super) struct Live {
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
     pub(super) model: ConsoleModel,
-    /// Header of the session's recording.
     header: LogHeader,
     pub(super) log: LogWriter,
     /// The session's stream to Rerun viewers, if it has one.
@@ -69,26 +68,28 @@ pub(super) struct Live {
     pub(super) undrawn: Option<u64>,
     /// Last recorded content of the wizard's screen.
     pub(super) seen: Option<WizardScreenContent>,
-    /// Number of judged presses that were passed to the console.
     pub(super) judged: usize,
     /// Whether the console's screen has to be redrawn.
     pub(super) dirty: bool,
 }
 
-/// Runs and records a session at the desk until the wizard leaves it.
+/// Runs and records a session at the station until the wizard leaves it.
 ///
 /// # Errors
 /// The session cannot be recorded, or the terminal was closed.
-pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
-    let mut live = Live::open(begun, desk)?;
-    live.greet(&desk.tracker);
-    let left = event_loop::run(&mut live, desk).await;
+pub(in crate::run) async fn run(
+    begun: PreparedSession,
+    station: &mut OperatorStation,
+) -> Result<LiveOutcome, LiveError> {
+    let mut live = Live::open(begun, station)?;
+    live.record_tracker_state(&station.tracker);
+    let left = event_loop::run(&mut live, station).await;
     // If the wizard did not leave by a key, the program was told to end, or the console failed. The recording is closed
     // and the robot stops in any case.
     let leaving = left.as_ref().ok().copied().flatten().unwrap_or(LeavingReason::Quit);
-    desk.tracker.keep(live.engine.session().calibrated.clone());
+    station.tracker.keep(live.engine.session().calibrated.clone());
     let end = live.close(leaving);
-    desk.tracker.settle().await;
+    station.tracker.finish_requests().await;
     left.and(end)
 }
 
@@ -124,7 +125,7 @@ impl ConsoleShell for Live {
             LoopEvent::Terminal(message) => return Ok(self.take_message(message)),
             LoopEvent::EngineDue => self.fire(),
             LoopEvent::TargetDue => self.show_target(),
-            LoopEvent::Page(input) => self.hear(input),
+            LoopEvent::Page(input) => self.take_page_input(input),
             LoopEvent::Advice(advice) => self.input(Event::Advised(*advice)),
             LoopEvent::PointerTick => self.sample_pointer(),
             LoopEvent::FileTick => self.flush(),
@@ -150,7 +151,7 @@ impl ConsoleShell for Live {
 }
 
 impl Live {
-    fn open(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<Live, LiveError> {
+    fn open(begun: PreparedSession, station: &mut OperatorStation) -> Result<Live, LiveError> {
         let PreparedSession { engine, mut header, first, consent, time, compare, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = KeyBindings::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
@@ -163,7 +164,7 @@ impl Live {
             RecordingPlace::After(folder, lock) => (LogWriter::create_part(&folder, &header)?, Some(lock)),
         };
         let size = TerminalScreen::size().map_err(TerminalError)?;
-        let mut model = ConsoleModel::new(keys, theme(&spec.console, desk.screen.ground), size);
+        let mut model = ConsoleModel::new(keys, theme(&spec.console, station.screen.ground), size);
         model.recording = RecordingStatus::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| SenderComparisonView::default());
         let comparison = compare.as_ref().map(|request| {
@@ -171,10 +172,10 @@ impl Live {
             SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request)
         });
         let comparison = comparison.map(|follower| ComparisonThreadHandle::start(follower.without_causes()));
-        let (display, health) = ParticipantDisplay::at(desk);
+        let (display, health) = ParticipantDisplay::at(station);
         model.display = health;
-        model.gaze_pairing = desk.tracker.pairing();
-        model.recorded_gaze = desk.tracker.file().map(|file| file.summary.clone());
+        model.gaze_pairing = station.tracker.pairing();
+        model.recorded_gaze = station.tracker.file().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| AdvisorThreadHandle::start(engine.advisor()));
         let mut live = Live {
@@ -199,13 +200,13 @@ impl Live {
         };
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
         live.begin_viewing(is_new, first.last().map_or(0, |last| last.seq + 1));
-        live.begin_lsl(desk);
+        live.begin_lsl(station);
         live.record(&first);
         live.tick();
         if let Some(request) = compare {
             live.input(Event::Unblinded { concepts: request.concepts(&spec) });
         }
-        live.carry_calibration(desk.tracker.calibrated());
+        live.carry_calibration(station.tracker.calibrated());
         live.build_display();
         live.begin_protocol(consent);
         Ok(live)
@@ -221,8 +222,8 @@ impl Live {
     }
 
     /// Opens the session's LSL streams, if it has any; if opening fails, the session continues without LSL streams.
-    fn begin_lsl(&mut self, desk: &mut OperatorDesk) {
-        match LslStreaming::open(desk, self.engine.session(), &self.name(), &self.clock) {
+    fn begin_lsl(&mut self, station: &mut OperatorStation) {
+        match LslStreaming::open(station, self.engine.session(), &self.name(), &self.clock) {
             Ok(lsl) => self.lsl = lsl,
             Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without LSL: {reason}")),
         }
@@ -230,7 +231,7 @@ impl Live {
     }
 
     /// Records the tracker's state at the beginning of a recording.
-    fn greet(&mut self, tracker: &GazeTracker) {
+    fn record_tracker_state(&mut self, tracker: &GazeTracker) {
         self.gaze = GazeInput::at(tracker, self.engine.session());
         tracker.known().for_each(|news| self.take_gaze(news));
         self.capture = CaptureRequestSender::begin(tracker, self.name(), self.engine.session(), Instant::now());
@@ -248,7 +249,6 @@ impl Live {
         }
     }
 
-    /// Name of the session's recording.
     fn name(&self) -> String {
         self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned()
     }

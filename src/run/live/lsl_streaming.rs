@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
-use crate::run::desk::OperatorDesk;
+use crate::run::operator_station::OperatorStation;
 use tomcom_core::base::text::count;
 use tomcom_devices::lsl::{LslCounts, LslSample, LslStreams};
 use tomcom_devices::lsl::{LslSampleConverter, StreamSample};
@@ -27,12 +27,12 @@ impl LslStreaming {
     /// # Errors
     /// The LSL streams cannot be opened, for this reason; the session can continue without them.
     pub fn open(
-        desk: &mut OperatorDesk,
+        station: &mut OperatorStation,
         session: &Session,
         recording: &str,
         clock: &SessionClock,
     ) -> Result<Option<LslStreaming>, String> {
-        let streams = desk.lsl.streams(session).map_err(|error| error.to_string())?;
+        let streams = station.lsl.streams(session).map_err(|error| error.to_string())?;
         let open = |streams: Rc<LslStreams>| {
             let (maker, told) = (LslSampleConverter::new(session, recording), streams.counts());
             let streaming = LslStreaming { maker, streams, told };
@@ -62,7 +62,6 @@ impl LslStreaming {
         self.streams.tell(samples.into_iter().map(timed).collect());
     }
 
-    /// State of the LSL streams, for the console.
     pub fn status(&self) -> LslStatus {
         let LslCounts { sent, dropped, refused } = self.streams.counts();
         let names = self.streams.descriptions.iter().map(|stream| stream.outlet.name().to_string()).collect();

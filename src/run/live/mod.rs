@@ -17,7 +17,6 @@ mod live_session;
 mod lsl_streaming;
 mod recording;
 mod showing;
-mod target_timing;
 #[cfg(feature = "rerun")]
 mod viewing;
 #[cfg(not(feature = "rerun"))]

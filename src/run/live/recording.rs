@@ -3,8 +3,8 @@
 use super::live_session::Live;
 use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
+use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
-use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
 use tomcom_session::history::wording;

@@ -1,9 +1,12 @@
 //! Output of a live session: the wizard's screen with its record in the log, and the participant's display.
 
 use super::live_session::Live;
-use crate::console::screen::screen;
-use crate::console::{click_question, hands};
-use crate::run::watch_desk::ComparisonThreadHandle;
+use crate::console::panels::screen;
+use crate::console::{interventions, mouse};
+use crate::run::comparison_thread::ComparisonThreadHandle;
+use tomcom_core::base::time::SessionTime;
+use tomcom_session::gaze_check::{AcceptedGazeCheck, GazeCheckEvent, RunningGazeCheck};
+use tomcom_session::settings::GazeSource;
 use tomcom_session::wall_display::DisplayEvent;
 use tomcom_session::{Event, TrialPhase};
 
@@ -17,8 +20,8 @@ impl Live {
     /// Prepares the next frame and records what the wizard will see in it.
     pub(super) fn prepare_frame(&mut self) {
         self.tick();
-        click_question::expire(&mut self.model, self.engine.session());
-        hands::expire(&mut self.model, self.engine.session());
+        mouse::expire(&mut self.model, self.engine.session());
+        interventions::expire(&mut self.model, self.engine.session());
         if let (Some(newest), Some(compared)) =
             (self.comparison.as_ref().and_then(ComparisonThreadHandle::newest), &mut self.model.comparison)
         {
@@ -44,7 +47,6 @@ impl Live {
         }
     }
 
-    /// Builds the participant's display for this recording.
     pub(super) fn build_display(&mut self) {
         if let Some(display) = &mut self.display {
             display.build(self.engine.session());
@@ -58,7 +60,6 @@ impl Live {
         self.show_participant();
     }
 
-    /// Updates what the participant's display shows.
     pub(super) fn show_participant(&mut self) {
         if let Some(display) = &mut self.display {
             display.show(self.engine.session(), self.clock.now());
@@ -76,6 +77,33 @@ impl Live {
     pub(super) fn examine_display(&mut self) {
         if let (Some(display), Some(health)) = (&self.display, &mut self.model.display) {
             display.examine(health);
+        }
+    }
+}
+
+impl Live {
+    /// Uses the gaze accuracy check that was accepted in the previous recording again, since tracker and participant
+    /// are the same (not for simulated participants, whose eyes are drawn anew).
+    pub(super) fn carry_calibration(&mut self, before: Option<&AcceptedGazeCheck>) {
+        let session = self.engine.session();
+        let is_wanted = !matches!(session.spec.participant.gaze, GazeSource::None | GazeSource::Simulated);
+        if let Some(AcceptedGazeCheck { found, corrected, .. }) =
+            before.filter(|_| is_wanted && session.calibrated.is_none())
+        {
+            let event = GazeCheckEvent::Carried { found: found.clone(), corrected: *corrected };
+            self.input(Event::Calibration(event));
+        }
+    }
+
+    /// Session time at which the next target is due; `None` while no gaze accuracy check is running.
+    pub(super) fn target_due(&self) -> Option<SessionTime> {
+        self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next).map(|(time, _)| time)
+    }
+
+    /// Shows the next target of the gaze accuracy check, or hides the last target.
+    pub(super) fn show_target(&mut self) {
+        if let Some((_, event)) = self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
+            self.input(Event::Calibration(event));
         }
     }
 }

@@ -78,7 +78,6 @@ impl StreamedSession {
         self.stream.give_up_file()
     }
 
-    /// State of the stream to Rerun, for the console.
     pub fn status(&self) -> RerunStreamStatus {
         let fares = self.stream.fares();
         let address = self.stream.server.map(|address| address.to_string());

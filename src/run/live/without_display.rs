@@ -1,8 +1,8 @@
 //! Stand-in for the participant's display in a live session, in a build without the feature `display`.
 
-use crate::console::display_status::ParticipantDisplayHealth;
-use crate::console::notice::NoticeLevel;
-use crate::run::desk::{OperatorDesk, PageInput};
+use crate::console::console_model::NoticeLevel;
+use crate::console::preflight::ParticipantDisplayHealth;
+use crate::run::operator_station::{OperatorStation, PageInput};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::{Event, Session};
 
@@ -11,7 +11,7 @@ pub(super) enum ParticipantDisplay {}
 
 impl ParticipantDisplay {
     /// Returns no display, since this build lacks the participant's display.
-    pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
+    pub fn at(_: &OperatorStation) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         (None, None)
     }
 

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use super::Review;
-use crate::console::notice::NoticeLevel;
-use crate::console::playback::{ReplayAction, SPEEDS};
+use crate::console::console_model::NoticeLevel;
+use crate::console::console_model::{ReplayAction, SPEEDS};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
 use tomcom_session::replay::ReplayLandmark;

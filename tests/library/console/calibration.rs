@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::gaze_advice::AccuracyCheckAction;
+use tomcom::console::gaze_check::AccuracyCheckAction;
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
 use tomcom_session::event::Event;
 use tomcom_session::gaze_check::GazeCheckEvent;

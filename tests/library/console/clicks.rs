@@ -1,10 +1,10 @@
 //! Clicks: on signals and the offer, on hints, rows, beliefs and the timeline. A click does what a key does.
 
 use crossterm::event::KeyCode;
-use tomcom::console::click_question;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::picker::{Picker, PickerQuestion};
-use tomcom::console::playback::{Playback, ReplayAction};
+use tomcom::console::console_model::{Playback, ReplayAction};
+use tomcom::console::lists::{Picker, PickerKind};
+use tomcom::console::mouse;
 use tomcom::console::view::click_targets;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_core::base::time::SessionTime;
@@ -83,7 +83,7 @@ fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
             let advice = OfferedAdvice { what, for_seq: 17, worth: None, reason: None, visible };
             stage.at(23.5, Event::OfferOpened(advice));
             ahead(&mut stage);
-            click_question::expire(&mut stage.model, &stage.session);
+            mouse::expire(&mut stage.model, &stage.session);
             assert_eq!(!stage.asks_to_send(), closes, "visible {visible}, {shows:?}, clock ahead by {ahead_s} s");
             assert_eq!(stage.notice().contains("another signal is on offer"), closes, "{}", stage.notice());
         }
@@ -96,7 +96,7 @@ fn the_question_of_a_click_waits_five_seconds() {
     stage.wait(0.0);
     stage.click("[a]");
     stage.wait(4.9);
-    click_question::expire(&mut stage.model, &stage.session);
+    mouse::expire(&mut stage.model, &stage.session);
     assert!(stage.asks_to_send());
     stage.wait(0.2);
     assert_eq!(stage.key(KeyCode::Enter), None, "an enter so late is not meant for it");
@@ -146,7 +146,7 @@ fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
     stage.wait(0.2);
     assert_eq!(stage.click("pause"), None, "a double click pauses once");
     stage.click("switch");
-    assert!(matches!(input(stage.click(" cooking pot")), Some(Event::Press { .. })), "{}", stage.screen((120, 40)));
+    assert!(matches!(input(stage.click("[g] cooking pot")), Some(Event::Press { .. })), "{}", stage.screen((120, 40)));
     stage.wait(1.0);
     stage.click("switch");
     stage.click("1-5");
@@ -161,7 +161,7 @@ fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
 #[test]
 fn a_row_is_gone_to_by_a_click_and_taken_by_the_next() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerQuestion::Abort)));
+    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Abort)));
     assert_eq!(stage.click("technical failure"), None);
     assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(picker)) if picker.cursor.at == 1));
     let aborted = Event::TrialAborted { reason: "technical failure".to_string() };

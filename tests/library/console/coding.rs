@@ -1,9 +1,9 @@
 //! The rater's view: codebook and errors at three sizes, keys and clicks, undo, and two raters who settle.
 
 use crossterm::event::KeyCode;
+use tomcom::console::coding::{CodingRaters, RaterSession};
+use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::key_action::{KeyAction, RaterAction};
-use tomcom::console::playback::{Playback, ReplayAction};
-use tomcom::console::rater_session::{CodingRaters, RaterSession};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crossterm::event::KeyCode;
-use tomcom::console::compared::SenderComparisonView;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::panel::Panel;
-use tomcom::console::screen::screen;
+use tomcom::console::console_model::SenderComparisonView;
+use tomcom::console::panels::Panel;
+use tomcom::console::panels::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;

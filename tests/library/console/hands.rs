@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::picker::{Picker, PickerQuestion};
+use tomcom::console::lists::{Picker, PickerKind};
 use tomcom_core::communication::Sender;
 use tomcom_session::event::{Event, TrialEndReason};
 use tomcom_session::settings::ParticipantKind;
@@ -48,7 +48,7 @@ fn the_kitchen_is_corrected_from_two_lists() {
     stage.wait(1.0);
     stage.key(KeyCode::Enter);
     stage.key(KeyCode::Esc);
-    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(PickerQuestion::Place))));
+    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(PickerKind::Place))));
     stage.key(KeyCode::Esc);
     assert_eq!(stage.model.dialog, None);
 }

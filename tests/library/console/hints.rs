@@ -2,8 +2,8 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::picker::{Picker, PickerQuestion};
-use tomcom::console::playback::Playback;
+use tomcom::console::console_model::Playback;
+use tomcom::console::lists::{Picker, PickerKind};
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom_session::event::{Event, SignalEndReason};
 use tomcom_session::settings::ParticipantKind;
@@ -56,7 +56,7 @@ fn a_typed_note_is_hinted_in_a_pause_where_it_is_possible() {
 fn over_a_dialog_only_what_passes_it_is_shown() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.size = (200, 60);
-    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerQuestion::Place)));
+    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Place)));
     assert_eq!(hints(&stage), "  space STOP ROBOT  ^c quit");
     stage.model.dialog = Some(Dialog::EndTrial);
     assert_eq!(hints(&stage), "  space STOP ROBOT");

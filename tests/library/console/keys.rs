@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::console::console_model::Dialog;
 use tomcom::console::key_action::{KeyErrorSource, KeyLayer};
-use tomcom::console::picker::{Picker, PickerQuestion};
+use tomcom::console::lists::{Picker, PickerKind};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, Kitchen, LocationKind};
@@ -128,7 +128,7 @@ fn a_signal_is_not_sent_again_while_it_is_shown() {
 #[test]
 fn the_space_bar_stops_the_robot_in_every_view() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    let list = Some(Dialog::Pick(Picker::new(PickerQuestion::Place)));
+    let list = Some(Dialog::Pick(Picker::new(PickerKind::Place)));
     for dialog in [None, Some(Dialog::Help(Vec::new())), Some(Dialog::Quit), Some(Dialog::EndTrial), list] {
         for layer in [KeyLayer::Wizard, KeyLayer::Participant] {
             stage.model.dialog = dialog.clone();
@@ -145,7 +145,7 @@ fn the_space_bar_stops_the_robot_in_every_view() {
 #[test]
 fn whoever_wants_to_quit_is_asked_in_whatever_list_they_are() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    for dialog in [Dialog::Help(Vec::new()), Dialog::Preflight, Dialog::Pick(Picker::new(PickerQuestion::Place))] {
+    for dialog in [Dialog::Help(Vec::new()), Dialog::Preflight, Dialog::Pick(Picker::new(PickerKind::Place))] {
         stage.model.dialog = Some(dialog);
         stage.wait(1.0);
         assert_eq!(stage.control('c'), None);

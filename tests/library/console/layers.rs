@@ -10,7 +10,7 @@ use super::{SIZES, Stage};
 use crate::check_snapshot;
 
 fn seen(stage: &Stage) -> WizardScreenContent {
-    tomcom::console::screen::screen(&stage.session, &stage.model)
+    tomcom::console::panels::screen(&stage.session, &stage.model)
 }
 
 #[test]

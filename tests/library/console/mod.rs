@@ -26,7 +26,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::console::console_model::RecordingStatus;
-use tomcom::console::screen::screen;
+use tomcom::console::panels::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
 use tomcom_core::base::time::SessionTime;

@@ -2,8 +2,8 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::{LslStatus, RerunStreamStatus};
-use tomcom::console::gaze_pairing::GazePairing;
 use tomcom::console::key_action::KeyLayer;
+use tomcom::console::preflight::GazePairing;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_core::base::time::SessionTime;

@@ -2,10 +2,10 @@
 
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::console::console_model::Dialog;
+use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::key_action::{KeyAction, KeyLayer, ManualAction};
-use tomcom::console::list_cursor::ListCursor;
-use tomcom::console::palette::actions;
-use tomcom::console::playback::{Playback, ReplayAction};
+use tomcom::console::lists::ListCursor;
+use tomcom::console::lists::actions;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
 use tomcom_session::event::{Event, SignalEndReason};
 use tomcom_session::settings::ParticipantKind;
@@ -41,12 +41,12 @@ fn first(stage: &Stage) -> KeyAction {
 #[test]
 fn the_first_action_of_the_palette_is_likely_and_never_stops_or_ends_anything() {
     let ends = |action: &KeyAction| {
-        let abort = KeyAction::Hand(ManualAction::Abort);
+        let abort = KeyAction::Manual(ManualAction::Abort);
         [KeyAction::StopRobot, KeyAction::EndTrial, KeyAction::Quit, abort].contains(action)
     };
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.control('k');
-    assert_eq!(first(&stage), KeyAction::Hand(ManualAction::Preflight), "before the trial");
+    assert_eq!(first(&stage), KeyAction::Manual(ManualAction::Preflight), "before the trial");
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.control('k');
     assert_eq!(first(&stage), KeyAction::Help, "without an offer");
@@ -60,14 +60,14 @@ fn the_first_action_of_the_palette_is_likely_and_never_stops_or_ends_anything() 
     for typed in ["", "stoprobot"] {
         stage.wait(1.0);
         stage.control('k');
-        assert_eq!(first(&stage), KeyAction::Hand(ManualAction::HoldRobot));
+        assert_eq!(first(&stage), KeyAction::Manual(ManualAction::HoldRobot));
         type_in(&mut stage, typed);
         stage.wait(0.1);
         stage.key(KeyCode::Enter);
     }
     stage.wait(1.0);
     stage.control('k');
-    assert_eq!(first(&stage), KeyAction::Hand(ManualAction::HoldRobot));
+    assert_eq!(first(&stage), KeyAction::Manual(ManualAction::HoldRobot));
     stage.model.dialog = None;
     // It is not, where it would do nothing.
     stage.at(30.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });

@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::playback::Playback;
+use tomcom::console::console_model::Playback;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_session::event::Event;
 use tomcom_session::settings::ParticipantKind;

@@ -1,7 +1,7 @@
 //! The mouse: the place on the display under the pointer, clicks and the wheel.
 
-use tomcom::console::arrange::KitchenMap;
-use tomcom::console::map_items::KitchenMapElement;
+use tomcom::console::kitchen_map::KitchenMap;
+use tomcom::console::kitchen_map::KitchenMapElement;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleMessage, update};
 use tomcom_session::settings::{ParticipantKind, WizardVisibility};

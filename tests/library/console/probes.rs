@@ -1,7 +1,7 @@
 //! Freeze probes at the console: the sheet at three sizes, its keys, and what it does not show.
 
 use crossterm::event::KeyCode;
-use tomcom::console::display_status::ParticipantDisplayHealth;
+use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom::console::probe_keys::status;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};

@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use tomcom::console::recording_picker::{RecordingPicker, RecordingReply};
+use tomcom::console::lists::{RecordingPicker, RecordingReply};
 use tomcom::console::view::recordings_page::draw_recordings;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 

@@ -2,9 +2,9 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
-use tomcom::console::notice::NoticeLevel;
-use tomcom::console::playback::Playback;
+use tomcom::console::console_model::NoticeLevel;
+use tomcom::console::console_model::Playback;
+use tomcom::console::console_model::{TrainingFeedback, TrainingPanel};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 

@@ -3,7 +3,7 @@
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::display_status::ParticipantDisplayHealth;
+use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded::RecordedGazeSummary;

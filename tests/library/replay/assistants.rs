@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rand::RngExt;
+use tomcom::run::comparison_thread::ComparisonThreadHandle;
 use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom::run::watch_desk::ComparisonThreadHandle;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use tomcom::console::arrange::KitchenMap;
-use tomcom::console::map_items::KitchenMapElement;
+use tomcom::console::kitchen_map::KitchenMap;
+use tomcom::console::kitchen_map::KitchenMapElement;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId};

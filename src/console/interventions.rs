@@ -1,0 +1,196 @@
+//! The experimenter's manual interventions at the console: keys that correct the recorded state of the kitchen and
+//! steer the robot, and the lists that they open.
+
+use crossterm::event::KeyCode;
+
+use super::actions::{refuse, send};
+use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
+use super::key_action::ManualAction;
+use super::lists::{Picker, PickerAnswer, PickerKind, PickerOutcome};
+use super::text_input::TextInput;
+use tomcom_core::communication::Sender;
+use tomcom_core::kitchen::Agent;
+use tomcom_session::history::wording;
+use tomcom_session::probes::ProbeEvent;
+use tomcom_session::{Event, Session, TrialPhase};
+
+pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAction) -> Option<ConsoleCommand> {
+    let by = Sender::Wizard;
+    match action {
+        ManualAction::Correct if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
+            refuse(model, "the kitchen can be corrected only during a trial")
+        }
+        ManualAction::Correct => ask(model, PickerKind::Place),
+        ManualAction::HoldRobot if session.robot.held => {
+            let words = match session.robot.stopped {
+                true => "the robot is no longer held, but still stopped",
+                false => "the robot is released and continues",
+            };
+            send(model, session, Event::RobotReleased { by }, NoticeLevel::Done, words)
+        }
+        ManualAction::HoldRobot => {
+            send(model, session, Event::RobotHeld { by }, NoticeLevel::Done, "the robot is held")
+        }
+        ManualAction::SkipPress => {
+            send(model, session, Event::RobotSkipped { by }, NoticeLevel::Done, "the robot's press is skipped")
+        }
+        ManualAction::DriveRobot if !session.is_running() => {
+            refuse(model, "the robot's press can be chosen only while the trial runs")
+        }
+        ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: resume it first"),
+        ManualAction::DriveRobot => ask(model, PickerKind::Button),
+        ManualAction::Abort if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
+            refuse(model, "no trial runs that could be aborted")
+        }
+        ManualAction::Abort => ask(model, PickerKind::Abort),
+        ManualAction::Preflight if session.phase != TrialPhase::Ready => {
+            refuse(model, "preflight checks are shown only before the trial starts")
+        }
+        ManualAction::Preflight => {
+            model.dialog = Some(Dialog::Preflight);
+            None
+        }
+        ManualAction::NoteInWords if !types_notes(session.phase) => {
+            refuse(model, "notes can be typed only while no trial runs, since the space bar stops the robot")
+        }
+        ManualAction::NoteInWords => {
+            model.dialog = Some(Dialog::Note(TextInput::default()));
+            None
+        }
+        ManualAction::Calibrate => super::gaze_check::begin(model, session),
+        ManualAction::Redo => redo(model, session),
+        ManualAction::Exclude if session.excluded.is_some() => {
+            send(model, session, Event::TrialIncluded, NoticeLevel::Done, "the trial is no longer excluded")
+        }
+        ManualAction::Exclude if matches!(session.phase, TrialPhase::Ready | TrialPhase::Closed) => {
+            refuse(model, "no trial has begun that could be excluded")
+        }
+        ManualAction::Exclude => ask(model, PickerKind::Exclude),
+        ManualAction::AskProbe => {
+            let words = "a freeze probe is requested";
+            send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
+        }
+        ManualAction::SkipProbe => match skippable(session) {
+            Some(probe) => ask(model, PickerKind::SkipProbe(probe)),
+            None => refuse(model, "no freeze probe is open"),
+        },
+    }
+}
+
+/// Whether a note can be typed now: the space bar types a space in it, so no trial may run.
+pub(super) fn types_notes(phase: TrialPhase) -> bool {
+    !matches!(phase, TrialPhase::Running | TrialPhase::Closed)
+}
+
+/// Number of the freeze probe whose remaining questions can be skipped now.
+pub(super) fn skippable(session: &Session) -> Option<u32> {
+    let open = session.probes.open.as_ref()?;
+    (open.closed.is_none() && session.phase == TrialPhase::Paused).then_some(open.number)
+}
+
+/// Closes the list of reasons for skipping a freeze probe once that probe is over, so that the reason does not skip the
+/// next probe.
+pub fn expire(model: &mut ConsoleModel, session: &Session) {
+    if let Some(Dialog::Pick(Picker { kind: PickerKind::SkipProbe(probe), .. })) = model.dialog
+        && skippable(session) != Some(probe)
+    {
+        model.dialog = None;
+        model.say(NoticeLevel::Refused, format!("freeze probe {probe} ended before it was skipped"));
+    }
+}
+
+/// Whether the trial may be repeated, since it was aborted or excluded.
+pub(super) fn can_redo(session: &Session) -> bool {
+    matches!(session.phase, TrialPhase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
+}
+
+fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    match session.phase {
+        _ if can_redo(session) => Some(ConsoleCommand::Redo),
+        TrialPhase::Over(_) => refuse(model, "only an aborted or excluded trial can be repeated"),
+        _ => refuse(model, "abort the trial before you repeat it"),
+    }
+}
+
+fn ask(model: &mut ConsoleModel, kind: PickerKind) -> Option<ConsoleCommand> {
+    model.dialog = Some(Dialog::Pick(Picker::new(kind)));
+    None
+}
+
+pub(super) fn write(
+    model: &mut ConsoleModel,
+    session: &Session,
+    mut line: TextInput,
+    code: KeyCode,
+) -> Option<ConsoleCommand> {
+    model.dialog = None;
+    match code {
+        KeyCode::Esc => None,
+        KeyCode::Enter if line.text().is_empty() => None,
+        KeyCode::Enter => {
+            let note = line.text();
+            send(model, session, Event::Marker { note }, NoticeLevel::Done, "the note is saved")
+        }
+        _ => {
+            line.key(code);
+            model.dialog = Some(Dialog::Note(line));
+            None
+        }
+    }
+}
+
+pub(super) fn pick(
+    model: &mut ConsoleModel,
+    session: &Session,
+    mut picker: Picker,
+    code: KeyCode,
+) -> Option<ConsoleCommand> {
+    let answer = match picker.key(session, code) {
+        PickerOutcome::Nothing => {
+            model.dialog = Some(Dialog::Pick(picker));
+            return None;
+        }
+        PickerOutcome::Left => {
+            // Esc in the list of contents goes back to the list of places.
+            let back = matches!(picker.kind, PickerKind::Content(_)).then(|| Picker::new(PickerKind::Place));
+            model.dialog = back.map(Dialog::Pick);
+            return None;
+        }
+        PickerOutcome::This(answer) => answer,
+    };
+    model.dialog = None;
+    model.answered = Some(model.clock);
+    let kitchen = &session.kitchen;
+    match (picker.kind, answer) {
+        (_, PickerAnswer::Place(place)) => ask(model, PickerKind::Content(place)),
+        (PickerKind::Content(place), PickerAnswer::Content(content)) => {
+            let (location, content) = (kitchen.location(place), kitchen.content(content).name.clone());
+            let words = format!("kitchen corrected: {} holds {}", location.label(), kitchen.worded(&content));
+            let event = Event::KitchenCorrected { location: location.name.clone(), content };
+            send(model, session, event, NoticeLevel::Done, &words)
+        }
+        (_, PickerAnswer::Button(button)) => {
+            let words = format!("the robot's next press: {}", wording::button(kitchen, Agent::Robot, button));
+            let button = kitchen.button(Agent::Robot, button).name.clone();
+            send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
+        }
+        (PickerKind::Abort, PickerAnswer::Reason(reason)) => {
+            send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "the trial is aborted")
+        }
+        (PickerKind::SkipProbe(probe), PickerAnswer::Reason(reason)) => {
+            let event = ProbeEvent::Skipped { probe, reason };
+            send(
+                model,
+                session,
+                Event::Probe(event),
+                NoticeLevel::Done,
+                "the other questions of the freeze probe are skipped",
+            )
+        }
+        (_, PickerAnswer::Reason(reason)) => {
+            let words = format!("the trial is excluded: {reason}");
+            send(model, session, Event::TrialExcluded { reason }, NoticeLevel::Done, &words)
+        }
+        (_, PickerAnswer::Content(_)) => None,
+    }
+}

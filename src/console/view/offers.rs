@@ -1,0 +1,408 @@
+//! The line of the offer, and the list of signals ranked by what each would save.
+//!
+//! The offer is the one signal that is worth sending now, with its key, the false belief behind it, and the presses that
+//! it saves. Nothing else on the screen is inverse in the colour of signals. Signals that are not worth their cost are
+//! listed only where the list has the whole screen.
+
+use ratatui::layout::Rect;
+
+use super::belief_panel::QUIET;
+use super::paint::Painter;
+use super::regions::PanelAreas;
+use super::theme::TextRole;
+use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, percent};
+use crate::console::chord::KeyChord;
+use crate::console::console_model::ConsoleModel;
+use crate::console::key_action::{KeyAction, KeyLayer};
+use crate::console::mouse::ClickAction;
+use crate::console::panels::Panel;
+use crate::console::text_columns::{width, wrap};
+use tomcom_core::base::text::count;
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::offer::OfferedCommunication;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
+use tomcom_core::communication::{Sender, Signal, unavailable};
+use tomcom_core::kitchen::{AspectId, LocationId};
+use tomcom_session::admit::may_send;
+use tomcom_session::history::wording;
+use tomcom_session::settings::{Condition, WizardVisibility};
+use tomcom_session::{Session, TimelineEvent, TrialPhase, offers};
+
+/// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
+pub(super) struct ShownOffer<'a> {
+    act: OfferedCommunication,
+    benefit: Option<f64>,
+    reason: Option<&'a SignalReason>,
+}
+
+/// The offer of a signal that is shown to the wizard now, if any.
+pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<ShownOffer<'a>> {
+    if beliefs::visibility(session, model) < WizardVisibility::Recommendation
+        || session.spec.trial.condition == Condition::Assistant
+        || !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused)
+    {
+        return None;
+    }
+    if offers::are_made(session) {
+        let offer = session.offers.open()?;
+        let benefit = offer.advice.worth.map(|worth| worth.benefit);
+        let (act, reason) = (offer.advice.what.clone(), offer.advice.reason.as_ref());
+        return Some(ShownOffer { act, benefit, reason });
+    }
+    let advice = session.advice.as_ref()?;
+    let (act, benefit) = match (&advice.best, &advice.proposal) {
+        (Some(signal), _) => (OfferedCommunication::Signal(signal.clone()), advice.top().map(|option| option.benefit)),
+        (None, Some(proposal)) => (OfferedCommunication::Presses(proposal.presses.clone()), None),
+        (None, None) => return None,
+    };
+    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref() })
+}
+
+impl ShownOffer<'_> {
+    pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
+        match &self.act {
+            OfferedCommunication::Signal(signal) => signal.location(&session.kitchen),
+            OfferedCommunication::Presses(_) => None,
+        }
+    }
+
+    /// Label of the offer with its keys: " enter SHOW RECIPE OF ORDER 1 [q] ".
+    fn label(&self, session: &Session, model: &ConsoleModel) -> String {
+        let words = match &self.act {
+            OfferedCommunication::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
+            OfferedCommunication::Signal(signal) => wording::signal(signal),
+            OfferedCommunication::Presses(_) => return format!(" {} ", wording::offered(&self.act)),
+        };
+        let own = self.place(session).and_then(|place| model.keys.mark(place));
+        let own = own.map_or(String::new(), |key| format!(" [{key}]"));
+        // The enter key is named only where it sends the offer: not in dialogs, replays, pauses, nor where the wizard
+        // may not send.
+        let is_free = model.playback.is_none() && model.dialog.is_none() && session.is_running();
+        let is_free = is_free && may_send(session, Sender::Wizard).is_ok();
+        let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| is_free);
+        let enter = enter.map_or(String::new(), |key| format!("{key}  "));
+        format!(" {enter}{}{own} ", words.to_uppercase())
+    }
+
+    /// What the offered signal saves: "saves ≈ 4 presses".
+    fn saves(&self, brush: &Painter, session: &Session) -> String {
+        let Some(benefit) = self.benefit else { return String::new() };
+        match session.spec.assistant.concept {
+            ConceptName::Tom => format!("belief deviation {benefit:.2}"),
+            _ => {
+                let about = if brush.theme.unicode { "≈" } else { "about" };
+                format!("saves {about} {}", count(benefit.round().max(1.0) as u64, "press", "presses"))
+            }
+        }
+    }
+
+    /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
+    /// and for how long, and the wrong press or the press that is left out.
+    fn because(&self, session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
+        let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
+            return Vec::new();
+        };
+        let aspect = session.kitchen.aspect_named(&reason.aspect);
+        let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect);
+        // Each belief has one value and one certainty on the screen, those of the belief panel.
+        let (believes, p) = match belief {
+            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), f64::from(belief.p)),
+            None => (reason.believes.as_str(), reason.p_believes),
+        };
+        let since = belief.and_then(|belief| belief.since);
+        let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
+        let thinks = if p >= 0.5 { "thinks" } else { "may think" };
+        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{}{age}", percent(p))];
+        said.extend(match (&reason.prevents, &reason.instead) {
+            (Some(button), _) => Some(format!("next error: {}", wording::location(button))),
+            (None, Some(button)) => Some(format!("waits instead of: {}", wording::location(button))),
+            (None, None) => None,
+        });
+        said
+    }
+}
+
+/// Draws the line of the offer, or why there is no offer.
+pub fn draw_offer(
+    brush: &mut Painter,
+    regions: &PanelAreas,
+    session: &Session,
+    model: &ConsoleModel,
+    believed: &[EstimatedBelief],
+) {
+    let area = regions.offer;
+    if area.area() == 0 {
+        return;
+    }
+    // A click on the offer's line right after the offer has closed gets a notice that the offer has closed.
+    let takes = model.layer == KeyLayer::Wizard && model.playback.is_none() && offers::are_made(session);
+    if let Some(chord) = model.keys.chord_for(&KeyAction::Accept).filter(|_| takes) {
+        brush.target(area, ClickAction::Key(chord));
+    }
+    let Some(offer) = shown(session, model) else {
+        let style = brush.style(TextRole::Quiet);
+        let (words, columns) = (why_no_offer(session, model, believed), area.width.saturating_sub(2));
+        // What the best signal would be has a line of its own where there is one.
+        let lines: Vec<String> = match area.height {
+            1 => vec![words.join("; ")],
+            _ => words.iter().flat_map(|words| wrap(words, columns)).collect(),
+        };
+        for (line, y) in lines.iter().zip(area.rows().map(|row| row.y)) {
+            brush.text(area.x + 1, y, area.width - 1, line, style);
+        }
+        return;
+    };
+    let badge = brush.theme.badge(TextRole::Signal);
+    let end = brush.text(area.x, area.y, area.width, &offer.label(session, model), badge);
+    let saves = offer.saves(brush, session);
+    let right = area.right().saturating_sub(1);
+    let strong = brush.style(TextRole::Strong);
+    if end + width(&saves) < right {
+        brush.text_right(right, area.y, width(&saves), &saves, strong);
+    }
+    // The reason stands in a line of its own, or between the label and the saving.
+    let (mut x, y, limit) = match area.height {
+        1 => (end + 1, area.y, right.saturating_sub(width(&saves) + 2)),
+        _ => (area.x + 1, area.y + 1, right),
+    };
+    for (index, words) in offer.because(session, model, believed).iter().enumerate() {
+        let words = if index == 0 { words.clone() } else { format!(" · {words}") };
+        let words = if brush.theme.unicode { words } else { words.replace('·', "-") };
+        let role = if index == 0 { TextRole::FalseBelief } else { TextRole::Text };
+        if index == 0 || x + width(&words) <= limit {
+            let style = brush.style(role);
+            x = brush.text(x, y, limit.saturating_sub(x), &words, style);
+        }
+    }
+}
+
+/// Why no signal is offered to the wizard, in words: the signal on the participant's display; else how many beliefs are
+/// false and, as far as it is known, why none is offered.
+fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
+    let only = |words: &str| vec![words.to_string()];
+    if session.spec.trial.condition == Condition::Assistant {
+        return only("The assistant sends the signals, without the wizard");
+    }
+    if !session.spec.asks_assistant() {
+        return only("The assistant does not advise in this session (shadow = \"off\")");
+    }
+    match session.phase {
+        TrialPhase::Running | TrialPhase::Paused => {}
+        TrialPhase::Ready => return only("The assistant advises while the trial runs"),
+        TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
+    }
+    let wrong = believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False);
+    let wrong: Vec<AspectId> = wrong.map(|belief| belief.aspect).collect();
+    let first = match wrong.len() {
+        0 => QUIET.to_string(),
+        number => count(number as u64, "false belief", "false beliefs"),
+    };
+    if let Some(shown) = &session.shown {
+        return vec![format!("On the display: {}", wording::signal(&shown.signal)), first];
+    }
+    let why = too_costly(session).or_else(|| withheld(session, model, &wrong));
+    [first].into_iter().chain(why).collect()
+}
+
+/// Why no signal about these false beliefs is offered, where the session knows it: one was sent just now, or one was
+/// sent and is not repeated yet.
+fn withheld(session: &Session, model: &ConsoleModel, wrong: &[AspectId]) -> Option<String> {
+    if wrong.is_empty() {
+        return None;
+    }
+    let cool_down_s = session.spec.signals.cool_down_s;
+    if session.signalled_at.is_some_and(|sent| model.now.secs_since(sent) < cool_down_s) {
+        return Some(format!("signals need {cool_down_s} s between them"));
+    }
+    let advice = session.advice.as_ref()?;
+    let places: Vec<LocationId> = wrong.iter().filter_map(|&aspect| beliefs::place(session, aspect)).collect();
+    let is_about = |signal: &Signal| signal.location(&session.kitchen).is_some_and(|place| places.contains(&place));
+    // A recommendation lists every signal that can be sent, except those that were sent and must not be repeated yet.
+    let is_listed = |signal: &Signal| advice.options.iter().any(|option| option.signal == *signal);
+    let sent =
+        session.timeline.iter().rev().filter(|entry| entry.time <= model.now).find_map(|entry| match &entry.what {
+            TimelineEvent::Signal { signal, .. } if is_about(signal) && !is_listed(signal) => Some(signal),
+            _ => None,
+        })?;
+    let can_be_sent = unavailable(&session.kitchen, session.state, sent).is_none();
+    can_be_sent.then(|| format!("{} was sent and is not repeated yet", wording::signal(sent)))
+}
+
+/// That signals are known, but that none saves as much as it costs.
+fn too_costly(session: &Session) -> Option<String> {
+    let is_estimated = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
+    let options = session.advice.iter().flat_map(|advice| &advice.options);
+    let best = options.max_by(|one, other| one.net.total_cmp(&other.net)).filter(|_| is_estimated)?;
+    (best.net <= 0.0 && best.benefit >= NOTHING).then(|| "no signal is worth its cost".to_string())
+}
+
+/// The value that the participant falsely believes about a location, if any.
+pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<String> {
+    let wrong = believed.iter().find(|belief| {
+        belief.standing == BeliefCorrectness::False && beliefs::place(session, belief.aspect) == Some(place)
+    })?;
+    Some(beliefs::value(&session.kitchen, wrong.aspect, wrong.thinks).to_string())
+}
+
+/// Width of a benefit bar in columns; a column stands for half a saved press, or for the concept ToM a twelfth of the
+/// belief deviation.
+const GAUGE: u16 = 12;
+const PRESSES_A_COLUMN: f64 = 0.5;
+/// Signals whose benefit and standard error are both smaller than this (in presses) are not listed, since they would be
+/// shown as 0.0.
+pub(super) const NOTHING: f64 = 0.05;
+/// Columns reserved for the words of a signal ("[a] highlight assembly board"); a benefit bar is drawn only if these
+/// remain.
+const LONGEST_SIGNAL: u16 = 28;
+/// Text that marks the signal on offer in the list of signals.
+const OFFERED: &str = "offered";
+
+pub fn draw_signals(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let area = regions.recommendation;
+    if area.area() == 0 {
+        return;
+    }
+    let inside = brush.panel(area, "Signals by benefit", remark(session));
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let Some(advice) = &session.advice else {
+        return quietly(brush, inside, why_no_list(session));
+    };
+    let (worth_it, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
+        advice.options.iter().partition(|option| option.net > 0.0);
+    // The line with the cost of a signal is always visible; if there is no room, signals above it are left out.
+    let above = inside.height.saturating_sub(1).min(worth_it.len() as u16);
+    for (row, option) in worth_it.into_iter().take(usize::from(above)).enumerate() {
+        option_line(brush, inside, inside.y + row as u16, option, session, model);
+    }
+    let mut y = inside.y + above;
+    cost_line(brush, inside, y, session, advice, model);
+    y += 1;
+    let is_shown = |option: &&SignalOption| option.benefit.abs().max(option.standard_error) >= NOTHING;
+    let is_alone = model.alone == Some(Panel::Recommendation);
+    for option in not_worth_it.into_iter().filter(|option| is_alone && is_shown(option)) {
+        if y >= inside.bottom() {
+            return;
+        }
+        option_line(brush, inside, y, option, session, model);
+        y += 1;
+    }
+}
+
+fn quietly(brush: &mut Painter, area: Rect, text: &str) {
+    let quiet = brush.style(TextRole::Quiet);
+    for (row, line) in wrap(text, area.width).iter().take(usize::from(area.height)).enumerate() {
+        brush.text(area.x, area.y + row as u16, area.width, line, quiet);
+    }
+}
+
+/// Unit of the numbers in the list of signals, as the remark in the panel's title.
+fn remark(session: &Session) -> &'static str {
+    match session.spec.assistant.concept {
+        ConceptName::TomCom => "presses saved",
+        ConceptName::Tom => "deviation of beliefs",
+        ConceptName::Dev => "concept DEV",
+        ConceptName::None => "no communication concept",
+    }
+}
+
+/// Why there is no ranked list of signals, in words.
+fn why_no_list(session: &Session) -> &'static str {
+    match (session.spec.asks_assistant(), session.is_running()) {
+        (false, _) => "No advice in this session (shadow = \"off\"): choose the signals yourself.",
+        (true, true) => "No advice yet: it begins with the first order or press.",
+        (true, false) => "No advice: the assistant advises only while the trial runs.",
+    }
+}
+
+/// The benefit of a signal in the unit of the communication concept: presses, or belief deviation.
+fn worth(option: &SignalOption, session: &Session) -> String {
+    match session.spec.assistant.concept {
+        ConceptName::Tom => format!("{:>4.2} ", option.benefit),
+        // A benefit that rounds to zero is shown as 0.0, never as -0.0.
+        _ => format!("{:>4.1} ", if option.benefit.abs() < NOTHING { 0.0 } else { option.benefit }),
+    }
+}
+
+/// The key of a listed signal, if the wizard may send it.
+fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> Option<KeyChord> {
+    let location = option.signal.location(&session.kitchen);
+    location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
+}
+
+fn option_line(
+    brush: &mut Painter,
+    inside: Rect,
+    y: u16,
+    option: &SignalOption,
+    session: &Session,
+    model: &ConsoleModel,
+) {
+    let offered = session.offers.open().and_then(|offer| offer.signal());
+    let is_offered = offered == Some(&option.signal);
+    let role = if is_offered { TextRole::Strong } else { TextRole::Quiet };
+    let worth = worth(option, session);
+    let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
+    let (chord, words) = (key(option, session, model), wording::signal(&option.signal));
+    let key = chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()));
+    // The words of a signal have priority over its benefit bar.
+    if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
+        x = gauge(brush, x, y, option, session, role);
+    }
+    let parts = [(key.as_str(), TextRole::Signal), (words.as_str(), role)];
+    let end = brush.parts(x, y, inside.right().saturating_sub(x), &parts);
+    if is_offered && end + 2 + OFFERED.len() as u16 <= inside.right() {
+        let style = brush.style(TextRole::Signal);
+        brush.text_right(inside.right(), y, OFFERED.len() as u16, OFFERED, style);
+    }
+    if let Some(chord) = chord.filter(|_| model.playback.is_none()) {
+        brush.key_target(x, y, end, chord);
+    }
+}
+
+/// Draws a signal's benefit as a bar: filled up to one standard error below the benefit, open up to one above it, with
+/// a line at the cost.
+fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &Session, role: TextRole) -> u16 {
+    let signs = brush.theme.signs();
+    let (cost, of_tom) = (session.spec.assistant.price(), session.spec.assistant.concept == ConceptName::Tom);
+    let a_column = if of_tom { 1.0 / f64::from(GAUGE) } else { PRESSES_A_COLUMN };
+    let (full, open, line) = (signs.bar_full, signs.bar_empty, signs.frame[5]);
+    let column = |worth: f64| worth / a_column;
+    let (least, most) = (option.benefit - option.standard_error, option.benefit + option.standard_error);
+    for index in 0..GAUGE {
+        let at = f64::from(index) + 0.5;
+        let (sign, role) = match () {
+            () if column(cost).floor() == f64::from(index) => (line, TextRole::Frame),
+            () if at <= column(least) => (full, role),
+            () if at <= column(most) => (open, role),
+            () => (" ", role),
+        };
+        let style = brush.style(role);
+        brush.text(x + index, y, 1, sign, style);
+    }
+    x + GAUGE + 1
+}
+
+fn cost_line(
+    brush: &mut Painter,
+    inside: Rect,
+    y: u16,
+    session: &Session,
+    advice: &Recommendation,
+    model: &ConsoleModel,
+) {
+    let price = session.spec.assistant.price();
+    let left = match session.spec.assistant.concept {
+        ConceptName::Tom => format!("{price:>4.2} threshold for a signal"),
+        ConceptName::Dev => "DEV proposes presses after an error: see the line of the offer".to_string(),
+        ConceptName::None => String::new(),
+        ConceptName::TomCom => format!("{price:>4.1} cost of a signal"),
+    };
+    let quiet = brush.style(TextRole::Quiet);
+    let end = brush.text(inside.x, y, inside.width, &left, quiet);
+    // A recommendation that the assistant has already sent by itself is marked as sent.
+    let is_sent = session.spec.trial.condition == Condition::Assistant
+        && session.signalled_at.is_some_and(|sent| sent >= advice.for_ns);
+    let age_s = session.age(advice.for_ns, model.now).as_secs_f64();
+    let age = if is_sent { format!("sent, {age_s:.1} s old") } else { format!("{age_s:.1} s old") };
+    brush.text_right(inside.right(), y, inside.right().saturating_sub(end + 1), &age, quiet);
+}

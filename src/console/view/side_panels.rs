@@ -1,0 +1,293 @@
+//! Panels of the robot (ongoing press, progress of the arm, reason for being idle, what it holds), of the participant's
+//! display (the signal, its content and its remaining time), and of a wizard training (task, then feedback).
+
+use super::paint::Painter;
+use super::regions::{PanelAreas, ScreenSize};
+use super::theme::TextRole;
+use crate::console::console_model::{ConsoleModel, NoticeLevel, TrainingFeedback, TrainingPanel};
+use crate::console::key_action::{KeyAction, ManualAction};
+use crate::console::text_columns::{width, wrap};
+use tomcom_core::base::text::count;
+use tomcom_core::communication::Signal;
+use tomcom_core::kitchen::Agent;
+use tomcom_core::robot::ArmSample;
+use tomcom_core::robot::{SLOWS_M, SafetyMode};
+use tomcom_session::history::wording;
+use tomcom_session::settings::ArmKind;
+use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
+
+pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let area = regions.robot;
+    if area.area() == 0 {
+        return;
+    }
+    if regions.screen_size == ScreenSize::Small {
+        brush.parts(area.x, area.y, area.width, &[(" robot    ", TextRole::Quiet)]);
+        let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
+        // Other modes than this one stand in the head line.
+        if mode == SafetyMode::Reduced && !session.robot.stopped {
+            let name = format!(" {}", mode.name());
+            columns = columns.saturating_sub(name.len() as u16);
+            brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
+        }
+        robot_line(brush, area.x + 10, area.y, columns, session, model);
+        return;
+    }
+    let is_arm = session.spec.robot.arm == ArmKind::Physics;
+    let remark = match (session.robot.stopped, session.robot.held, &model.playback) {
+        (true, ..) => String::new(),
+        (false, true, _) => release(model),
+        (false, false, None) => "space stops the robot".to_string(),
+        (false, false, Some(_)) => String::new(),
+    };
+    let mode = session.robot.arm.mode;
+    let name = if is_arm && !mode.is_stopped() { mode.name() } else { "" };
+    let between = if name.is_empty() || remark.is_empty() { "" } else { "  " };
+    let title = if is_arm { "UR5" } else { "Robot" };
+    let parts = [(name, mode_role(mode)), (between, TextRole::Quiet), (&remark, TextRole::Quiet)];
+    // The arm's mode comes before the hint where there is room for one of them.
+    let columns = [title, name, between, &remark].map(width).iter().sum::<u16>();
+    let is_crowded = !name.is_empty() && columns + 6 >= area.width;
+    let inside = brush.panel_with(area, title, if is_crowded { &parts[..1] } else { &parts });
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    robot_line(brush, x, inside.y, columns, session, model);
+    holds(brush, x, inside.y + 1, columns, session);
+    if let Some((_, sample)) = session.robot.arm.last {
+        arm(brush, x, inside.y + 2, columns, session, &sample);
+    }
+}
+
+fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
+    let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
+    let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
+    brush.parts(x, y, columns, &[("holds ", TextRole::Quiet), (held, TextRole::Text)]);
+    let quiet = brush.style(TextRole::Quiet);
+    brush.text_right(x + columns, y, columns / 2, &presses, quiet);
+}
+
+fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, sample: &ArmSample) {
+    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
+    let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(sample.phase) };
+    let phase = format!("{phase:<10} ");
+    let hand = match sample.hand_away_m {
+        away_m if away_m < 0.005 => " hand at arm".to_string(),
+        away_m => format!(" hand {away_m:>4.2} m"),
+    };
+    let force = match sample.force_n {
+        force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
+        _ => String::new(),
+    };
+    let hand_role = if sample.hand_away_m < SLOWS_M { TextRole::Human } else { TextRole::Quiet };
+    let parts = [(phase.as_str(), TextRole::Text), (&hand, hand_role), (&force, TextRole::Text)];
+    brush.parts(x, y, columns, &parts);
+}
+
+/// Draws the stop of the robot with its reason and the key that resumes it.
+fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+    let label = format!(" {} ", session.robot.safety_mode().name());
+    let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
+    let resume = key.map(|key| format!(" {key} resume")).unwrap_or_default();
+    let force = session.robot.arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
+    let badge = brush.theme.badge(TextRole::Alarm);
+    let end = brush.text(x, y, columns, &label, badge);
+    brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
+}
+
+fn mode_role(mode: SafetyMode) -> TextRole {
+    match mode {
+        SafetyMode::Normal => TextRole::Quiet,
+        SafetyMode::Reduced | SafetyMode::Safeguard => TextRole::Strong,
+        _ => TextRole::Alarm,
+    }
+}
+
+fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+    if session.robot.stopped {
+        stopped(brush, x, y, columns, session, model);
+        return;
+    }
+    let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
+    if matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed) {
+        brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
+        return;
+    }
+    let Some((button, since, until)) = session.robot.intention else {
+        let why = match &session.robot.idle {
+            _ if session.robot.held => String::new(),
+            Some((reason, waits_for)) => {
+                let human = &session.kitchen.buttons[Agent::Human.index()];
+                let names: Vec<&str> = waits_for.iter().map(|button| human[button.index()].name.as_str()).collect();
+                wording::idle(*reason, &names, usize::from(columns))
+            }
+            None => "no press planned".to_string(),
+        };
+        brush.parts(x, y, columns, &[(&why, TextRole::Quiet)]);
+        return;
+    };
+    let now = if session.is_running() { model.now } else { session.paused_at };
+    let whole_s = until.secs_since(since).max(1e-3);
+    let left_s = until.secs_since(now);
+    let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
+    let by = if session.robot.driven_to.is_some() {
+        " by wizard"
+    } else if session.robot.initiative {
+        " alone: nobody presses"
+    } else {
+        ""
+    };
+    if session.robot.arm.mode == SafetyMode::Safeguard {
+        // The time that is left is unknown until the hand is gone.
+        let parts = [(label.as_str(), TextRole::Robot), (by, TextRole::Signal), (": hand in the way", TextRole::Text)];
+        brush.parts(x, y, columns, &parts);
+        return;
+    }
+    // The name of the button has priority over the length of the bar.
+    let bar = 8.min(columns / 4).min(columns.saturating_sub(width(&label) + width(by) + 7));
+    brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
+    let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
+}
+
+fn release(model: &ConsoleModel) -> String {
+    model
+        .keys
+        .chord_for(&KeyAction::Manual(ManualAction::HoldRobot))
+        .map(|key| format!("{key} releases the robot"))
+        .unwrap_or_default()
+}
+
+/// Draws that the wizard holds the robot before its next press; returns the next column and the remaining width.
+fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
+    let badge = brush.theme.badge(TextRole::Strong);
+    let end = brush.text(x, y, columns, " HELD ", badge);
+    let left = (x + columns).saturating_sub(end);
+    let words = if left > 50 { format!(" {} ", release(model)) } else { " ".to_string() };
+    let end = brush.parts(end, y, left, &[(&words, TextRole::Quiet)]);
+    (end, (x + columns).saturating_sub(end))
+}
+
+/// Draws the panel that tells which signal the participant sees now.
+pub fn draw_display(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let area = regions.shown;
+    if area.area() == 0 {
+        return;
+    }
+    if regions.screen_size == ScreenSize::Small {
+        brush.parts(area.x, area.y, area.width, &[(" display  ", TextRole::Quiet)]);
+        display_line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
+        return;
+    }
+    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes the signal back"));
+    let remark = session.shown.as_ref().and(back).unwrap_or_default();
+    let inside = brush.panel(area, "On the participant's display", &remark);
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    display_line(brush, x, inside.y, columns, session, model);
+    if let Some(shown) = &session.shown {
+        let style = brush.style(TextRole::Text);
+        for (row, text) in wrap(&says(session, &shown.signal), columns).iter().take(2).enumerate() {
+            brush.text(x, inside.y + 1 + row as u16, columns, text, style);
+        }
+    }
+}
+
+/// Draws the present signal with its remaining time in one line.
+fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+    let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == TrialPhase::Ready);
+    if let Some(key) = start {
+        let key = key.to_string();
+        let parts = [("press ", TextRole::Strong), (&key, TextRole::Signal), (" to start the trial", TextRole::Strong)];
+        brush.parts(x, y, columns, &parts);
+        return;
+    }
+    let Some(shown) = &session.shown else {
+        brush.parts(x, y, columns, &[("no signal, only the kitchen", TextRole::Quiet)]);
+        return;
+    };
+    let title = match (&shown.signal, columns > 60) {
+        (Signal::ShowRecipe(_), true) => says(session, &shown.signal),
+        _ => wording::signal(&shown.signal),
+    };
+    let (left_s, share) = time_left(session, shown, model);
+    let bar = if columns < 44 { 4 } else { 8 };
+    let room = columns.saturating_sub(bar + 7);
+    let end = brush.parts(x, y, room, &[(&title, TextRole::Signal)]);
+    let by = format!(" by {}", wording::sender(shown.by));
+    if end + width(&by) <= x + room {
+        brush.parts(end, y, room, &[(&by, TextRole::Quiet)]);
+    }
+    let at = brush.bar(x + columns - bar - 6, y, bar, share, TextRole::Signal);
+    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
+}
+
+/// Remaining time of a signal in seconds, and as a share of its duration.
+fn time_left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f64) {
+    let now = if session.is_running() { model.now } else { session.paused_at };
+    let left_s = shown.until.secs_since(now);
+    (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
+}
+
+/// Content of the signal that the participant sees, in words.
+fn says(session: &Session, signal: &Signal) -> String {
+    let kitchen = &session.kitchen;
+    let Some(location) = signal.location(kitchen) else {
+        // Of proposed presses, only those that the participant has not made yet are shown.
+        return proposals::left(session)
+            .map_or(String::new(), |left| format!("proposed next: {}", wording::proposal(left)));
+    };
+    let content = kitchen.content_label(session.state, location);
+    match signal {
+        Signal::ShowRecipe(_) => match wording::recipe(session, location) {
+            Some(recipe) => format!("{content} = {recipe}"),
+            None => format!("{}: {content}", kitchen.location(location).label()),
+        },
+        Signal::Highlight(_) | Signal::Propose(_) => {
+            format!("highlight: {} holds {content}", kitchen.location(location).label())
+        }
+    }
+}
+
+/// Columns for the clock time of a line of feedback.
+const CLOCK: u16 = 6;
+
+pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleModel) {
+    let area = regions.lesson;
+    let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
+    let inside = match regions.screen_size {
+        ScreenSize::Small => area,
+        _ => brush.panel(area, "Training", &lesson.score),
+    };
+    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let mut y = inside.y;
+    for (clock, text, role) in training_lines(lesson) {
+        let indent = if clock.is_empty() { 0 } else { CLOCK };
+        for (row, line) in wrap(&text, columns.saturating_sub(indent)).iter().enumerate() {
+            if y >= inside.bottom() {
+                return;
+            }
+            if row == 0 {
+                let quiet = brush.style(TextRole::Quiet);
+                brush.text(x, y, indent, &clock, quiet);
+            }
+            let style = brush.style(role);
+            brush.text(x + indent, y, columns.saturating_sub(indent), line, style);
+            y += 1;
+        }
+    }
+}
+
+/// Lines of the training panel, each with or without a time on the trial's clock.
+fn training_lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
+    if lesson.feedback.is_empty() {
+        return lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text)).collect();
+    }
+    let newest = lesson.feedback.iter().rev().enumerate();
+    let line = |(back, TrainingFeedback { clock, level, text }): (usize, &TrainingFeedback)| {
+        let role = match (back, level) {
+            (_, NoticeLevel::Refused | NoticeLevel::Alarm) => TextRole::Strong,
+            (0, NoticeLevel::Done) => TextRole::Strong,
+            (_, NoticeLevel::Done) => TextRole::Text,
+        };
+        (format!("{:>5}", clock.to_string()), text.clone(), role)
+    };
+    newest.map(line).collect()
+}

@@ -1,0 +1,231 @@
+//! The operator's station: terminal, eye tracker, the participant's display, and termination signals. The station is opened
+//! once for all recordings of a participant's series.
+
+use std::io;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::mpsc::{Receiver, Sender};
+use tokio::sync::oneshot;
+use tokio::time::timeout;
+
+use super::error::{LiveError, TerminalError};
+use crate::console::ConsoleMessage;
+use crate::console::preflight::GazePairing;
+use crate::console::view::theme::Theme;
+use crate::edge::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, theme};
+use crate::edge::terminal_input::TerminalInput;
+use tomcom_core::kitchen::Kitchen;
+use tomcom_devices::gaze_file::{self, GazeFile};
+use tomcom_devices::gaze_input::TrackerMessage;
+use tomcom_devices::gaze_json;
+use tomcom_devices::lsl::{self, InletThreadGuard, LslError};
+use tomcom_devices::pupil::{self, CaptureConfiguration, CaptureRequest};
+use tomcom_session::SessionSpec;
+use tomcom_session::gaze_check::AcceptedGazeCheck;
+use tomcom_session::settings::{ConsoleSpec, GazeSource};
+
+/// Largest number of tracker messages that are processed together; more would delay the wizard's keys.
+const PACKET: usize = 32;
+/// Longest wait for the program Pupil Capture to finish its last request.
+const LAST_REQUEST: Duration = Duration::from_secs(2);
+
+#[cfg(feature = "display")]
+mod station_display;
+#[cfg(not(feature = "display"))]
+#[path = "operator_station/without_display.rs"]
+mod station_display;
+
+mod lsl_output;
+
+use lsl_output::LslOutput;
+use station_display::StationDisplay;
+pub(super) use station_display::{PageInput, take_consent_input};
+
+/// Terminal and devices that all recordings of a series share.
+pub(super) struct OperatorStation {
+    pub screen: TerminalScreen,
+    /// Colour theme of the questions that the console asks before a recording.
+    pub theme: Theme,
+    pub input: OperatorInput,
+    pub tracker: GazeTracker,
+    pub display: StationDisplay,
+    pub lsl: LslOutput,
+}
+
+/// The wizard's input from the terminal, and termination signals from the system.
+pub(super) struct OperatorInput {
+    terminal: TerminalInput,
+    end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
+}
+
+/// External gaze source: an eye tracker, a stream or a file.
+#[derive(Default)]
+pub(super) struct GazeTracker {
+    news: Option<Receiver<TrackerMessage>>,
+    orders: Option<Sender<CaptureRequest>>,
+    /// End of the thread that reads gaze from the Lab Streaming Layer; the station waits for it once `news` is dropped.
+    _inlet: Option<InletThreadGuard>,
+    file: Option<Arc<GazeFile>>,
+    /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
+    pairing: Option<GazePairing>,
+    /// Latest connection state of the tracker, which recordings that begin later are told.
+    link: Option<TrackerMessage>,
+    sees_display: Option<TrackerMessage>,
+    other_surfaces: Option<TrackerMessage>,
+    several_streams: Option<TrackerMessage>,
+    stamps: Option<TrackerMessage>,
+    /// Last gaze accuracy check that the wizard accepted.
+    calibrated: Option<AcceptedGazeCheck>,
+}
+
+impl GazeTracker {
+    pub fn keep(&mut self, calibrated: Option<AcceptedGazeCheck>) {
+        self.calibrated = calibrated;
+    }
+
+    pub fn calibrated(&self) -> Option<&AcceptedGazeCheck> {
+        self.calibrated.as_ref()
+    }
+}
+
+impl OperatorStation {
+    /// Opens the devices that these settings need, and takes over the terminal.
+    ///
+    /// # Errors
+    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, the tags do not fit on the
+    /// display, or the library of the Lab Streaming Layer is missing.
+    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorStation, LiveError> {
+        outlive_file_limits().map_err(TerminalError)?;
+        let lsl = LslOutput::open(spec)?;
+        let tracker = GazeTracker::open(spec, kitchen, &lsl).await?;
+        let display = StationDisplay::open(spec).await?;
+        Ok(OperatorStation { tracker, display, lsl, ..OperatorStation::without_devices(&spec.console)? })
+    }
+
+    /// Takes over the terminal, without devices.
+    ///
+    /// # Errors
+    /// There is no terminal.
+    pub fn without_devices(console: &ConsoleSpec) -> Result<OperatorStation, TerminalError> {
+        let screen = TerminalScreen::take().map_err(TerminalError)?;
+        let theme = theme(console, screen.ground);
+        let terminal = TerminalInput::start().map_err(TerminalError)?;
+        let input = OperatorInput { terminal, end: Box::pin(asked_to_end()) };
+        let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
+        Ok(OperatorStation { screen, theme, input, tracker, display, lsl })
+    }
+}
+
+impl OperatorInput {
+    /// Waits for the wizard's next input; `None` if the program has to end, because of a termination signal or because
+    /// the terminal was closed.
+    pub async fn next(&mut self) -> Option<ConsoleMessage> {
+        tokio::select! {
+            biased;
+            _ = &mut self.end => None,
+            message = self.terminal.next() => message,
+        }
+    }
+}
+
+impl GazeTracker {
+    async fn open(spec: &SessionSpec, kitchen: &Kitchen, lsl: &LslOutput) -> Result<GazeTracker, LiveError> {
+        let (participant, tracker) = (&spec.participant, &spec.tracker);
+        let surface = || tracker.surface_map(kitchen).map_err(LiveError::Tags);
+        match participant.gaze {
+            GazeSource::Json => {
+                let at = SocketAddr::new(participant.gaze_listen, participant.gaze_port);
+                let listener = gaze_json::listen(at, participant.gaze_senders, &participant.gaze_from).await;
+                let listener = listener.map_err(|reason| LiveError::Gaze { at, reason })?;
+                let address = listener.reachable().to_string();
+                let pairing = listener.code.map(|code| GazePairing { address, code });
+                Ok(GazeTracker { news: Some(listener.news), pairing, ..GazeTracker::default() })
+            }
+            GazeSource::Pupil => {
+                let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());
+                let (port, records) = (tracker.port, tracker.record);
+                let capture = CaptureConfiguration { address, port, surface: surface_name, map: surface()?, records };
+                let (news, orders) = pupil::follow(capture);
+                Ok(GazeTracker { news: Some(news), orders: Some(orders), ..GazeTracker::default() })
+            }
+            GazeSource::File => {
+                let path = tracker.file.as_deref().unwrap_or_default();
+                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker)?);
+                Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
+            }
+            GazeSource::Lsl => {
+                let stream = spec.lsl.as_ref().and_then(|spec| spec.gaze.clone());
+                // The settings were checked, so both the LSL library and the stream's settings exist.
+                let Some((library, stream)) = lsl.library().zip(stream) else { return Ok(GazeTracker::default()) };
+                let followed = lsl::follow(library, stream, kitchen.display_m);
+                let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
+                Ok(GazeTracker { news: Some(news), _inlet: Some(inlet), ..GazeTracker::default() })
+            }
+            GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(GazeTracker::default()),
+        }
+    }
+
+    /// Waits for the next tracker messages (samples arrive in packets); waits forever if there is no tracker.
+    pub async fn next(&mut self) -> Option<Vec<TrackerMessage>> {
+        let Some(news) = &mut self.news else { return std::future::pending().await };
+        let mut packet = Vec::new();
+        // All pending messages are received in one call, so that none is lost if another branch of the event loop is
+        // selected meanwhile.
+        news.recv_many(&mut packet, PACKET).await;
+        packet.iter().for_each(|news| self.know(news));
+        (!packet.is_empty()).then_some(packet)
+    }
+
+    fn know(&mut self, news: &TrackerMessage) {
+        match news {
+            TrackerMessage::Connected(_) => self.link = Some(news.clone()),
+            TrackerMessage::Lost(_) => {
+                (self.link, self.sees_display, self.other_surfaces) = (Some(news.clone()), None, None);
+            }
+            TrackerMessage::SeesDisplay(_) => (self.sees_display, self.other_surfaces) = (Some(news.clone()), None),
+            TrackerMessage::OtherSurfaces(_) => self.other_surfaces = Some(news.clone()),
+            TrackerMessage::SeveralStreams(_) => self.several_streams = Some(news.clone()),
+            TrackerMessage::Stamps(_) => self.stamps = Some(news.clone()),
+            _ => {}
+        }
+    }
+
+    /// Messages with the tracker's present state, for a recording that begins now.
+    pub fn known(&self) -> impl Iterator<Item = TrackerMessage> {
+        let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
+        let known = known.chain(&self.several_streams).chain(&self.stamps);
+        known.cloned().collect::<Vec<_>>().into_iter()
+    }
+
+    /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
+    pub fn pairing(&self) -> Option<GazePairing> {
+        self.pairing.clone()
+    }
+
+    /// The file from which gaze is replayed; `None` if gaze comes from another source.
+    pub fn file(&self) -> Option<Arc<GazeFile>> {
+        self.file.clone()
+    }
+
+    /// Channel for requests to the program Pupil Capture; `None` if it is not the tracker.
+    pub fn orders(&self) -> Option<Sender<CaptureRequest>> {
+        self.orders.clone()
+    }
+
+    /// Waits briefly until the program Pupil Capture has finished its requests.
+    pub async fn finish_requests(&self) {
+        let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(TrackerMessage::Connected(_))))
+        else {
+            return;
+        };
+        let (sender, done) = oneshot::channel();
+        if orders.try_send(CaptureRequest::Report(sender)).is_ok() {
+            // The wait is limited, since Pupil Capture may have been closed.
+            let _ = timeout(LAST_REQUEST, done).await;
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The participant's display at the operator's station.
+
+use crate::run::error::LiveError;
+use tomcom_core::base::time::SessionTime;
+pub(in crate::run) use tomcom_devices::display::PageInput;
+use tomcom_devices::display::{DisplayServer, ParticipantResponse};
+use tomcom_devices::sight::page_language::DisplayWords;
+use tomcom_devices::sight::{ConsentHold, consent_sight, scene};
+use tomcom_session::settings::ParticipantKind;
+use tomcom_session::{Session, SessionSpec};
+
+/// The server of the participant's display, if the session has one.
+#[derive(Default)]
+pub(in crate::run) struct StationDisplay(Option<DisplayServer>);
+
+impl StationDisplay {
+    /// Starts the server of the participant's display, if the session has a display.
+    ///
+    /// # Errors
+    /// The network address of the display's server cannot be opened.
+    pub async fn open(spec: &SessionSpec) -> Result<StationDisplay, LiveError> {
+        if spec.participant.kind != ParticipantKind::Display {
+            return Ok(StationDisplay(None));
+        }
+        let (address, port) = (spec.display.listen, spec.display.port);
+        let opened = DisplayServer::open(address, port, &DisplayWords::for_display(&spec.display)).await;
+        opened.map(|display| StationDisplay(Some(display))).map_err(|reason| LiveError::Display {
+            address,
+            port,
+            reason,
+        })
+    }
+
+    /// The server of the participant's display; `None` if the session has no display.
+    pub fn server(&self) -> Option<&DisplayServer> {
+        self.0.as_ref()
+    }
+
+    /// Lets the participant's page ask for consent to `text`; returns whether a page is connected.
+    pub fn ask_consent(&self, session: &Session, text: &str) -> bool {
+        let screen = self.0.as_ref().map(DisplayServer::screen);
+        if let Some(screen) = &screen {
+            screen.build(&scene(session));
+            screen.show(&consent_sight(session, text), None);
+        }
+        screen.is_some()
+    }
+
+    /// Waits for the next input of the participant's page; waits forever if there is no page.
+    pub async fn next(&mut self) -> Option<PageInput> {
+        match &mut self.0 {
+            Some(display) => display.next().await,
+            None => std::future::pending().await,
+        }
+    }
+}
+
+/// Handles an input of the participant's page while it asks for consent; returns false if the page says that the
+/// participant consented, although the button was not held.
+pub(in crate::run) fn take_consent_input(input: &PageInput, button: &mut ConsentHold, now: SessionTime) -> bool {
+    match input {
+        PageInput::Reply(ParticipantResponse::Hold { held }) => button.hold(*held, now),
+        PageInput::Reply(ParticipantResponse::Consent) => return button.tell(now),
+        // The button of another page, or of one that was loaded again, is not held.
+        PageInput::Connected { .. } | PageInput::Lost => *button = ConsentHold::default(),
+        _ => {}
+    }
+    true
+}

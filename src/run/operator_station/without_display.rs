@@ -1,0 +1,38 @@
+//! Stand-in for the participant's display at the operator's station, in a build without the feature `display`.
+
+use crate::run::error::LiveError;
+use tomcom_core::base::time::SessionTime;
+use tomcom_devices::sight::ConsentHold;
+use tomcom_session::{Session, SessionSpec};
+
+/// Input of a participant's page, which never occurs in this build; so the type has no values.
+pub(in crate::run) enum PageInput {}
+
+/// Stand-in for the participant's display, which this build lacks.
+#[derive(Default)]
+pub(in crate::run) struct StationDisplay {}
+
+impl StationDisplay {
+    /// Opens no display; sessions that need a display were refused before.
+    ///
+    /// # Errors
+    /// None.
+    pub async fn open(_: &SessionSpec) -> Result<StationDisplay, LiveError> {
+        Ok(StationDisplay {})
+    }
+
+    /// Does nothing, since this build has no page that could ask for consent.
+    pub fn ask_consent(&self, _: &Session, _: &str) -> bool {
+        false
+    }
+
+    /// Never returns, since this build has no participant's page.
+    pub async fn next(&mut self) -> Option<PageInput> {
+        std::future::pending().await
+    }
+}
+
+/// Never called, since this build has no participant's page.
+pub(in crate::run) fn take_consent_input(input: &PageInput, _: &mut ConsentHold, _: SessionTime) -> bool {
+    match *input {}
+}

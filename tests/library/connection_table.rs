@@ -1,10 +1,11 @@
 //! The connections of a listener: who is let in, who gives way, who stays.
 
 use std::net::IpAddr;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use tomcom::edge::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
+
+use crate::support::*;
 
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 10,

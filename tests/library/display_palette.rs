@@ -3,7 +3,7 @@
 //! Colour vision deficiency is simulated with the matrices of Machado, Oliveira and Fernandes (2009), "A Physiologically-based Model
 //! for Simulation of Color Vision Deficiency", severity 1.0, in linear RGB. Distances are CIE 1976 ones in L*a*b* (D65).
 
-use std::path::Path;
+use crate::support::*;
 
 type Matrix = [[f64; 3]; 3];
 

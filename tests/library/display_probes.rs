@@ -1,17 +1,11 @@
 //! Freeze probes on the participant's display: what the page is told of every question, and what an answer means.
 
-use std::collections::BTreeSet;
-
-use serde_json::Value;
 use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen};
-use tomcom_session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use tomcom_session::settings::ParticipantKind;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, Session, TimestampedEvent, apply};
+use tomcom_session::apply;
+use tomcom_session::probes::{ProbeEndReason, ProbeOrigin, ProbeQuestion, ProbeSubject};
 
 use super::display::{engine, files};
+use crate::support::*;
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 

@@ -4,10 +4,11 @@ use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use serde_json::{Value, json};
 use tomcom::display::page_language::DisplayWords;
 use tomcom::edge::display::DisplayServer;
 use tomcom_session::wall_display::DisplaySpec;
+
+use crate::support::*;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.
 const PATIENCE: Duration = Duration::from_secs(300);

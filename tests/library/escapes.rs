@@ -1,7 +1,6 @@
 //! Text from outside reaches a terminal only as text: what could command it is written out.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
@@ -10,17 +9,15 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom_core::base::printable::{printable, printable_lines};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_session::apply;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::files::parse::parse;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::tracker::TrackerEvent;
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply};
 use tomcom_study::analysis::event_lines;
 
-use crate::kitchen;
+use crate::support::*;
 
 /// Clears the screen, sets the title of the window, reverses the direction of writing, and begins a sequence in one byte.
 const HOSTILE: &str = "a\x1b[2J\x1b]0;title\x07b\u{202e}c\u{9b}31md\r\ne";
@@ -32,7 +29,7 @@ fn is_harmless(text: &str) -> bool {
 }
 
 fn session() -> Session {
-    let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+    let spec = default_settings();
     Session::new(kitchen("sushi"), spec, 0)
 }
 

@@ -1,7 +1,6 @@
 //! Who may send gaze: trackers, as many as come and go, and nobody who is none.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -14,18 +13,12 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::preflight::checks;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
-use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
 use tomcom_session::preflight_checks::RejectedGaze;
-use tomcom_session::settings::{GazeSenders, GazeSource, ParticipantKind};
-use tomcom_session::{Event, SessionSpec};
+use tomcom_session::settings::GazeSenders;
 
-use crate::kitchen;
+use crate::support::*;
 
 const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 /// Nothing that is waited for takes longer; that it does not come is the failure.
@@ -366,7 +359,7 @@ fn the_setting_is_read_and_kept() {
 
 #[test]
 fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let files = session_file("default");
     let kitchen = kitchen("sushi");
     let keys =
         KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the layout's keys are free");
@@ -398,7 +391,7 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
 
 #[test]
 fn the_checks_say_what_was_found_in_rejected_gaze() {
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let files = session_file("default");
     let kitchen = kitchen("sushi");
     let mut spec = files.spec;
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);

@@ -1,12 +1,11 @@
 //! Whatever files hold, reading them gives a value or an error that can be shown.
 
-use std::fs;
-
-use rand::RngExt;
-use tomcom_core::base::rng::{Stream, stream};
-
 #[path = "../fuzz/targets/read/mod.rs"]
 mod read;
+
+use tomcom_core::base::rng::Stream;
+
+use crate::support::*;
 
 /// The reader with this name.
 fn reader(name: &str) -> read::Reader {

@@ -1,17 +1,8 @@
 //! The states of sessions on which the cost to go is held against exact search (`tests/core/cost_to_go.rs`).
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
 use tomcom::run::options::session_or_default;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Kitchen, State};
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::{Event, TrialPhase};
 
-use crate::kitchen;
+use crate::support::*;
 
 /// States a kitchen.
 const STATES: usize = 1000;

@@ -3,23 +3,16 @@
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
-use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tomcom::edge::files::read_session;
 use tomcom::edge::rerun::StreamIdentity;
 use tomcom::edge::rrd;
 use tomcom::edge::stream::RerunStream;
 use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::Event;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::settings::Condition;
+
+use crate::support::*;
 
 pub const SERVICE: &str = "/rerun.sdk_comms.v1alpha1.MessageProxyService";
 /// What is waited for comes within this time, however busy the machine is.
@@ -195,7 +188,7 @@ fn two_hours_of_a_session_stay_below_200_mb() {
     const MOST_MB: f64 = 200.0;
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("two-hours");
     std::fs::create_dir_all(&folder).expect("a folder");
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let files = session_file("default");
     let kitchen = Arc::new(files.kitchen.kitchen);
     let mut spec = files.spec;
     (spec.trial.seconds, spec.trial.presses) = (7200.0, u32::MAX);

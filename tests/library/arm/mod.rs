@@ -3,24 +3,21 @@
 //! The full experiments (`cargo test --release --test library arm:: -- --ignored --nocapture`) do what the short ones do, more often.
 
 mod contacts;
-mod hand;
 mod presses;
 mod reach;
 mod sessions;
-mod stops;
 
-use std::path::Path;
 use std::sync::LazyLock;
 
-use rand::RngExt;
 use tomcom::edge::files::read_kitchen;
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::hand_body::HandPose;
 use tomcom_arm::report::PressFailure;
 use tomcom_core::base::rng::Stream;
-use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
 use tomcom_core::robot::moment::ArmPhase;
+
+use crate::support::*;
 
 static SUSHI: LazyLock<Kitchen> =
     LazyLock::new(|| read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);

@@ -1,20 +1,15 @@
 //! The motion of the arm to its buttons, and its inverse kinematics.
 
-use std::path::Path;
-
-use rand::RngExt;
 use tomcom::edge::files::read_kitchen;
 use tomcom_arm::clearance::{ArmSurroundings, Obstruction};
 use tomcom_arm::inverse::{twist, wrapped};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::motion::JointMotion;
 use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, ButtonId};
 use tomcom_core::robot::moment::JointAngles;
 
 use super::SUSHI;
+use crate::support::*;
 
 /// Where the tip of the arm is at this time, in metres.
 fn tip_m(arm: &SerialArm, motion: &JointMotion, now_s: f64) -> [f64; 3] {

@@ -1,18 +1,10 @@
 //! Parts of a job array, folders that were begun before, and sweeps of a setting.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use tomcom::run::simulate::SimulationRequest;
 use tomcom::run::sweep::{ParameterSweepAxis, TABLE_NAME, sweep, trials};
-use tomcom_session::Event;
-use tomcom_session::log::LOG_NAME;
-use tomcom_session::settings::Condition;
-use tomcom_session::shard::SimulationShard;
-use tomcom_session::verify::verify;
 use tomcom_study::analysis::sweep_row::ParameterSweepRow;
 
 use super::{events, folder, paper, run};
+use crate::support::*;
 
 /// Every file below a folder, with what is in it, by its path there.
 fn all_files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {

@@ -1,23 +1,12 @@
 //! Scripted wizards: what they send, what they say, and that both come out the same again.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{HighlightSet, Sender};
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{DishId, LocationId};
+use tomcom_core::communication::HighlightSet;
 use tomcom_people::wizard::settings::{OfferReading, WizardKind, WizardSpec};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 use tomcom_session::admit::hygiene;
-use tomcom_session::settings::Condition;
-use tomcom_session::shard::SimulationShard;
-use tomcom_session::study_arm::StudyArm;
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, Session, TimestampedEvent};
 
 use super::{events, folder, paper, run};
+use crate::support::*;
 
 #[test]
 fn a_scripted_wizard_signals_in_its_trials_and_comes_out_the_same_again() {
@@ -172,7 +161,7 @@ fn an_offer_is_taken_after_the_time_of_reading_or_left() {
 /// The plan of arms with a scripted wizard: the same script with and without advice.
 #[test]
 fn a_scripted_wizard_takes_offers_in_the_arm_with_advice_alone() {
-    let mut files = read_session(Path::new("sessions/arms.toml")).expect("the plan of arms");
+    let mut files = session_file("arms");
     files.spec.wizard.kind = WizardKind::Scripted;
     (files.spec.seed, files.spec.trial.presses) = (9701, 160);
     (files.spec.assistant.rollout.rollouts, files.spec.human.inference.beliefs) = (64, 128);

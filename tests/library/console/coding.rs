@@ -9,10 +9,9 @@ use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
 use tomcom_session::TimelineEvent;
 use tomcom_session::error_list::ListedError;
-use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage};
-use crate::check_snapshot;
+use crate::support::*;
 
 fn codes(of: &[(u64, ErrorCauseCode)]) -> RaterCodes {
     RaterCodes(of.iter().cloned().collect())

@@ -1,25 +1,13 @@
 //! The console: what is drawn at three sizes, what the keys do, and where the pointer is on the display.
 
 mod advice;
-mod belief;
-mod calibration;
 mod clicks;
 mod coding;
-mod colours;
-mod comparison;
-mod hands;
-mod hints;
 mod keys;
-mod layers;
 mod notices;
 mod palette;
-mod pasting;
-mod pointer;
-mod probes;
-mod recording_picker;
 mod screens;
 mod sheets;
-mod training;
 mod trial;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -29,19 +17,13 @@ use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::PriorModel;
-use tomcom_session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom_session::history::belief_track::BeliefSnapshot;
-use tomcom_session::settings::{GazeSource, ParticipantKind};
-use tomcom_session::{Session, SessionSpec, apply, offers};
+use tomcom_session::{apply, offers};
 
-use crate::kitchen;
+use crate::support::*;
 
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
@@ -55,7 +37,7 @@ struct Stage {
 
 impl Stage {
     fn new(kitchen_name: &str, participant: ParticipantKind) -> Stage {
-        let mut spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+        let mut spec = default_settings();
         spec.participant.kind = participant;
         if participant == ParticipantKind::Keyboard {
             spec.participant.gaze = GazeSource::Mouse;

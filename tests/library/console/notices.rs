@@ -6,15 +6,13 @@ use tomcom::console::gaze_pairing::GazePairing;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::safety::SafetyMode;
 use tomcom_session::TimelineEvent;
-use tomcom_session::event::{Event, TrialEndReason};
 use tomcom_session::preflight_checks::PreflightVerdict;
-use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom_session::tracker::TrackerEvent;
 
 use super::{SIZES, Stage, input, type_in};
+use crate::support::*;
 
 #[test]
 fn ages_stand_still_in_a_pause_and_after_the_end() {

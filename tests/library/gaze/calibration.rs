@@ -1,14 +1,11 @@
 //! The check of the gaze with targets in a session.
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure};
 use tomcom_session::accuracy_check::{GazeCheckEvent, RunningGazeCheck};
 use tomcom_session::admit::is_external;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::{Event, TimestampedEvent};
 
 use super::engine;
+use crate::support::*;
 
 /// Checks the calibration as the live session does, from `from_s` on; all events of the check.
 fn check_calibration(engine: &mut SessionEngine, from_s: f64, accept: GazeCheckEvent) -> Vec<TimestampedEvent> {

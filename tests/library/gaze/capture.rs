@@ -7,13 +7,12 @@ use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMer
 use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom::edge::pupil::{CaptureConfiguration, follow};
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::surface::SurfaceHomography;
-use tomcom_session::settings::GazeSource;
+use tomcom_session::preflight_checks;
 use tomcom_session::tracker::TrackerEvent;
-use tomcom_session::{Event, preflight_checks};
 
 use super::engine;
+use crate::support::*;
 
 /// Published by Pupil's own detectors: see tests/pupil/README.md.
 const MESSAGES: &[u8] = include_bytes!("../../pupil/online_detectors.msgpack");

@@ -1,10 +1,5 @@
 //! Answers to probes in a fit: their likelihood, and what they tell that presses do not.
 
-use rand::RngExt;
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, AspectKind};
 use tomcom_core::mind::dirichlet::Dirichlet;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::fitting::{
@@ -16,7 +11,7 @@ use tomcom_study::analysis::fitting::{FitSettings, describe};
 use tomcom_study::fit::{FitTrials, fit};
 
 use super::world::{Human, World, live};
-use crate::kitchen;
+use crate::support::*;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)

@@ -1,8 +1,6 @@
 //! The fast filter against the plain reference on recorded steps.
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, LocationId, Press};
+use tomcom_core::kitchen::Press;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
@@ -12,7 +10,7 @@ use tomcom_core::mind::signal_model::SignalModel;
 
 use super::observed::recorded;
 use super::world::distance;
-use crate::kitchen;
+use crate::support::*;
 
 fn means(belief: &DirichletBelief) -> Vec<Vec<f64>> {
     belief.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect()

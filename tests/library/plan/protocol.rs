@@ -1,26 +1,13 @@
 //! What happens around a trial: steps, items, and recordings that are cut or left.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome, WantedRecording};
-use tomcom_session::protocol::ProtocolEvent;
-use tomcom_session::study_arm::StudyArm;
-use tomcom_session::verify::verify;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, LogHeader, TrialPhase};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome};
 use tomcom_study::files::recordings;
 
 use super::{files, folder, study};
+use crate::support::*;
 
 /// A recording of the plan, driven as a wizard would, without a console.
 struct Run {

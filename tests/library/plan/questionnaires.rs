@@ -1,21 +1,12 @@
 //! Questionnaires with items of every kind: what is an answer, what a log holds, and what the files of the program ask.
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::answer_value::AnswerValue;
-use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::parse::parse;
-use tomcom_session::log::LogWriter;
-use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
-use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader};
+use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec};
+use tomcom_session::protocol::StudyPhase;
 
 use super::{files, folder};
+use crate::support::*;
 
 fn shipped(name: &str) -> Questionnaire {
     let path = Path::new("sessions/questionnaires").join(name);

@@ -1,24 +1,14 @@
 //! The participant's tutorial: what its steps ask for, what the page is told meanwhile, and that it is no part of the trial.
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
 use tomcom::display::{DisplayStage, ShownContent, sight};
-use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::edge::files::read_kitchen;
 use tomcom::run::leaving::TutorialProgress;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
-use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom_session::settings::ParticipantKind;
+use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStepKind};
+use tomcom_session::protocol::StudyPhase;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader, Session};
 
 use super::{files, folder, study};
+use crate::support::*;
 
 const BY_PARTICIPANT: TutorialPageTurner = TutorialPageTurner::Participant;
 

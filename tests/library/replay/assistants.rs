@@ -1,38 +1,17 @@
 //! What assistants advise and send comes out the same again, beside the wizard too.
 
-use std::fs;
-use std::path::PathBuf;
-use std::sync::Arc;
-
-use rand::RngExt;
-use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom::run::watch_desk::ComparisonThreadHandle;
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, LocationId};
 use tomcom_core::measures::matching::ComparedContent;
 use tomcom_core::mind::named_models::PAPER_2021;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::advisor::Advisor;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::files::SessionSetup;
 use tomcom_session::headless;
 use tomcom_session::history::comparison::CommunicationContext;
-use tomcom_session::log::{LOG_NAME, LogReader};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom_session::shard::SimulationShard;
-use tomcom_session::verify::verify;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use super::{SESSIONS, folder, same, session, simulated};
+use crate::support::*;
 
 /// Simulates trials of `seconds` in which the assistant acts, quickly, with these further settings; returns the folder.
 fn with_assistant(name: &str, out: &str, (trials, seconds): (u64, f64), further: impl Fn(&mut SessionSpec)) -> PathBuf {

@@ -1,28 +1,13 @@
 //! Recordings with freeze probes: they verify whole and cut, whatever is pressed in a probe, and go on in the probe in which they were cut.
 
 use std::collections::HashSet;
-use std::fs;
-use std::sync::Arc;
 
-use rand::RngExt;
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::files::SessionSetup;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::probes::{ProbeEndReason, ProbeEvent};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
-use tomcom_session::shard::SimulationShard;
-use tomcom_session::verify::verify;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, LogHeader};
+use tomcom_session::probes::ProbeEndReason;
+use tomcom_session::settings::ProbeSpec;
 
 use super::{anything, folder, session};
+use crate::support::*;
 
 /// Many probes in a short time.
 fn often() -> ProbeSpec {

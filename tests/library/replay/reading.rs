@@ -1,21 +1,7 @@
 //! Recordings that are cut, still written, or broken.
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
-use rand::RngExt;
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::log::{LOG_NAME, LogReader, LogWriter};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::ArmKind;
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader};
-
 use super::{by_hand, folder, session};
+use crate::support::*;
 
 /// The recording's text, changed, is refused with a message that names `line` and says all of `says`.
 fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> String) {

@@ -2,21 +2,14 @@
 
 use std::convert::Infallible;
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::Agent;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::initiative::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::headless;
 use tomcom_session::orders::OrderList;
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply, silence};
+use tomcom_session::{apply, headless, silence};
 
 use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
+use crate::support::*;
 
 #[test]
 fn a_stopped_robot_gives_up_its_press_and_waits_for_the_wizard() {

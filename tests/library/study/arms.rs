@@ -1,11 +1,7 @@
 //! The comparison of any number of arms, held against published examples and against what was put into simulated counts.
 
-use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
-use tomcom_core::base::rng::stream;
 use tomcom_session::plan::StudyAims;
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::arm_comparison::{compare_arms, holm};
 use tomcom_study::effect::LeftOutParticipant;
 use tomcom_study::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
@@ -13,6 +9,7 @@ use tomcom_study::negative_binomial_model::{CountObservation, NegativeBinomialMo
 use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::trial;
+use crate::support::*;
 
 fn is_close(found: f64, wanted: f64, within: f64) {
     assert!((found - wanted).abs() <= within * wanted.abs().max(1e-12), "{found} instead of {wanted}");

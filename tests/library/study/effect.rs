@@ -1,7 +1,5 @@
 //! The effect of assistance, against values of other programs.
 
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::effect::{effect, left_out_in_words, pairs};
 use tomcom_study::facts::RecordingFacts;
@@ -13,6 +11,7 @@ use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::{TrialStatistics, arrange};
 
 use super::{near, trial, trials};
+use crate::support::*;
 
 /// Unequal groups, with ties; the figures are those of afex 1.2-1 (type III), pingouin 0.7.0 and SciPy 1.17.1.
 #[test]

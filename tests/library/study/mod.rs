@@ -2,29 +2,22 @@
 
 mod arms;
 mod effect;
-mod frozen;
-mod live_arms;
-mod missing_trials;
+mod planned;
 mod power;
 mod prevention;
-mod probe_recordings;
 mod probes;
 mod rater_episodes;
 mod report;
 mod tables;
-mod tutorials;
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::acting_arm::SignalSenderWithParameter;
 use tomcom_study::analysis::offer_summary::OfferSummary;
 use tomcom_study::robot_tally::RobotEventSummary;
 use tomcom_study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
+
+use crate::support::*;
 
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");

@@ -1,15 +1,8 @@
 //! Studies drawn from pools: what is put in is found as often as it should be, and a pool is the same from shards and on any number of threads.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
 use tomcom::edge::picture_file::{check_picture, write_picture};
-use tomcom_core::base::rng::stream;
 use tomcom_session::plan::{PrimaryOutcome, StudyAims, orders};
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::arm_comparison::compare_arms;
 use tomcom_study::arm_table::StudyArmTable;
 use tomcom_study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampler, results, tests};
@@ -25,6 +18,7 @@ use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::trial;
+use crate::support::*;
 
 const TWO: [StudyArm; 2] = [StudyArm::None, StudyArm::Wizard];
 const THREE: [StudyArm; 3] = [StudyArm::None, StudyArm::Wizard, StudyArm::TomCom];
@@ -220,10 +214,7 @@ fn the_least_effect_lies_between_the_ratios_that_were_tried() {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("power").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
+    empty_folder(format!("power/{name}"))
 }
 
 #[test]

@@ -1,25 +1,16 @@
 //! The report: participants, robot, methods, raters.
 
-use std::fs;
-use std::path::Path;
-
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::{
     Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
 };
-use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::consensus::RaterConsensus;
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::safety::SafetyMode;
-use tomcom_session::Event;
 use tomcom_session::answer_value::AnswerValue;
-use tomcom_session::event::TrialEndReason;
 use tomcom_session::log::{consensus_file, rater_codes};
 use tomcom_session::plan::QuestionnaireItemKind;
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom_study::analysis::offer_summary::TimedOffer;
 use tomcom_study::codes::CodedRecording;
 use tomcom_study::column::{CsvCell, CsvRow, CsvTable};
@@ -37,6 +28,7 @@ use tomcom_study::trial_details::TrialDetails;
 use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::{at, near, trial, trials};
+use crate::support::*;
 
 #[test]
 fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
@@ -196,9 +188,7 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
 /// Of people it is estimated what they believed, until two raters have coded every error.
 #[test]
 fn two_raters_say_why_people_erred() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-raters");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = empty_folder("study-raters");
     fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || match reading::read(&folder, "hand", extent, None, &mut KeptCost::default()) {
@@ -275,9 +265,7 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
 /// What two raters settled says why people erred, and their agreement stays that of their own codes.
 #[test]
 fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-consensus");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = empty_folder("study-consensus");
     fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || {

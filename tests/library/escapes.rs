@@ -9,10 +9,8 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom_core::base::printable::{printable, printable_lines};
-use tomcom_core::kitchen::layout::LayoutSpec;
 use tomcom_session::apply;
 use tomcom_session::files::file_error::FileError;
-use tomcom_session::files::parse::parse;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_study::analysis::event_lines;
@@ -119,11 +117,4 @@ fn an_error_shows_the_place_in_the_file_written_out() {
     let marked = lines[place + 1];
     assert_eq!(column(lines[place], 'x'), marked.chars().position(|letter| "─┬".contains(letter)), "{text}");
     assert_eq!(marked.chars().filter(|letter| "─┬".contains(*letter)).count(), "x\\u001b[31m".len(), "{text}");
-}
-
-#[test]
-fn a_layout_with_control_characters_gives_an_error_that_can_be_shown() {
-    let text = "name = \"a\\u001b[2J\"\nfoo\x1b[31m = 1\n";
-    let error = parse::<LayoutSpec>(Path::new("layout.toml"), text).expect_err("it is no layout");
-    assert!(is_harmless(&shown(&error)), "{}", shown(&error));
 }

@@ -51,14 +51,6 @@ fn a_pool_has_the_trials_of_the_plan_and_their_unassisted_twins() {
 }
 
 #[test]
-fn the_shards_of_a_pool_are_the_whole() {
-    let files = paper(30);
-    let whole = pool(&files, SimulationShard::WHOLE, [true, true]);
-    let parts = (1..=3).map(|number| pool(&files, SimulationShard { number, of: 3 }, [true, true])).collect();
-    assert_eq!(SimulationPool::joined(parts).expect("the whole"), whole);
-}
-
-#[test]
 fn what_cannot_be_simulated_is_told_beforehand() {
     let refused = |files: SessionSetup| {
         let request =

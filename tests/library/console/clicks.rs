@@ -49,7 +49,7 @@ fn a_click_on_a_signal_asks_once_and_enter_or_a_second_click_sends_it() {
         stage.wait(0.0);
         assert_eq!(stage.click("[a]"), None);
         assert!(stage.asks_to_send(), "{size:?}");
-        assert!(stage.screen(size).contains("Send highlight assembly board? enter"), "{}", stage.screen(size));
+        stage.shows(size, &["Send highlight assembly board? enter"]);
         stage.wait(0.1);
         assert_eq!(stage.click("[a]"), None, "a double click confirms nothing");
         stage.wait(1.0);
@@ -292,9 +292,7 @@ fn pasted_text_sends_nothing_and_stops_nothing_outside_of_a_field() {
 #[test]
 fn pasted_text_moves_no_replay() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    stage.model.playback = Some(Playback::new("2026-03-14-P01-1".to_string()));
+    stage.replays(Playback::new("2026-03-14-P01-1".to_string()));
     assert_eq!(stage.paste(Some("seven mbwq")), None);
     assert!(stage.notice().contains(REFUSED), "{}", stage.notice());
 }

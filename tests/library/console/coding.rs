@@ -75,10 +75,7 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
     for _ in 0..5 {
         stage.wait(1.0);
         stage.key(KeyCode::Tab);
-        let screen = stage.screen((80, 24));
-        for key in ["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"] {
-            assert!(screen.contains(key), "{key}\n{screen}");
-        }
+        stage.shows((80, 24), &["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"]);
     }
     let tells = |action: &KeyAction| *action == KeyAction::Belief || matches!(action, KeyAction::Differ(_));
     assert!(stage.model.keys.bindings.iter().all(|line| !tells(&line.action)));
@@ -88,9 +85,7 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
 #[test]
 fn leaving_asks_nothing_while_all_codes_are_saved_and_the_hint_says_so() {
     let mut stage = rater(RaterCodes::default());
-    for size in SIZES {
-        assert!(stage.screen(size).contains("^c quit (saved)"), "{}", stage.screen(size));
-    }
+    stage.shows_everywhere(&["^c quit (saved)"]);
     if let Some(coding) = &mut stage.model.coding {
         coding.is_saved = false;
     }
@@ -170,20 +165,16 @@ fn two_raters_settle_with_both_codes_in_view() {
     let mut stage = rated(party, codes(&[(0, ErrorCauseCode::Slip)]));
     stage.key(KeyCode::Char('4'));
     assert_eq!(coding(&stage).progress(), "2/12 errors settled, 1 since opening");
-    for size in SIZES {
-        stage.shows(size, &["R1: slip", "R2: wrong about cutting board", "2/12 errors settled, 1 since opening"]);
-    }
+    stage.shows_everywhere(&["R1: slip", "R2: wrong about cutting board", "2/12 errors settled, 1 since opening"]);
 }
 
 #[test]
 fn the_last_code_says_what_comes_next() {
     let all = RaterCodes((0..12).map(|index| (100 * index, ErrorCauseCode::Slip)).collect());
     let mut stage = rater(all);
-    for size in SIZES {
-        assert!(stage.screen(size).contains("every error is coded; next:"), "{}", stage.screen(size));
-    }
+    stage.shows_everywhere(&["every error is coded; next:"]);
     if let Some(coding) = &mut stage.model.coding {
         coding.finished.push("R0".to_string());
     }
-    assert!(stage.screen((120, 40)).contains("--settle R0 R1"), "{}", stage.screen((120, 40)));
+    stage.shows((120, 40), &["--settle R0 R1"]);
 }

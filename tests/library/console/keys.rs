@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::console::console_model::Dialog;
-use tomcom::console::key_action::{KeyErrorSource, KeyLayer};
+use tomcom::console::key_action::KeyLayer;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::Playback;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
@@ -86,7 +86,7 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
             assert!(stage.screen(size).contains(says), "the dialog leaves the line free: {}", stage.screen(size));
         }
     }
-    assert!(stage.screen((80, 24)).contains("y or ^c yes"), "{}", stage.screen((80, 24)));
+    stage.shows((80, 24), &["y or ^c yes"]);
     assert_eq!(stage.key(KeyCode::Enter), None, "any other key is no");
     assert_eq!(stage.model.dialog, None);
     for (key, title, done) in [
@@ -108,19 +108,6 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
     stage.control('c');
     stage.wait(1.0);
     assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "after the trial it does");
-}
-
-#[test]
-fn a_signal_is_not_sent_again_while_it_is_shown() {
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.at(1.0, Event::TrialStarted);
-    let signal = input(stage.key(KeyCode::Char('a'))).expect("sent");
-    stage.at(1.1, signal.clone());
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('a')), None);
-    assert!(stage.notice().contains("shown already"), "{}", stage.notice());
-    stage.at(3.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
-    assert_eq!(input(stage.key(KeyCode::Char('a'))), Some(signal));
 }
 
 #[test]
@@ -149,15 +136,6 @@ fn whoever_wants_to_quit_is_asked_in_whatever_list_they_are() {
         assert_eq!(stage.control('c'), None);
         assert_eq!(stage.model.dialog, Some(Dialog::Quit));
     }
-}
-
-#[test]
-fn a_layout_cannot_take_a_key_twice() {
-    let mut kitchen = Kitchen::clone(&kitchen("sushi"));
-    let spec = default_settings();
-    kitchen.locations[0].signal_key = Some('3');
-    let clash = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect_err("3 is a marker");
-    assert_eq!(clash.place, KeyErrorSource::Layout(KeyLayer::Wizard, '3'));
 }
 
 #[test]
@@ -211,14 +189,11 @@ fn a_live_session_shows_the_keys_that_do_something_now() {
 #[test]
 fn a_typed_note_is_hinted_in_a_pause_where_it_is_possible() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    assert!(!stage.screen((80, 24)).contains("0 type note"));
+    stage.hides((80, 24), &["0 type note"]);
     stage.at(23.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
     stage.at(23.2, Event::TrialPaused);
     for size in super::SIZES {
-        let screen = stage.screen(size);
-        for hint in ["1-5 note", "0 type note", "? help", "^c quit"] {
-            assert!(screen.contains(hint), "{hint} at {size:?}:\n{screen}");
-        }
+        stage.shows(size, &["1-5 note", "0 type note", "? help", "^c quit"]);
     }
 }
 
@@ -329,10 +304,13 @@ fn signals_are_judged_at_the_end_where_the_wizard_may_know() {
 fn the_kitchen_is_corrected_from_two_lists() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.control('u');
-    for size in SIZES {
-        let places = ["Correct the kitchen: which place?", "8 of 8", "» human hand", "robot hand", "raw salmon"];
-        stage.shows(size, &places);
-    }
+    stage.shows_everywhere(&[
+        "Correct the kitchen: which place?",
+        "8 of 8",
+        "» human hand",
+        "robot hand",
+        "raw salmon",
+    ]);
     check_snapshot("console", "correct_80x24", stage.screen((80, 24)));
     type_in(&mut stage, "pot");
     stage.wait(0.05);
@@ -349,7 +327,7 @@ fn the_kitchen_is_corrected_from_two_lists() {
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(corrected.clone()), "{}", stage.notice());
     assert_eq!(stage.model.dialog, None);
     stage.at(23.0, corrected);
-    assert!(stage.screen((120, 40)).contains("cooked rice"));
+    stage.shows((120, 40), &["cooked rice"]);
     // Esc goes back a step, then leaves; what nothing is called leads nowhere.
     stage.wait(1.0);
     stage.control('u');

@@ -14,6 +14,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::console::console_model::RecordingStatus;
+use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
@@ -151,10 +152,14 @@ impl Stage {
         stage
     }
 
-    fn screen(&self, size: (u16, u16)) -> String {
+    fn drawn(&self, size: (u16, u16)) -> TestBackend {
         let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
         terminal.draw(|frame| view(&self.session, &self.model, frame)).expect("drawn");
-        terminal.backend().to_string()
+        terminal.backend().clone()
+    }
+
+    fn screen(&self, size: (u16, u16)) -> String {
+        self.drawn(size).to_string()
     }
 
     /// The screen, which has to say all of this.
@@ -164,6 +169,28 @@ impl Stage {
             assert!(screen.contains(words), "{words:?} at {size:?} in\n{screen}");
         }
         screen
+    }
+
+    /// The screens of all sizes, which have to say all of this.
+    fn shows_everywhere(&self, words: &[&str]) {
+        for size in SIZES {
+            self.shows(size, words);
+        }
+    }
+
+    /// The screen must not say any of this.
+    fn hides(&self, size: (u16, u16), words: &[&str]) {
+        let screen = self.screen(size);
+        for words in words {
+            assert!(!screen.contains(words), "{words:?} at {size:?} in\n{screen}");
+        }
+    }
+
+    /// From now on a replay, with its keys.
+    fn replays(&mut self, playback: Playback) {
+        let keys = KeyBindings::replay(&self.session.kitchen, &KeyFileBindings::default());
+        self.model.keys = keys.expect("the keys are free");
+        self.model.playback = Some(playback);
     }
 
     fn key(&mut self, code: KeyCode) -> Option<ConsoleCommand> {

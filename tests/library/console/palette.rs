@@ -22,10 +22,7 @@ fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
     stage.control('k');
     for size in SIZES {
         stage.model.size = size;
-        let screen = stage.screen(size);
-        for text in ["RUNNING", "STOP ROBOT", "type to filter (no spaces)", "space stops the robot"] {
-            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
-        }
+        stage.shows(size, &["RUNNING", "STOP ROBOT", "type to filter (no spaces)", "space stops the robot"]);
     }
     stage.model.size = (80, 24);
     check_snapshot("console", "palette_80x24", stage.screen((80, 24)));
@@ -139,9 +136,7 @@ fn space_stops_the_robot_in_the_palette_and_esc_goes_back() {
 #[test]
 fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    stage.model.playback = Some(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    stage.replays(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
     stage.control('k');
     assert_eq!(stage.key(KeyCode::Char(' ')), None);
     type_in(&mut stage, "faster");

@@ -98,7 +98,7 @@ fn a_trial_is_excluded_and_included_by_one_key() {
     let excluded = Event::TrialExcluded { reason: "interrupted".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(excluded.clone()));
     stage.at(23.0, excluded);
-    assert!(stage.screen((120, 40)).contains("EXCLUDED"));
+    stage.shows((120, 40), &["EXCLUDED"]);
     stage.wait(1.0);
     assert_eq!(input(stage.control('l')), Some(Event::TrialIncluded));
 }
@@ -127,11 +127,13 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     stage.model.free_bytes = Some(100 << 20);
     assert_eq!(stage.key(KeyCode::Char('.')), None);
     assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
-    for size in SIZES {
-        let found = ["FAILED   gaze ", "start the program that sends gaze to port 50021", "FAILED   robot "];
-        stage.shows(size, &found);
-        stage.shows(size, &["warning  free space   104 MB free on the disk", "o start the trial anyway"]);
-    }
+    stage.shows_everywhere(&[
+        "FAILED   gaze ",
+        "start the program that sends gaze to port 50021",
+        "FAILED   robot ",
+        "warning  free space   104 MB free on the disk",
+        "o start the trial anyway",
+    ]);
     check_snapshot("console", "preflight_80x24", stage.screen((80, 24)));
     // The key that opened the list does not start the trial, held or pressed again.
     for gap_s in [0.5, 0.03, 1.0] {
@@ -156,7 +158,7 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     }
     stage.wait(0.01);
     stage.model.dialog = Some(Dialog::Preflight);
-    assert!(stage.screen((80, 24)).contains("usable, confidence 0.97"), "{}", stage.screen((80, 24)));
+    stage.shows((80, 24), &["usable, confidence 0.97"]);
     assert!(matches!(
         stage.key(KeyCode::Char('.')),
         Some(ConsoleCommand::Start(Event::Preflight { overridden: false, .. }))
@@ -183,9 +185,7 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     assert_eq!(begun, Event::Calibration(GazeCheckEvent::begin()));
     stage.at(1.0, begun);
     stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 1 }));
-    for size in SIZES {
-        stage.shows(size, &["+ look here: target 2 of 5"]);
-    }
+    stage.shows_everywhere(&["+ look here: target 2 of 5"]);
     let target = |samples, accuracy_deg| TargetAccuracy { samples, accuracy_deg };
     let found = GazeAccuracy {
         accuracy_deg: 2.31,
@@ -196,11 +196,11 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     };
     stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
     stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: Some(found) }));
-    for size in SIZES {
-        let off = ["2.31 deg, 8.1 cm on the display: usable", "0.42 deg, 1.5 cm without the offset: good"];
-        stage.shows(size, &off);
-        stage.shows(size, &["2.1, no gaze, 2.6 deg, centre target first"]);
-    }
+    stage.shows_everywhere(&[
+        "2.31 deg, 8.1 cm on the display: usable",
+        "0.42 deg, 1.5 cm without the offset: good",
+        "2.1, no gaze, 2.6 deg, centre target first",
+    ]);
     check_snapshot("console", "calibration_80x24", stage.screen((80, 24)));
     stage.wait(1.0);
     // Letters choose, and only enter takes the gaze.
@@ -236,7 +236,7 @@ fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
     stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 4 }));
     stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
     stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: None }));
-    assert!(stage.screen((120, 40)).contains("too few usable gaze samples"));
+    stage.shows((120, 40), &["too few usable gaze samples"]);
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('o')), None);
     for key in [KeyCode::Char('r'), KeyCode::Enter] {

@@ -98,23 +98,3 @@ fn no_broken_byte_makes_the_reader_panic() {
         let _ = verify(&path).map_err(|error| format!("{:?}", miette::Report::new(error)));
     }
 }
-
-#[test]
-fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
-    let (log, _) = by_hand("default.toml", ArmKind::Timed, "broken", 8);
-    let line = |number: usize, from: &'static str, to: &'static str| {
-        move |text: &str| {
-            let lines = text.lines().enumerate();
-            let changed = lines.map(|(at, line)| if at + 1 == number { line.replace(from, to) } else { line.into() });
-            changed.collect::<Vec<String>>().join("\n") + "\n"
-        }
-    };
-    refused(&log, 1, &["format version 9", "format version 3"], line(1, "\"version\":3", "\"version\":9"));
-    refused(&log, 1, &["no header"], |text| text.split_once('\n').map_or(String::new(), |(_, rest)| rest.to_string()));
-    refused(&log, 1, &["press_s = -2.4", "from 0.05 to 60 s"], line(1, "\"press_s\":2.4", "\"press_s\":-2.4"));
-    refused(&log, 3, &["\"order_9\"", "a location of the layout"], line(3, "order_1", "order_9"));
-    refused(&log, 3, &["seq 7", "without gaps"], line(3, "\"seq\":1,", "\"seq\":7,"));
-    refused(&log, 3, &["order_hidden"], line(3, "order_shown", "order_hidden"));
-    refused(&log, 3, &["after 500000000", "never decrease"], line(3, "\"t_ns\":500000000", "\"t_ns\":4"));
-    refused(&log, 3, &["the trial was started already"], line(3, "order_shown", "trial_started"));
-}

@@ -1,16 +1,10 @@
 //! The study against its plan: plans that were frozen before it, and trials that have no recording.
 
-use tomcom_study::column::CsvTable;
-use tomcom_study::detail_totals::DetailTotals;
-use tomcom_study::facts::RecordingFacts;
-use tomcom_study::figures::StudySummary;
 use tomcom_study::files::frozen_file::{freeze, read_frozen};
 use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan};
 use tomcom_study::missing_trials::{MissingTrials, in_words, missing_trials};
 use tomcom_study::preregistration::{PlaceInPlan, PreregistrationCheck, RecordedPlan};
-use tomcom_study::report;
 
-use super::trials;
 use crate::support::*;
 
 fn files() -> SessionSetup {
@@ -92,34 +86,6 @@ fn each_difference_is_told() {
     differs(|plan| drop(plan.participants.pop()), "1 participant is not in the frozen plan: P20");
     let alone = [&all[..], &[RecordedPlan { participant: "P01".to_string(), plan: None, place: None }]].concat();
     assert_eq!(differences(&plan, &alone), ["1 recording is of no plan"]);
-}
-
-#[test]
-fn the_report_says_preregistered_with_the_digest_or_what_differs() {
-    let plan = frozen();
-    let trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
-    let page = |recordings: &[RecordedPlan]| {
-        let found = PreregistrationCheck::new("abc123".to_string(), &plan, recordings);
-        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0)
-            .with_preregistration(Some(found));
-        report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL)
-    };
-    let all = recordings(&plan);
-    let same = page(&all);
-    assert!(
-        same.contains(
-            "Preregistered: the plan &quot;arms&quot; was frozen when no recording of it was there, SHA-256 abc123"
-        ),
-        "{same}"
-    );
-    let fewer = page(&all[1..]);
-    assert!(
-        fewer.contains("Not as preregistered") && fewer.contains("1 participant is without a recording: P01"),
-        "{fewer}"
-    );
-    let without = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
-    let json = serde_json::to_string(&without).expect("JSON");
-    assert!(!json.contains("preregistration"), "nothing was frozen");
 }
 
 /// A recording of a participant, by index in the plan, and its trial; `None` for practice. `periods` trials are planned.

@@ -158,17 +158,6 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_was_let_in_comes_back_while_its_address_is_locked() {
-        let (mut desk, now) = (desk(), Instant::now());
-        assert_eq!(desk.attempt(HERE, Some("participant"), "ABC234", now), PairingVerdict::Right);
-        assert_eq!(desk.attempt(HERE, Some("guesser"), "AAAAAA", now), PairingVerdict::Wrong(WAIT));
-        assert_eq!(desk.attempt(HERE, Some("participant"), "ABC234", now), PairingVerdict::Right);
-        assert_eq!(desk.attempt(HERE, Some("guesser"), "ABC234", now), PairingVerdict::Locked(WAIT));
-        // Test: the name of a paired page does not replace the pairing code.
-        assert_eq!(desk.attempt(HERE, Some("participant"), "AAAAAA", now), PairingVerdict::Locked(WAIT));
-    }
-
-    #[test]
     fn attempts_from_many_addresses_are_kept_in_bounded_memory() {
         let (mut desk, now) = (desk(), Instant::now());
         for number in 0..5000_u32 {

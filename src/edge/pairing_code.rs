@@ -20,17 +20,3 @@ pub(super) fn is_code(typed: &str, code: &str) -> bool {
     let differing = typed.iter().zip(code.bytes()).filter(|(a, b)| **a != *b).count();
     typed.len() == code.len() && differing == 0
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_code_is_known_by_its_signs() {
-        let code = pairing_code();
-        assert_eq!(code.len(), 6);
-        assert!(is_code(&format!(" {} ", code.to_lowercase()), &code));
-        assert!(!is_code(&code[1..], &code) && !is_code("", &code) && !is_code(&format!("{code}A"), &code));
-        assert_ne!(code, pairing_code());
-    }
-}

@@ -21,8 +21,7 @@ pub(super) fn files(path: &str) -> SessionSetup {
 }
 
 pub(super) fn engine(files: SessionSetup) -> SessionEngine {
-    let kitchen = Arc::new(files.kitchen.kitchen);
-    SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+    engine_of(files, 0)
 }
 
 /// Lets a session run until its trial is over, or so many seconds; after each step the wizard does something, and somebody
@@ -36,7 +35,7 @@ fn run(
     let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
     let give = |engine: &mut SessionEngine, event| drop(engine.input(engine.session().time, event));
     give(engine, Event::TrialStarted);
-    let end = SessionTime::from_secs_f64(seconds);
+    let end = at(seconds);
     for step in 0.. {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {
@@ -260,7 +259,6 @@ fn what_the_display_tells_is_recorded_and_verified() {
     let folder = empty_folder("display");
     let mut log = LogWriter::create_live(&folder, "2026-03-14", &header).expect("the folder can be written");
     let mut engine = engine(files);
-    let at = SessionTime::from_secs_f64;
     let press = |button: &str, pressed_s| Event::Press {
         agent: Agent::Human,
         button: button.to_string(),
@@ -343,7 +341,6 @@ fn a_language_may_come_from_a_file() {
 
 #[test]
 fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
-    let at = SessionTime::from_secs_f64;
     for shown in [false, true] {
         let mut files = files("sessions/default.toml");
         (files.spec.display.clock, files.spec.display.served) = (shown, shown);

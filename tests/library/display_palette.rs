@@ -62,14 +62,6 @@ fn read(path: &str) -> String {
 }
 
 #[test]
-fn white_and_black_are_as_far_apart_as_they_should_be() {
-    for (_, sight) in &SIGHTS {
-        assert!((lab("#ffffff", sight)[0] - 100.0).abs() < 0.1);
-        assert!(lab("#000000", sight)[0].abs() < 0.1);
-    }
-}
-
-#[test]
 fn signals_and_the_two_rings_of_a_press_are_told_apart() {
     let css = read("src/edge/display/page/display.css");
     let colour = |name: &str| {

@@ -33,7 +33,7 @@ impl Probed {
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
-        let stamped = TimestampedEvent { seq: self.seq, time: SessionTime::from_secs_f64(seconds), event };
+        let stamped = TimestampedEvent { seq: self.seq, time: at(seconds), event };
         apply(&mut self.session, &stamped).unwrap_or_else(|error| panic!("{error:?}: {stamped:?}"));
         self.seq += 1;
     }
@@ -165,9 +165,7 @@ fn a_pause_hides_the_question_and_stops_its_time() {
     let questions = every_question(&probed.session.kitchen.clone());
     probed.begin(30.0, questions[..2].to_vec());
     probed.probe(31.0, ProbeEvent::Asked { probe: 1, question: 1 });
-    let left_s = |probed: &Probed, now: f64| {
-        probe_left(&probed.session, SessionTime::from_secs_f64(now)).map(SessionTime::as_secs_f64)
-    };
+    let left_s = |probed: &Probed, now: f64| probe_left(&probed.session, at(now)).map(SessionTime::as_secs_f64);
     assert_eq!(left_s(&probed, 35.0), Some(20.0));
     let shown = probed.told();
     probed.at(36.0, Event::TrialPaused);

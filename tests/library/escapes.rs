@@ -11,9 +11,7 @@ use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom_core::base::printable::{printable, printable_lines};
 use tomcom_session::apply;
 use tomcom_session::files::file_error::FileError;
-use tomcom_session::follower::SessionFollower;
 use tomcom_session::tracker::TrackerEvent;
-use tomcom_study::analysis::event_lines;
 
 use crate::support::*;
 
@@ -69,24 +67,6 @@ fn the_console_shows_notes_devices_and_messages_written_out() {
     assert!(rows.iter().all(|row| is_harmless(row)), "{rows:#?}");
     assert!(rows.iter().any(|row| row.contains(&format!("cannot write {WRITTEN_OUT}"))), "{rows:#?}");
     assert!(rows.iter().any(|row| row.contains("a\\u001b[2J") && !row.contains("cannot write")), "the note: {rows:#?}");
-}
-
-#[test]
-fn a_recording_is_told_with_notes_and_devices_written_out() {
-    let session = session();
-    let cost = CostToGo::new(session.kitchen.clone());
-    let mut follower = SessionFollower::new(session, cost);
-    let told = [
-        (Event::Marker { note: HOSTILE.to_string() }, "marker: "),
-        (Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }), "eye tracker connected: "),
-        (Event::Tracker(TrackerEvent::Lost { reason: HOSTILE.to_string() }), "eye tracker lost: "),
-    ];
-    for (seq, (event, words)) in told.into_iter().enumerate() {
-        let stamped = TimestampedEvent { seq: seq as u64, time: SessionTime::ZERO, event };
-        follower.apply(&stamped).expect("the event fits");
-        let line = event_lines::line(&stamped, &follower).expect("a line");
-        assert!(line.ends_with(&format!("{words}{WRITTEN_OUT}")), "{line}");
-    }
 }
 
 /// How an error is shown, without colours.

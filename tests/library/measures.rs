@@ -146,8 +146,7 @@ impl Trial {
 
     fn event(&mut self, event: Event) {
         self.seq += 1;
-        let stamped =
-            TimestampedEvent { seq: self.seq, time: SessionTime::from_secs_f64(10.0 * self.seq as f64), event };
+        let stamped = TimestampedEvent { seq: self.seq, time: at(10.0 * self.seq as f64), event };
         apply(&mut self.session, &stamped).expect("the event fits");
         self.judge.judge(&stamped, &self.session);
     }

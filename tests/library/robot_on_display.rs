@@ -28,7 +28,7 @@ fn poses(
     assert_eq!(engine.input(SessionTime::ZERO, Event::TrialStarted).refused, None);
     let mut poses = Vec::new();
     for step in 0..(seconds / STEP_S) as u32 {
-        let now = SessionTime::from_secs_f64(STEP_S * f64::from(step));
+        let now = at(STEP_S * f64::from(step));
         while engine.next_due().is_some_and(|due| due <= now) {
             engine.fire();
         }

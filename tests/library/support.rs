@@ -53,10 +53,10 @@ pub fn default_settings() -> SessionSpec {
     toml::from_str("layout = \"\"").expect("the settings have defaults")
 }
 
-/// The engine of the first trial of a session.
-pub fn engine_of(files: SessionSetup) -> SessionEngine {
+/// The engine of a trial of a session.
+pub fn engine_of(files: SessionSetup, trial: u64) -> SessionEngine {
     let kitchen = Arc::new(files.kitchen.kitchen);
-    SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+    SessionEngine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen))
 }
 
 pub fn at(seconds: f64) -> SessionTime {

@@ -106,6 +106,13 @@ impl RecordingsFolder {
     }
 }
 
+/// Asserts that the program ended with this code and said all of this; what it said.
+pub fn ended((code, told): (Option<i32>, String), expected: i32, says: &[&str]) -> String {
+    assert_eq!(code, Some(expected), "{told}");
+    says.iter().for_each(|words| assert!(told.contains(words), "{words:?} is not in\n{told}"));
+    told
+}
+
 /// A record of training on these recordings.
 fn record(wizard: &str, recordings: &[&str]) -> String {
     let judged = |name: &&str| {
@@ -130,24 +137,17 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     lab.put("training/W2-1.json", record("W2", &["seed9-S001"]));
     let is_there = |path: &str| lab.at(path).exists();
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01"]);
-    assert!(
-        code == Some(2)
-            && told.contains("seed1-P01-1 (recording)")
-            && told.contains("nothing was deleted")
-            && told.contains("--yes"),
-        "{told}"
-    );
+    let told = ended(lab.forget(&["P01"]), 2, &["seed1-P01-1 (recording)", "nothing was deleted", "--yes"]);
     assert!(told.contains("    events.jsonl, session.toml\n"), "every file is listed: {told}");
     assert_eq!(lab.files(), before);
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(!is_there("seed1-P01-1") && !is_there("seed1-P01-2") && !is_there("training/W1-2.json"));
     let left = lab.text("training/W1-1.json");
     assert!(left.contains("seed9-S001") && !left.contains("P01"), "what was trained on others stays: {left}");
     assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(1), "there is nothing left");
-    assert_eq!(lab.forget(&["W1", "--yes"]).0, Some(0));
+    ended(lab.forget(&["W1", "--yes"]), 0, &[]);
     assert!(!is_there("training/W1-1.json") && is_there("training/W2-1.json"));
-    assert_eq!(lab.forget(&["Jane Doe", "--yes"]).0, Some(2));
+    ended(lab.forget(&["Jane Doe", "--yes"]), 2, &[]);
 }
 
 /// Tables that were made before the correction have the old code.
@@ -156,9 +156,8 @@ fn rows_from_before_a_code_was_corrected_go_with_the_recording() {
     let lab = RecordingsFolder::of_two_people("corrected");
     lab.study();
     let recording = lab.at("seed1-P01-1").display().to_string();
-    let (code, told) = lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]);
-    assert_eq!(code, Some(0), "{told}");
-    assert_eq!(lab.forget(&["P88", "--yes"]).0, Some(0));
+    ended(lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]), 0, &[]);
+    ended(lab.forget(&["P88", "--yes"]), 0, &[]);
     for table in ["actions", "trials"] {
         let left = lab.text(&format!("study/{table}.csv"));
         assert!(!left.contains("seed1-P01-1") && left.contains("seed1-P01-2"), "{table}: {left}");
@@ -183,8 +182,7 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     // A session file of somebody is no recording, whoever it is for.
     lab.put("pilot/session.toml", "layout = \"x\"\n[participant]\ncode = \"P01\"\n");
     let (before, study) = (lab.files(), lab.text("study/trials.csv"));
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     let after = lab.files();
     for (path, bytes) in &before {
         let is_gone = path.starts_with("seed1-P01") || path == "study/report.html";
@@ -215,22 +213,17 @@ fn nothing_goes_while_a_recording_is_being_written() {
     lab.study();
     let lock = RecordingLock::take(&lab.at("seed1-P01-2")).expect("a lock");
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(
-        code == Some(1) && told.contains("nothing was deleted") && told.contains("writes this recording"),
-        "{told}"
-    );
+    ended(lab.forget(&["P01", "--yes"]), 1, &["nothing was deleted", "writes this recording"]);
     assert_eq!(lab.files(), before);
     assert_eq!(lab.forget(&["P02", "--yes"]).0, Some(0), "that of somebody else is no matter");
     drop(lock);
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(lab.files().keys().all(|path| path.starts_with("study/")), "{:?}", lab.files().keys());
     // Where no lock can be taken, as in a folder that cannot be written to, it is the same.
     let lab = RecordingsFolder::of_two_people("unlockable");
     fs::create_dir(lab.at("seed1-P01-2/lock")).expect("made");
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(code == Some(1) && told.contains("nothing was deleted") && told.contains("seed1-P01-2"), "{told}");
+    ended(lab.forget(&["P01", "--yes"]), 1, &["nothing was deleted", "seed1-P01-2"]);
     assert_eq!(lab.files(), before);
 }
 
@@ -277,8 +270,7 @@ fn files_of_other_programs_stay_as_they_are_whatever_stands_in_them() {
     lab.put("text.txt", "P01 seed1-P01-1");
     lab.put("seed1-P01-1.mp4", "a video");
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "{told}");
+    let told = ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(told.contains("not looked for: copies, tables and exports in other folders, files of other"), "{told}");
     let after = lab.files();
     for (path, bytes) in &before {
@@ -293,7 +285,7 @@ fn a_code_that_looks_like_one_with_a_seed_is_another_person() {
     lab.give("seed1-P02-1", "seed1-P01");
     lab.give("seed1-P02-2", "seed1-P01");
     lab.study();
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(lab.at("seed1-P02-1").exists() && !lab.at("seed1-P01-1").exists());
     let left = lab.text("study/participants.csv");
     assert!(left.lines().count() == 2 && left.contains("\nseed1-P01,"), "{left}");
@@ -305,20 +297,16 @@ fn files_of_others_in_a_recordings_folder_stay_and_are_told() {
     lab.put("seed1-P01-1/consent.pdf", "a scan");
     let nested = lab.at("seed1-P01-2/nested");
     fs::rename(lab.at("seed1-P02-1"), &nested).expect("moved");
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(
-        code == Some(1) && told.contains("consent.pdf: in the folder of one of the participant's recordings"),
-        "{told}"
-    );
+    ended(lab.forget(&["P01", "--yes"]), 1, &["consent.pdf: in the folder of one of the participant's recordings"]);
     let left: Vec<String> = lab.files().into_keys().filter(|path| path.starts_with("seed1-P01")).collect();
     let nested = ["events.jsonl", "session.toml"].map(|name| format!("seed1-P01-2/nested/{name}"));
     assert_eq!(left, [&["seed1-P01-1/consent.pdf".to_string()][..], &nested].concat());
     // What an analysis of the recording alone left in it goes with it.
     let recording = lab.at("seed1-P02-2");
-    let (code, told) = lab.run(&["study", recording.to_str().expect("UTF-8"), "--skip", "concepts"]);
-    assert!(code == Some(0) && recording.join("study/report.html").exists(), "{told}");
-    let (code, told) = lab.forget(&["P02", "--yes"]);
-    assert!(code == Some(0) && !recording.exists(), "{told}");
+    ended(lab.run(&["study", recording.to_str().expect("UTF-8"), "--skip", "concepts"]), 0, &[]);
+    assert!(recording.join("study/report.html").exists());
+    ended(lab.forget(&["P02", "--yes"]), 0, &[]);
+    assert!(!recording.exists());
 }
 
 #[test]
@@ -346,11 +334,7 @@ fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
         "clear.csv",
         "recording,rater,press,cause,aspect\ntrial-2,R1,4,slip,\nb/trial-1,R1,4,slip,\na/trial-1,R1,4,slip,\n",
     );
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(
-        code == Some(1) && told.contains("a/codes.csv: it names a recording, and recordings of several people"),
-        "{told}"
-    );
+    ended(lab.forget(&["P01", "--yes"]), 1, &["a/codes.csv: it names a recording, and recordings of several people"]);
     assert_eq!(lab.text("a/codes.csv"), codes);
     assert_eq!(lab.text("clear.csv"), "recording,rater,press,cause,aspect\nb/trial-1,R1,4,slip,\n");
     assert!(
@@ -390,15 +374,15 @@ fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
         let stream = lab.temporary.join(name);
         let mut arguments: Vec<String> = recordings.iter().map(|recording| recording.display().to_string()).collect();
         arguments.extend([format!("--save={}", stream.display())]);
-        let (code, told) =
-            lab.run(&[&["review"], &arguments.iter().map(String::as_str).collect::<Vec<&str>>()[..]].concat());
-        assert_eq!(code, Some(0), "{told}");
+        ended(
+            lab.run(&[&["review"], &arguments.iter().map(String::as_str).collect::<Vec<&str>>()[..]].concat()),
+            0,
+            &[],
+        );
         stream
     });
-    let (code, told) = lab.forget(&["P01"]);
-    assert!(code == Some(2) && told.contains(&own.display().to_string()), "it is listed first: {told}");
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.forget(&["P01"]), 2, &[&own.display().to_string()]);
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(!own.exists() && !own.parent().expect("a folder").exists(), "with the folder that was made for it");
     assert!(other.exists() && without_a_note.exists(), "P01 of another study is another person");
     assert!(

@@ -9,15 +9,3 @@ pub fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
         (position < u32::BITS).then_some(position as usize)
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::ones;
-
-    #[test]
-    fn every_bit_once_and_in_order() {
-        assert_eq!(ones(0).count(), 0);
-        assert_eq!(ones(0x8000_0101).collect::<Vec<_>>(), [0, 8, 31]);
-        assert_eq!(ones(u32::MAX).count(), 32);
-    }
-}

@@ -15,18 +15,3 @@ pub fn without_formula(text: &str) -> Cow<'_, str> {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();
     if is_formula { Cow::Owned(format!("'{text}")) } else { Cow::Borrowed(text) }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn formulas_become_text_and_numbers_stay_numbers() {
-        for text in ["=1+1", "=HYPERLINK(\"http://x\")", "+49 170", "-P07", "@SUM(A1)", "\t=1", "\r=1", "-"] {
-            assert_eq!(without_formula(text), format!("'{text}"), "{text:?}");
-        }
-        for text in ["", "-0.5", "+3", "-1e-9", "a = b", "'=1", "P07-1"] {
-            assert_eq!(without_formula(text), text);
-        }
-    }
-}

@@ -156,39 +156,4 @@ mod tests {
             &[],
         );
     }
-
-    #[test]
-    fn a_clock_that_was_set_is_joined_by_the_order_of_samples() {
-        check(&[every_5(74_703_000, 6), every_5(34_000, 6)].concat(), &every_5(0, 12), &[6], &[]);
-        check(&[every_5(0, 6), every_5(1_725_000_000_000, 6)].concat(), &every_5(0, 12), &[6], &[]);
-        let twice = [every_5(50_000, 6), every_5(7000, 6), every_5(100, 6)].concat();
-        check(&twice, &every_5(0, 18), &[6, 12], &[]);
-        // Test: the clock was set back by a minute, and right again.
-        let right_again = [every_5(100_000, 6), every_5(40_030, 6), every_5(100_060, 6)].concat();
-        check(&right_again, &every_5(0, 18), &[6, 12], &[]);
-        // Test: the clock was set back, and went on with a gap after three samples.
-        let with_gap = [every_5(50_000, 6), every_5(7000, 3), every_5(9000, 6)].concat();
-        let joined = [every_5(0, 9), every_5(2030, 6)].concat();
-        check(&with_gap, &joined, &[6], &[]);
-    }
-
-    #[test]
-    fn an_odd_time_stamp_moves_no_other_sample() {
-        let wanted = every_5(0, 12);
-        check(&[&[0], &every_5(1_725_000_000_000, 12)[..]].concat(), &wanted, &[], &[0]);
-        for odd in [0, 500_000, 1_725_000_000_000, -7] {
-            let times = [&every_5(10_000, 6)[..], &[odd], &every_5(10_030, 6)].concat();
-            check(&times, &wanted, &[], &[6]);
-        }
-        let two = [&every_5(10_000, 6)[..], &[500_000, 3], &every_5(10_030, 6)].concat();
-        check(&two, &wanted, &[], &[6, 7]);
-        check(&[&every_5(10_000, 12)[..], &[0]].concat(), &wanted, &[], &[12]);
-    }
-
-    #[test]
-    fn the_median_interval_is_that_between_most_samples() {
-        assert_eq!(median_interval(&[7]), None);
-        assert_eq!(median_interval(&[0, 5, 10, 15, 900, 905]), Some(5));
-        assert_eq!(median_interval(&[3, 2, 1]), Some(-1));
-    }
 }

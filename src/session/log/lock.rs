@@ -193,34 +193,6 @@ mod tests {
         assert_eq!(RecordingLock::holder(folder), None, "what a killed program left behind is held by nobody");
     }
 
-    #[test]
-    fn one_program_at_a_time_records_a_participant_of_a_plan() {
-        let home = tempfile::tempdir().unwrap();
-        let folder = home.path();
-        let first = RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap();
-        let refusal = RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap_err().to_string();
-        let told = format!("another program (process {}) records P02 of the plan main-study", std::process::id());
-        assert!(refusal.contains(&told), "{refusal}");
-        let _others =
-            ["P01", "P03"].map(|code| RecordingLock::take_for_participant(folder, "main-study", code).unwrap());
-        let _rehearsal = RecordingLock::take_for_participant(folder, "rehearsal", "P02").unwrap();
-        drop(first);
-        drop(RecordingLock::take_for_participant(folder, "main-study", "P02").unwrap());
-    }
-
-    #[test]
-    fn one_program_at_a_time_codes_as_one_rater() {
-        let home = tempfile::tempdir().unwrap();
-        let folder = home.path();
-        let first = RecordingLock::take_for_codes(folder, &["R1"]).unwrap();
-        let refusal = RecordingLock::take_for_codes(folder, &["R1"]).unwrap_err().to_string();
-        assert!(refusal.contains("codes its errors as R1"), "{refusal}");
-        let _other = RecordingLock::take_for_codes(folder, &["R2"]).unwrap();
-        let _recording = RecordingLock::take(folder).unwrap();
-        drop(first);
-        drop(RecordingLock::take_for_codes(folder, &["R1"]).unwrap());
-    }
-
     #[cfg(unix)]
     #[test]
     fn a_file_that_a_link_leads_to_is_left_as_it_is() {

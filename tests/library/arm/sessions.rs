@@ -22,7 +22,7 @@ fn session(kitchen: Kitchen) -> SessionEngine {
 
 /// Lets the session go on until such an event, or for so long; everything that happened.
 fn until(engine: &mut SessionEngine, at_most_s: f64, is_it: impl Fn(&Event) -> bool) -> Vec<Event> {
-    let end = engine.session().time + SessionTime::from_secs_f64(at_most_s);
+    let end = engine.session().time + at(at_most_s);
     let mut seen = Vec::new();
     while engine.next_due().is_some_and(|due| due <= end) {
         let events = engine.fire().into_iter().map(|stamped| stamped.event);

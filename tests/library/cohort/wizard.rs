@@ -65,7 +65,7 @@ fn a_wizard_tells_what_was_not_looked_at_and_nothing_that_was() {
         ..WizardSpec::default()
     };
     let mut cost = CostToGo::new(kitchen.clone());
-    let second = |s: f64| SessionTime::from_secs_f64(s);
+    let second = |s: f64| at(s);
     let empty = kitchen.empty_state();
     // The robot puts the rice of an order into the pot: who does not see that fetches rice, too.
     let place = |name: &str| kitchen.location_named(name).expect("a place of the kitchen");
@@ -133,7 +133,7 @@ fn actions(wizard: &mut ScriptedWizard) -> Vec<(f64, WizardAction)> {
 
 #[test]
 fn an_offer_is_taken_after_the_time_of_reading_or_left() {
-    let second = SessionTime::from_secs_f64;
+    let second = at;
     let takes = |takes, reads_s| OfferReading { takes, reads_s };
     let mut wizard = reader(takes(1.0, 2.0), 5.0);
     wizard.on_offer(second(10.0), 7);

@@ -73,7 +73,7 @@ fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
         ] {
             let mut stage = Stage::sushi(ParticipantKind::Simulated);
             stage.wait(0.0);
-            let ahead = |stage: &mut Stage| stage.model.clock = stage.model.now + SessionTime::from_secs_f64(ahead_s);
+            let ahead = |stage: &mut Stage| stage.model.clock = stage.model.now + at(ahead_s);
             ahead(&mut stage);
             stage.click("[a]");
             assert!(stage.asks_to_send(), "clock ahead by {ahead_s} s");
@@ -186,7 +186,7 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.keys =
         KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let length = SessionTime::from_secs_f64(40.0);
+    let length = at(40.0);
     stage.model.playback = Some(Playback { length, event: 10, events: 90, ..Playback::new("S001".to_string()) });
     for size in SIZES {
         stage.model.size = size;

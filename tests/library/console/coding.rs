@@ -6,7 +6,6 @@ use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::rater_session::{CodingRaters, RaterSession};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom_core::measures::consensus::RaterConsensus;
 use tomcom_session::TimelineEvent;
 use tomcom_session::error_list::ListedError;
 
@@ -95,34 +94,6 @@ fn leaving_asks_nothing_while_all_codes_are_saved_and_the_hint_says_so() {
 }
 
 #[test]
-fn codes_are_undone_and_redone_step_by_step() {
-    let mut stage = rater(codes(&[(0, ErrorCauseCode::Slip)]));
-    let press = 200;
-    assert_eq!(stage.key(KeyCode::Char('2')), Some(ConsoleCommand::Code { press }));
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('c')), Some(ConsoleCommand::Code { press }));
-    assert_eq!(coding(&stage).progress(), "2/12 errors coded, 1 since opening");
-    assert_eq!(coding(&stage).codes.0[&press], belief());
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('u')), Some(ConsoleCommand::Code { press }));
-    assert_eq!(coding(&stage).codes.0[&press], ErrorCauseCode::Race);
-    stage.wait(1.0);
-    stage.key(KeyCode::Char('u'));
-    assert!(!coding(&stage).codes.0.contains_key(&press));
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('u')), None);
-    assert!(stage.notice().contains("no code was changed since"), "what was there at the opening stays");
-    for _ in 0..2 {
-        stage.wait(1.0);
-        stage.control('y');
-    }
-    assert_eq!(coding(&stage).codes.0[&press], belief());
-    stage.wait(1.0);
-    stage.key(KeyCode::Delete);
-    assert_eq!(coding(&stage).progress(), "1/12 errors coded");
-}
-
-#[test]
 fn arrows_and_clicks_go_to_an_error_of_the_list() {
     let mut stage = rater(RaterCodes::default());
     let go = |press| Some(ConsoleCommand::Move(ReplayAction::ToEvent(press)));
@@ -154,18 +125,6 @@ fn a_click_on_the_codebook_gives_the_code() {
             assert_eq!(coding(&stage).codes.0[&200], code);
         }
     }
-}
-
-#[test]
-fn two_raters_settle_with_both_codes_in_view() {
-    let all: Vec<u64> = (0..12).map(|index| 100 * index).collect();
-    let one = RaterCodes(all.iter().map(|press| (*press, ErrorCauseCode::Slip)).collect());
-    let other = RaterCodes(all.iter().skip(1).map(|press| (*press, belief())).collect());
-    let party = CodingRaters::Pair { consensus: RaterConsensus::new("R1", "R2"), own: [one, other] };
-    let mut stage = rated(party, codes(&[(0, ErrorCauseCode::Slip)]));
-    stage.key(KeyCode::Char('4'));
-    assert_eq!(coding(&stage).progress(), "2/12 errors settled, 1 since opening");
-    stage.shows_everywhere(&["R1: slip", "R2: wrong about cutting board", "2/12 errors settled, 1 since opening"]);
 }
 
 #[test]

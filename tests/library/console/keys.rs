@@ -6,40 +6,10 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::Playback;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom_core::kitchen::LocationKind;
 use tomcom_session::wizard_screen::WizardScreenContent;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::support::*;
-
-#[test]
-fn each_signal_has_a_key_that_sends_it_once() {
-    for name in ["sushi", "burger"] {
-        let mut stage = Stage::new(name, ParticipantKind::Simulated);
-        let kitchen = stage.session.kitchen.clone();
-        stage.at(1.0, Event::TrialStarted);
-        for &order in &kitchen.orders {
-            let order = kitchen.location(order).name.clone();
-            stage.at(1.0, Event::OrderShown { order, dish: kitchen.dishes[0].name.clone() });
-        }
-        let mut sent = Vec::new();
-        for location in &kitchen.locations {
-            stage.wait(5.0);
-            let key = location.signal_key.expect("every location of the shipped kitchens has a key");
-            let Some(Event::SignalShown { signal, .. }) = input(stage.key(KeyCode::Char(key))) else {
-                assert_eq!(location.kind, LocationKind::Hand(Agent::Human), "{}: {}", location.name, stage.notice());
-                continue;
-            };
-            assert_eq!(signal.target(), Some(location.name.as_str()));
-            sent.push(signal);
-            for _ in 0..40 {
-                stage.wait(0.03);
-                assert_eq!(stage.key(KeyCode::Char(key)), None, "a held key repeats");
-            }
-        }
-        assert_eq!(sent.len(), kitchen.locations.len() - 1);
-    }
-}
 
 #[test]
 fn a_terminal_that_reports_repeats_lets_the_same_key_be_pressed_twice() {

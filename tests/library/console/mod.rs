@@ -55,7 +55,7 @@ impl Stage {
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
-        self.model.now = SessionTime::from_secs_f64(seconds);
+        self.model.now = at(seconds);
         self.model.clock = self.model.now;
         let stamped = TimestampedEvent { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
@@ -65,7 +65,7 @@ impl Stage {
 
     /// Opens or closes the offer that is due, as a running session does.
     fn offer(&mut self, seconds: f64) {
-        while let Some(event) = offers::due(&self.session, SessionTime::from_secs_f64(seconds)) {
+        while let Some(event) = offers::due(&self.session, at(seconds)) {
             self.at(seconds, event);
         }
     }
@@ -137,7 +137,7 @@ impl Stage {
             ],
             false,
         );
-        let until_ns = SessionTime::from_secs_f64(24.0);
+        let until_ns = at(24.0);
         stage.at(21.2, Event::RobotIntends { button: "counter".to_string(), until_ns, initiative: false });
         for step in 0..12 {
             stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
@@ -147,8 +147,8 @@ impl Stage {
             21.8,
             Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()), offer: None },
         );
-        stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();
-        stage.model.now = SessionTime::from_secs_f64(22.6);
+        stage.model.errors = [15.0, 21.0].map(at).to_vec();
+        stage.model.now = at(22.6);
         stage
     }
 
@@ -211,7 +211,7 @@ impl Stage {
     }
 
     fn wait(&mut self, seconds: f64) {
-        self.model.now = self.model.now + SessionTime::from_secs_f64(seconds);
+        self.model.now = self.model.now + at(seconds);
         self.model.clock = self.model.now;
     }
 

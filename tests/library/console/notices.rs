@@ -18,10 +18,10 @@ use crate::support::*;
 fn ages_stand_still_in_a_pause_and_after_the_end() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.at(1.0, Event::TrialStarted);
-    let shown = SessionTime::from_secs_f64(2.0);
+    let shown = at(2.0);
     stage.at(2.0, Event::OrderShown { order: "order_1".to_string(), dish: "tuna nigiri".to_string() });
     stage.at(5.0, Event::TrialPaused);
-    let age_s = |stage: &Stage, now_s: f64| stage.session.age(shown, SessionTime::from_secs_f64(now_s)).as_secs_f64();
+    let age_s = |stage: &Stage, now_s: f64| stage.session.age(shown, at(now_s)).as_secs_f64();
     assert_eq!(age_s(&stage, 100.0), 3.0);
     stage.at(105.0, Event::TrialResumed);
     assert_eq!(age_s(&stage, 106.0), 4.0);
@@ -310,6 +310,6 @@ fn how_a_tracker_pairs_is_shown_until_its_gaze_arrives() {
         stage.look(1.0 + 0.01 * f64::from(step), 0.5, 0.5);
     }
     assert_eq!((check(&stage), is_shown(&stage)), (None, [false; 3]), "gaze arrives");
-    stage.model.now = SessionTime::from_secs_f64(20.0);
+    stage.model.now = at(20.0);
     assert_eq!((check(&stage), is_shown(&stage)), (Some(found.to_string()), [true; 3]), "the tracker is gone");
 }

@@ -186,28 +186,6 @@ fn press(picker: &mut RecordingPicker, code: KeyCode) -> Option<RecordingReply> 
     picker.key(&KeyEvent::new(code, KeyModifiers::NONE))
 }
 
-#[test]
-fn typing_filters_without_spaces_and_enter_takes_the_row() {
-    let mut picker = picker();
-    assert_eq!(picker.left(), [0, 1, 2]);
-    for letter in "p07 wiz".chars() {
-        assert_eq!(press(&mut picker, KeyCode::Char(letter)), None);
-    }
-    assert_eq!((picker.cursor.filter.as_str(), picker.left()), ("p07wiz", vec![1]));
-    assert_eq!(press(&mut picker, KeyCode::Enter), Some(RecordingReply::Chosen(1)));
-    assert_eq!(press(&mut picker, KeyCode::Char('x')), None);
-    assert_eq!(press(&mut picker, KeyCode::Enter), None, "nothing is left, nothing is taken");
-    assert_eq!(press(&mut picker, KeyCode::Esc), None, "the filter goes first");
-    assert_eq!(press(&mut picker, KeyCode::Backspace), None, "nothing is left to delete, and the list stays");
-    assert_eq!(picker.left(), [0, 1, 2]);
-    press(&mut picker, KeyCode::End);
-    press(&mut picker, KeyCode::Down);
-    assert_eq!(press(&mut picker, KeyCode::Enter), Some(RecordingReply::Chosen(2)));
-    assert_eq!(press(&mut picker, KeyCode::Esc), Some(RecordingReply::Leave));
-    let quit = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
-    assert_eq!(picker.key(&quit), Some(RecordingReply::Leave));
-}
-
 /// The list as it is drawn at 80x24.
 fn screen(picker: &RecordingPicker) -> String {
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };

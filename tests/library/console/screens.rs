@@ -48,7 +48,7 @@ fn a_replay_has_one_clock() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.keys =
         KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let trial_length = SessionTime::from_secs_f64(90.0);
+    let trial_length = at(90.0);
     let playback = Playback { trial_length, event: 40, events: 90, ..Playback::new("P01-1".to_string()) };
     stage.model.playback = Some(playback);
     for size in SIZES {
@@ -249,9 +249,9 @@ fn the_screen_stands_while_the_trial_stands() {
     stage.at(22.6, Event::TrialPaused);
     let below_head = |stage: &Stage, size| stage.screen(size).lines().skip(1).map(str::to_string).collect::<Vec<_>>();
     for size in SIZES {
-        stage.model.now = SessionTime::from_secs_f64(30.0);
+        stage.model.now = at(30.0);
         let early = below_head(&stage, size);
-        stage.model.now = SessionTime::from_secs_f64(330.0);
+        stage.model.now = at(330.0);
         assert_eq!(below_head(&stage, size), early);
     }
     let events = stage.screen((200, 60));

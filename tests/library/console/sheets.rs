@@ -86,7 +86,7 @@ fn the_keys_of_a_sheet_make_events_and_a_held_one_answers_once() {
     stage.at(0.0, Event::Protocol(first));
     // The key is still down: nothing more is ticked.
     assert_eq!(stage.key(KeyCode::Enter), None);
-    stage.model.clock = SessionTime::from_secs_f64(2.0);
+    stage.model.clock = at(2.0);
     for arrow in [KeyCode::Right, KeyCode::Left, KeyCode::Down, KeyCode::Up] {
         assert_eq!(stage.key(arrow), None, "arrows tick nothing");
         assert!(stage.notice().contains("enter ticks the step"), "{}", stage.notice());

@@ -15,33 +15,6 @@ use super::{SIZES, Stage, input, type_in};
 use crate::support::*;
 
 #[test]
-fn the_trial_is_started_paused_and_ended_by_keys() {
-    let mut stage = Stage::new("burger", ParticipantKind::Simulated);
-    assert_eq!(input(stage.key(KeyCode::Char('a'))), None, "no signal before the trial");
-    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
-    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialStarted));
-    stage.at(1.0, Event::TrialStarted);
-    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialPaused));
-    stage.at(2.0, Event::TrialPaused);
-    assert_eq!(stage.session.phase, TrialPhase::Paused);
-    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialResumed));
-    stage.at(3.0, Event::TrialResumed);
-    assert_eq!(input(stage.key(KeyCode::Char('3'))), Some(Event::Marker { note: "slip".to_string() }));
-    assert_eq!(stage.control('e'), None);
-    assert_eq!(stage.model.dialog, Some(Dialog::EndTrial));
-    stage.wait(1.0);
-    assert!(matches!(input(stage.key(KeyCode::Char('y'))), Some(Event::TrialEnded { .. })));
-    assert_eq!(stage.control('c'), None);
-    assert_eq!(stage.model.dialog, Some(Dialog::Quit));
-    assert_eq!(stage.key(KeyCode::Char('n')), None);
-    assert_eq!(stage.model.dialog, None);
-    stage.wait(1.0);
-    stage.control('c');
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('y')), Some(ConsoleCommand::Quit));
-}
-
-#[test]
 fn recorded_gaze_is_told_before_the_trial_with_what_is_odd_in_it() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
     stage.session.spec.participant.gaze = GazeSource::File;

@@ -9,7 +9,6 @@ use crate::support::*;
 
 /// Checks the calibration as the live session does, from `from_s` on; all events of the check.
 fn check_calibration(engine: &mut SessionEngine, from_s: f64, accept: GazeCheckEvent) -> Vec<TimestampedEvent> {
-    let at = SessionTime::from_secs_f64;
     let mut events = Vec::new();
     let mut input = |engine: &mut SessionEngine, time, event| {
         let outcome = engine.input(time, event);
@@ -61,7 +60,7 @@ fn a_check_changes_nothing_in_the_trial_but_the_offset_of_the_gaze() {
         if checks {
             check_calibration(&mut engine, 0.0, GazeCheckEvent::Dismissed);
         }
-        let start = SessionTime::from_secs_f64(60.0);
+        let start = at(60.0);
         let mut events = engine.input(start, Event::TrialStarted).events;
         while let Some(due) = engine.next_due() {
             assert!(due >= start);

@@ -11,6 +11,5 @@ use crate::support::*;
 fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     let mut files = session_file("default");
     change(&mut files.spec);
-    let kitchen = Arc::new(files.kitchen.kitchen);
-    SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+    engine_of(files, 0)
 }

@@ -140,7 +140,6 @@ fn after_path(path: &[([f64; 2], f64)], hz: f64) -> Vec<Vec<f64>> {
     let mut engine = engine(|spec| {
         (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
     });
-    let at = SessionTime::from_secs_f64;
     assert_eq!(engine.input(at(0.0), Event::TrialStarted).refused, None);
     let mut input = |time_s: f64, event: Event| assert_eq!(engine.input(at(time_s), event).refused, None);
     // What the robot's presses do to a belief is drawn, by the numbers of events, which are others at another rate.
@@ -249,7 +248,7 @@ impl Look {
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
-        let time = SessionTime::from_secs_f64(seconds);
+        let time = at(seconds);
         let stamped = TimestampedEvent { seq: self.seq, time, event };
         let applied = apply(&mut self.session, &stamped).expect("the event fits");
         self.seen.note(&self.session, &stamped.event, &applied.change);
@@ -260,7 +259,7 @@ impl Look {
     /// A gaze sample at the robot's hand that was taken and arrived at these times.
     fn late(&mut self, taken_s: f64, arrived_s: f64) {
         let [x, y] = self.session.kitchen.location(self.hand).display.centre();
-        let taken_ns = Some(SessionTime::from_secs_f64(taken_s));
+        let taken_ns = Some(at(taken_s));
         self.at(arrived_s, Event::Gaze(GazeSample { taken_ns, ..GazeSample::new(x, y, 1.0) }));
     }
 
@@ -317,7 +316,7 @@ fn a_look_counts_by_the_time_at_which_it_was_taken() {
     let before = arriving_after_the_change(3.7);
     assert!(before.session.is_unseen(before.hand), "the mark on the wizard's screen, and the stratum of probes");
     assert!(before.is_unseen() && !looks(&before), "the old content was looked at");
-    assert_eq!(before.session.gaze.looked_at[before.hand.index()], Some(SessionTime::from_secs_f64(3.82)));
+    assert_eq!(before.session.gaze.looked_at[before.hand.index()], Some(at(3.82)));
     let after = arriving_after_the_change(4.01);
     assert!(!after.session.is_unseen(after.hand));
     assert!(!after.is_unseen() && looks(&after));
@@ -352,7 +351,7 @@ fn the_scripted_wizard_sees_at_which_content_the_participant_looked() {
 fn a_sample_that_was_taken_during_a_probe_is_no_look_at_the_kitchen() {
     let look = |taken_s: f64| {
         let mut look = Look::changed();
-        look.session.probes.ended_at = Some(SessionTime::from_secs_f64(20.0));
+        look.session.probes.ended_at = Some(at(20.0));
         look.late(taken_s, 20.05);
         (look.session.looked_at().is_some(), look.session.is_unseen(look.hand))
     };

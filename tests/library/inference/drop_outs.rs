@@ -118,7 +118,7 @@ fn largest_change(before: &[f64], after: &[f64]) -> f64 {
 }
 
 fn later(time: SessionTime, seconds: f64) -> SessionTime {
-    time + SessionTime::from_secs_f64(seconds)
+    time + at(seconds)
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn the_estimate_does_not_jump_where_a_drop_out_begins_or_ends() {
                     ends += 1;
                     // The first sample stands for the time of one sample before it.
                     let sample_s = human.perception.max_sample_s;
-                    let before = known(filter, &kitchen, state, first - SessionTime::from_secs_f64(sample_s));
+                    let before = known(filter, &kitchen, state, first - at(sample_s));
                     let after = known(&engine.follower().filter, &kitchen, state, first);
                     for (index, (before, after)) in before.iter().zip(&after).enumerate() {
                         // The area around the fixation may reach places beside the one that is looked at.

@@ -13,10 +13,6 @@ use tomcom_study::fit::{FitTrials, fit};
 use super::world::{Human, World, live};
 use crate::support::*;
 
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
-}
-
 #[test]
 fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
     let (kitchen, model) = (kitchen("sushi"), HumanModel::default());

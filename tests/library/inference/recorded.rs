@@ -60,7 +60,7 @@ fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
     let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
     let signals = own.enumerate().flat_map(|(number, one)| {
         let location = LocationId([0, 5, 1, 6, 0, 4][number % 6]);
-        let after = |seconds: f64| one.time + SessionTime::from_secs_f64(seconds);
+        let after = |seconds: f64| one.time + at(seconds);
         [
             Observation { time: after(0.1), what: ObservedEvidence::Told { location } },
             Observation { time: after(4.1), what: ObservedEvidence::EndedSignal },

@@ -35,7 +35,7 @@ impl Run {
     /// The reason why an input is refused, if it is.
     fn input(&mut self, event: Event) -> Option<String> {
         self.now_s += 0.5;
-        let outcome = self.engine.input(SessionTime::from_secs_f64(self.now_s), event);
+        let outcome = self.engine.input(at(self.now_s), event);
         outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
         outcome.refused
     }
@@ -183,7 +183,7 @@ fn hasty_answers_are_all_taken() {
     let mut model = ConsoleModel::new(keys.expect("keys"), theme, (80, 24));
     let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
     for (index, item) in items.iter().enumerate() {
-        model.clock = SessionTime::from_secs_f64(5.0 + 0.3 * index as f64);
+        model.clock = at(5.0 + 0.3 * index as f64);
         let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Char('5'), KeyModifiers::NONE));
         let Some(ConsoleCommand::Input(event)) = update(&mut model, run.engine.session(), key) else {
             panic!("item {}: {:?}", item.id, model.notice)
@@ -192,7 +192,7 @@ fn hasty_answers_are_all_taken() {
         assert_eq!(run.input(event), None);
     }
     for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {
-        model.clock = SessionTime::from_secs_f64(model.clock.as_secs_f64() + gap_s);
+        model.clock = at(model.clock.as_secs_f64() + gap_s);
         let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
         let command = update(&mut model, run.engine.session(), key);
         assert_eq!(command.is_some(), counts, "after {gap_s} s: {command:?}");

@@ -133,7 +133,7 @@ fn the_person_is_asked_before_the_first_trial_and_only_then() {
     let mut now_s = 0.0;
     let mut tell = |engine: &mut SessionEngine, event: ProtocolEvent| {
         now_s += 0.5;
-        let outcome = engine.input(SessionTime::from_secs_f64(now_s), Event::Protocol(event));
+        let outcome = engine.input(at(now_s), Event::Protocol(event));
         outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         outcome.refused
     };

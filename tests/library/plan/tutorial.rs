@@ -40,7 +40,7 @@ impl Lesson {
 
     fn input(&mut self, event: Event) -> Option<String> {
         self.now_s += 0.5;
-        let outcome = self.engine.input(SessionTime::from_secs_f64(self.now_s), event);
+        let outcome = self.engine.input(at(self.now_s), event);
         outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
         outcome.refused
     }

@@ -99,7 +99,7 @@ fn by_hand(name: &str, arm: ArmKind, out: &str, seed: u64) -> (PathBuf, SessionE
     let mut now_s = 0.0;
     for (after_s, event) in inputs {
         now_s += after_s;
-        let outcome = engine.input(SessionTime::from_secs_f64(now_s), event);
+        let outcome = engine.input(at(now_s), event);
         outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
     }
     (log.folder().join(LOG_NAME), engine)

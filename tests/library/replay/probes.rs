@@ -111,7 +111,7 @@ fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_sam
         let mut random = stream(seed, "hand at probes", 0);
         let mut now_s = 0.5;
         let mut give = |engine: &mut SessionEngine, now_s: f64, event: Event| {
-            let events = engine.input(SessionTime::from_secs_f64(now_s), event).events;
+            let events = engine.input(at(now_s), event).events;
             events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         };
         give(&mut engine, now_s, Event::TrialStarted);
@@ -155,10 +155,10 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
         let (question, answer) = (shown as u32 + 1, Some(asked.choices[0].clone()));
         let on = AnswerDevice::Display;
         let event = Event::Probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on });
-        (engine.session().time + SessionTime::from_secs_f64(after_s), event)
+        (engine.session().time + at(after_s), event)
     };
-    let (at, event) = answer(&engine, 2.0);
-    events.extend(engine.input(at, event).events);
+    let (time, event) = answer(&engine, 2.0);
+    events.extend(engine.input(time, event).events);
     events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
     let recording = log.folder().to_path_buf();
     drop(log);
@@ -169,11 +169,11 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
     let open = engine.session().probes.open.clone().expect("the probe is held");
     assert!(open.is_paused() && open.shown == Some(1) && open.answers[0].is_some(), "{open:?}");
     assert_eq!(engine.next_due(), None, "nothing is due until the participant is back");
-    let hour = SessionTime::from_secs_f64(3600.0);
+    let hour = at(3600.0);
     assert_eq!(engine.input(resumed.time + hour, Event::TrialResumed).refused, None);
     while engine.session().is_frozen() && asked(engine) {
-        let (at, event) = answer(engine, 1.0);
-        assert_eq!(engine.input(at, event).refused, None);
+        let (time, event) = answer(engine, 1.0);
+        assert_eq!(engine.input(time, event).refused, None);
     }
     let closed = engine.session().probes.open.as_ref().and_then(|open| open.closed).map(|(end, _)| end);
     assert_eq!(closed, Some(ProbeEndReason::Answered));

@@ -16,18 +16,6 @@ fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> Stri
 }
 
 #[test]
-fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
-    let (log, _) = by_hand("default.toml", ArmKind::Physics, "cut", 5);
-    let text = fs::read(&log).expect("a recording");
-    for cut in [text.len() - 1, text.len() - 30, text.len() / 2, text.len() * 3 / 4] {
-        let path = log.with_file_name("cut.jsonl");
-        fs::write(&path, &text[..cut]).expect("the folder can be written");
-        let found = verify(&path).expect("a cut recording");
-        assert!(found.verified && found.cut, "cut at {cut}: {found:?}");
-    }
-}
-
-#[test]
 fn empty_lines_at_the_end_of_a_recording_are_no_damage() {
     let (log, _) = by_hand("default.toml", ArmKind::Timed, "blank", 5);
     let text = fs::read_to_string(&log).expect("a recording");
@@ -45,21 +33,6 @@ fn empty_lines_at_the_end_of_a_recording_are_no_damage() {
             text.replacen("\n{\"seq\":1,", &format!("{empty}{{\"seq\":1,"), 1)
         });
     }
-}
-
-#[test]
-fn a_session_that_is_still_recorded_can_be_followed() {
-    let (log, engine) = by_hand("default.toml", ArmKind::Timed, "followed", 9);
-    let text = fs::read(&log).expect("a recording");
-    let growing = log.with_file_name("growing.jsonl");
-    fs::write(&growing, &text[..text.len() / 2]).expect("the folder can be written");
-    let mut replay = RecordingReplay::open(&growing).expect("the header is there");
-    replay.run().expect("the first half");
-    assert!(replay.log().is_cut());
-    fs::write(&growing, &text).expect("the folder can be written");
-    replay.run().expect("the second half");
-    assert!(!replay.log().is_cut());
-    assert_eq!(replay.session().timeline, engine.session().timeline);
 }
 
 #[test]

@@ -87,7 +87,7 @@ fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
     assert!(!slow.is_read(), "the rest is read later");
     let start = slow.trial_start();
     slow.wind(start);
-    assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, SessionTime::from_secs_f64(0.5)));
+    assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, at(0.5)));
     assert!(slow.trial_length() > SessionTime::ZERO);
     whole.wind(whole.length().1);
     assert_eq!(whole.trial_length(), whole.session.trial_clock(whole.time()));

@@ -30,10 +30,6 @@ fn engine_of_trial(trial: u64, change: impl Fn(&mut SessionSpec)) -> SessionEngi
     SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen))
 }
 
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
-}
-
 fn press(button: &str) -> Event {
     Event::Press { agent: Agent::Human, button: button.to_string(), at_ns: None }
 }

@@ -240,7 +240,7 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
         headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
         let mut cost = CostToGo::new(kitchen.clone());
         let mut session = Session::new(kitchen.clone(), engine.session().spec.clone(), trial);
-        let initiative = SessionTime::from_secs_f64(session.spec.robot.initiative_s);
+        let initiative = at(session.spec.robot.initiative_s);
         for stamped in &events {
             let passed_s = stamped.time.secs_since(session.time);
             if session.is_running() {

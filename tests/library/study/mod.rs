@@ -23,10 +23,6 @@ fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");
 }
 
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
-}
-
 /// A trial of 200 presses of the human with this many errors, three of four of them belief related.
 fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> TrialStatistics {
     let related = errors * 3 / 4;

@@ -229,8 +229,8 @@ fn two_raters_say_why_people_erred() {
 #[test]
 fn what_was_offered_stands_beside_what_the_wizard_did() {
     let offer = |seq: u64, stood_s: f64, how: Option<OfferKeyKind>, reason| {
-        let opened = SessionTime::from_secs_f64(10.0 * seq as f64);
-        let sent = how.map(|_| opened + SessionTime::from_secs_f64(stood_s));
+        let opened = at(10.0 * seq as f64);
+        let sent = how.map(|_| opened + at(stood_s));
         let what = OfferedCommunication::Signal(Signal::ShowRecipe("order_1".to_string()));
         let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
         TimedOffer {

@@ -311,7 +311,7 @@ fn settings(kind: ParticipantKind) -> SessionSpec {
 fn answers(spec: &SessionSpec, events: Vec<(f64, ProtocolEvent)>) -> Vec<TutorialQuestionRow> {
     let mut answers = TutorialAnswerCollector::new("first", spec).expect("a tutorial");
     for (seq, (time_s, event)) in events.into_iter().enumerate() {
-        let time = SessionTime::from_secs_f64(time_s);
+        let time = at(time_s);
         answers.note(&TimestampedEvent { seq: seq as u64, time, event: Event::Protocol(event) });
     }
     answers.finish()

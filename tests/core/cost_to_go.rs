@@ -143,7 +143,6 @@ fn check_close(kitchen_name: &str, sample: &str, least_same: f64) {
     let differ =
         known.iter().map(|(state, ..)| nearer(Fidelity::PlanBound, *state) ^ nearer(Fidelity::Searched, *state));
     let same = differ.filter(|&differ| differ == 0).count() as f64 / known.len() as f64;
-    println!("{kitchen_name}, states {sample}: the same presses lead nearer in {same:.4}");
     assert!(same >= least_same);
 }
 

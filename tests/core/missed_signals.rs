@@ -83,7 +83,6 @@ fn the_benefit_of_a_signal_is_weighed_by_the_chance_that_it_is_read_and_falls_wi
     assert!((benefit(0.5, 0.0) - 0.5 * certain).abs() < 0.01, "half of it is missed: {}", benefit(0.5, 0.0));
     assert_eq!(benefit(0.0, 0.0), 0.0, "who misses it saves nothing");
     let (soon, late) = (benefit(1.0, 1.0), benefit(1.0, 8.0));
-    println!("{certain:.2} presses saved if it is read at once, {soon:.2} after a second, {late:.2} after eight");
     assert!(late < soon && soon <= certain + 0.1, "{certain} {soon} {late}");
 }
 
@@ -99,7 +98,6 @@ fn the_planner_and_its_plain_reference_agree_on_a_signal_that_can_be_missed() {
     let mut cost = CostToGo::new(scene.kitchen.clone());
     let plain = &planner.advise(&mut cost, &scene.moment(forecast, &signals))[0];
     let error = plain.standard_error;
-    println!("benefit {fast:.2} by the planner, {:.2} ± {error:.2} by the reference", plain.benefit);
     assert!((fast - plain.benefit).abs() < 3.0 * error + 0.2);
 }
 

@@ -170,7 +170,6 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
                 looked += 1;
                 told += usize::from(sight(session).signal.is_some());
             });
-            println!("{path}, {condition:?}: {looked} messages, {told} of them with a signal");
             assert!(looked > 100 && told > 0, "{path}, {condition:?}: {looked} messages, {told} with a signal");
         }
     }

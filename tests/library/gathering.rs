@@ -25,10 +25,8 @@ fn folder(name: &str) -> PathBuf {
 fn log(root: &Path) -> String {
     let mut files = session_file("paper");
     files.spec.trial.presses = 6;
-    let out = root.join("simulated");
-    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out };
-    let made = simulate(&request, || ()).expect("a folder").recordings;
-    let log = fs::read_to_string(Path::new(&made[0]).join(LOG_NAME)).expect("a log");
+    let made = simulate_into(files, 1, &root.join("simulated"));
+    let log = fs::read_to_string(made[0].join(LOG_NAME)).expect("a log");
     fs::remove_dir_all(root.join("simulated")).expect("removed");
     log
 }
@@ -342,13 +340,12 @@ fn recorded(out: &Path) -> Study {
     files.spec.trial.presses = 6;
     let study = files.study().expect("a plan");
     let simulated = out.join("simulated");
-    let request = SimulationRequest { files, trials: 4, shard: SimulationShard::WHOLE, out: simulated.clone() };
-    for recording in simulate(&request, || ()).expect("a folder").recordings {
-        let log = fs::read_to_string(Path::new(&recording).join(LOG_NAME)).expect("a log");
+    for recording in simulate_into(files, 4, &simulated) {
+        let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
         let (head, events) = log.split_once('\n').expect("a header");
         let mut header: Value = serde_json::from_str(head).expect("a header");
         header["started"] = json!("2026-03-14T10:00:00Z");
-        let name = Path::new(&recording).file_name().expect("a name").to_string_lossy().replace("seed1-", "");
+        let name = recording.file_name().expect("a name").to_string_lossy().replace("seed1-", "");
         fs::create_dir_all(out.join(&name)).expect("a folder");
         fs::write(out.join(name).join(LOG_NAME), format!("{header}\n{events}")).expect("written");
     }

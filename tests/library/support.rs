@@ -72,7 +72,7 @@ pub fn empty_folder(path: impl AsRef<Path>) -> PathBuf {
 }
 
 /// Simulates trials of a session into a folder; their recordings.
-pub fn simulated(files: SessionSetup, trials: u64, out: &Path) -> Vec<PathBuf> {
+pub fn simulate_into(files: SessionSetup, trials: u64, out: &Path) -> Vec<PathBuf> {
     let request = SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.to_path_buf() };
     let made = simulate(&request, || ()).expect("the folder can be written");
     made.recordings.iter().map(PathBuf::from).collect()

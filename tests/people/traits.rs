@@ -59,7 +59,6 @@ fn who_does_not_know_how_to_go_on_waits_until_something_changes_or_a_signal_is_r
         bench.one.on_signal(bench.now, Some(counter), &Signal::Highlight("counter".to_string()));
     });
     let changed = presses_after(&stuck(), |bench| bench.put("counter", "crab raw"));
-    println!("presses of 20 people in 30 s: {usual}; stuck {alone}, {told} after a signal, {changed} after a change");
     assert!(usual > 50 && alone < usual / 8, "{usual}, {alone}");
     assert!(told >= alone + 10, "four of five read the signal: {told}, {alone}");
     assert!(changed >= alone + 15, "they look around and see the change: {changed}, {alone}");

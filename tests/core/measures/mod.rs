@@ -173,7 +173,6 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
             assert!((sum - 1.0).abs() < 1e-9 && (0.0..=1.0).contains(&drawn.wait), "{layout}: {drawn:?}");
             assert!(drawn.press.iter().all(|&p| p > 1e-5), "no press is impossible");
             let apart: f64 = drawn.press.iter().zip(&exact.press).map(|(a, b)| (a - b).abs()).sum::<f64>() / 2.0;
-            println!("{layout}: {count} cases, total variation {apart:.3} to the exact sum");
             assert!(count < 4096 || apart < 0.1, "{layout}: {apart} off with {count} cases");
         }
     }

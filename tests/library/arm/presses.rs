@@ -9,7 +9,7 @@ use tomcom_arm::reach::UnreachableReason;
 use tomcom_arm::reaching::{ReachingBehaviour, ReachingHand};
 use tomcom_arm::report::PressFailure;
 use tomcom_arm::trajectory::JOINT_SPEED_RAD_S;
-use tomcom_core::robot::moment::{JOINTS, JointAngles};
+use tomcom_core::robot::moment::JointAngles;
 use tomcom_core::robot::safety::SafetyMode;
 
 use super::{AT_REST, Came, SUSHI, any_button, at, until_report};
@@ -130,24 +130,6 @@ fn a_hand_in_the_way_makes_it_wait_and_then_give_the_press_up() {
 }
 
 #[test]
-fn an_emergency_stop_halts_it_at_once_until_it_is_resumed() {
-    let mut arm = AT_REST.clone();
-    arm.set_out(ButtonId(1)).expect("a way");
-    until_report(&mut arm, None, 1.2);
-    assert!(arm.moves());
-    arm.stop(SafetyMode::EmergencyStop);
-    until_report(&mut arm, None, 0.3);
-    assert!(!arm.moves());
-    let there = arm.joints();
-    until_report(&mut arm, None, 5.0);
-    let drift = (0..JOINTS).map(|joint| (arm.joints()[joint] - there[joint]).abs()).fold(0.0, f64::max);
-    assert!(drift < 1e-3, "{drift}");
-    arm.resume();
-    arm.set_out(ButtonId(1)).expect("a way");
-    assert_eq!(until_report(&mut arm, None, 10.0).0, Some(Came::Clicked(ButtonId(1))));
-}
-
-#[test]
 fn a_joint_that_gives_way_is_a_fault_and_the_brakes_hold() {
     let mut arm = AT_REST.clone();
     arm.set_out(ButtonId(1)).expect("a way");
@@ -159,14 +141,6 @@ fn a_joint_that_gives_way_is_a_fault_and_the_brakes_hold() {
     until_report(&mut arm, None, 1.0);
     assert!(!arm.moves());
     assert!(SerialArm::ur5().tip(&arm.joints()).translation.z > 0.02, "it did not fall on the table");
-}
-
-#[test]
-fn a_button_that_does_not_click_is_given_up() {
-    let mut arm = AT_REST.clone();
-    arm.set_out(ButtonId(2)).expect("a way");
-    arm.world().jam(2);
-    assert_eq!(until_report(&mut arm, None, 10.0).0, Some(Came::Not(PressFailure::NoClick(ButtonId(2)))));
 }
 
 #[test]

@@ -33,7 +33,6 @@ fn simulated_gaze_is_checked_by_targets_corrected_and_comes_out_the_same_again()
     let events = check_calibration(&mut checked, 2.0, GazeCheckEvent::Accepted { corrected: true });
     let calibrated = checked.session().calibrated.clone().expect("accepted");
     let found = &calibrated.found;
-    println!("{found:?}");
     assert!(found.targets.iter().all(|target| (100..=140).contains(&target.samples)), "{found:?}");
     // The simulated tracker has an offset of about a degree, and tremor of 4 mm around it, 2 m away.
     assert!(found.corrected_deg < found.accuracy_deg && found.accuracy_deg < 3.0, "{found:?}");

@@ -170,7 +170,7 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 
 /// How far the estimates after random paths of so many fixations are apart between rates, at most: 120 and 200 Hz, and 30 Hz
 /// from these. `length_s` makes the length of a fixation of a random number from 0 to 1.
-fn apart_by_rate(name: &str, fixations: usize, length_s: fn(f64) -> f64) -> [f64; 2] {
+fn apart_by_rate(fixations: usize, length_s: fn(f64) -> f64) -> [f64; 2] {
     let kitchen = kitchen("sushi");
     let (mut fast, mut slow) = (Vec::new(), Vec::new());
     for number in 0..12 {
@@ -185,13 +185,6 @@ fn apart_by_rate(name: &str, fixations: usize, length_s: fn(f64) -> f64) -> [f64
         slow.push(apart(&estimates[0], &estimates[1]).max(apart(&estimates[0], &estimates[2])));
     }
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
-    let within = slow.iter().filter(|difference| **difference <= 0.02).count();
-    println!(
-        "{fixations} fixations of {name}: 120 and 200 Hz at most {:.4} apart, 30 Hz {:.4},",
-        most(&fast),
-        most(&slow)
-    );
-    println!("  within 0.02 on {within} of {} paths", slow.len());
     [most(&fast), most(&slow)]
 }
 
@@ -202,10 +195,10 @@ fn of_any_length(share: f64) -> f64 {
 
 #[test]
 fn the_same_path_of_gaze_gives_the_same_estimate_at_every_rate() {
-    let [fast, slow] = apart_by_rate("any length", 40, of_any_length);
+    let [fast, slow] = apart_by_rate(40, of_any_length);
     assert!(fast <= 0.02 && slow <= 0.02, "{fast} {slow}");
     // Where the samples of all rates tell when the eyes moved on, nothing else makes a difference, also after a few looks.
-    let [fast, slow] = apart_by_rate("whole tenths of a second", 10, |share| (2.0 + (share * 5.0).floor()) / 10.0);
+    let [fast, slow] = apart_by_rate(10, |share| (2.0 + (share * 5.0).floor()) / 10.0);
     assert!(fast <= 0.005 && slow <= 0.005, "{fast} {slow}");
 }
 
@@ -213,7 +206,7 @@ fn the_same_path_of_gaze_gives_the_same_estimate_at_every_rate() {
 /// may differ by exp(-5 * 0.15) - exp(-5 * 0.183) = 0.07, which no estimate can know from the samples; more looks make it less.
 #[test]
 fn a_slow_tracker_leaves_open_when_the_eyes_moved_on() {
-    let [fast, slow] = apart_by_rate("any length", 10, of_any_length);
+    let [fast, slow] = apart_by_rate(10, of_any_length);
     assert!(fast <= 0.02 && slow <= 0.07, "{fast} {slow}");
 }
 

@@ -187,9 +187,6 @@ fn in_drop_outs_the_estimate_is_worse_than_with_full_gaze_and_hardly_worse_than_
     let share = f64::from(gone) / all as f64;
     assert!((0.3..0.7).contains(&share), "gaze is gone at {share} of the presses");
     let [full, gaps, none] = sums.map(|sum| sum / f64::from(gone));
-    println!(
-        "mean squared error in drop-outs: {full:.4} with full gaze, {gaps:.4} with drop-outs, {none:.4} without gaze"
-    );
     // What was seen before a drop-out is of no use in it with the model `plain`: these people differ from it.
     assert!(
         full < 0.8 * gaps && gaps < 1.1 * none,

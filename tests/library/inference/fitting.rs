@@ -189,8 +189,7 @@ fn a_fit_says_which_recordings_were_made_with_which_model() {
         files.spec.trial.presses = 6;
         files.spec.human = model;
         files.spec.human.decision.tau = tau;
-        let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: root.join(name) };
-        simulate(&request, || ()).expect("a folder");
+        simulate_into(files, 1, &root.join(name));
         paths.push(root.join(name));
     }
     let trials = FitTrials::read(&GatheredRecordings::find(&paths).expect("recordings"), false).expect("trials");

@@ -134,10 +134,8 @@ fn agree(
         };
         let plain = reference(1);
         let found = apart(&fast, &plain);
-        println!("{layout}: {} steps, apart by {:.4}, and {:.3} nats a press", plain.len(), found[0], found[1]);
         if found[0] > 0.05 || found[1] > 0.15 {
             let of_itself = apart(&reference(2), &plain);
-            println!("{layout}: the reference from itself {:.4}, and {:.3} nats a press", of_itself[0], of_itself[1]);
             assert!(
                 found[0] <= of_itself[0].max(0.05) && found[1] <= of_itself[1].max(0.15),
                 "{found:?}, {of_itself:?}"

@@ -89,11 +89,6 @@ fn every_setting() -> toml::Table {
     all
 }
 
-/// The default kitchen.
-fn kitchen() -> Kitchen {
-    read_kitchen(Path::new("layouts/sushi.toml")).expect("the default kitchen").kitchen
-}
-
 /// A questionnaire with an item of every kind.
 fn questionnaire() -> toml::Table {
     let text = r#"
@@ -436,7 +431,7 @@ fn a_header_has_the_numbers_that_files_may_have() {
 /// A caller of the library may have a tau that no file may have: what the planner tabulates is bounded all the same.
 #[test]
 fn the_weights_of_a_tau_near_0_take_no_more_memory_than_those_of_others() {
-    let kitchen = kitchen();
+    let kitchen = kitchen("sushi");
     for tau in [1e-5, f64::MIN_POSITIVE] {
         let model = ChoiceModel::up_to_draws(&kitchen, &ChoiceParameters { tau, ..ChoiceParameters::default() }, 32);
         assert!(model.tabulated() <= 33 * 33 * 256, "{tau}: {} weights", model.tabulated());

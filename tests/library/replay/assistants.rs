@@ -21,8 +21,7 @@ fn with_assistant(name: &str, out: &str, (trials, seconds): (u64, f64), further:
     (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
     further(&mut files.spec);
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, trials, &out);
     out
 }
 
@@ -135,7 +134,6 @@ fn what_is_asked_in_silence_comes_out_the_same_again() {
                 asked.push(line.stamped.seq);
             }
         }
-        println!("{name}: silences, and advice after these: {counts:?}");
         assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
     }
 }
@@ -284,8 +282,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.concept = ConceptName::Tom;
     let out = folder("shadow");
-    simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, 1, &out);
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
     let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window: 3 };
     let watcher = || SenderComparisonFollower::new(log.session(), CostToGo::new(log.kitchen.clone()), &request);

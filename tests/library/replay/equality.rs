@@ -104,10 +104,8 @@ fn keep_simulated(name: &str, session: &str, change: fn(&mut SessionSpec)) {
     let mut files = read_session(&Path::new("sessions").join(session)).expect("a session file");
     (files.spec.trial.condition, files.spec.robot.arm) = (Condition::None, ArmKind::Timed);
     change(&mut files.spec);
-    let out = folder(&format!("golden-{name}"));
-    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out };
-    let made = simulate(&request, || ()).expect("the folder can be written");
-    keep(&Path::new(&made.recordings[0]).join(LOG_NAME), name);
+    let made = simulate_into(files, 1, &folder(&format!("golden-{name}")));
+    keep(&made[0].join(LOG_NAME), name);
 }
 
 #[test]

@@ -34,8 +34,7 @@ fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> Pat
     files.spec.seed = seed;
     files.spec.trial.seconds = 120.0;
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, trials, &out);
     out
 }
 

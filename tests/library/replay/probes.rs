@@ -20,10 +20,7 @@ fn a_simulated_recording_with_probes_verifies_whole_and_cut_at_each_kind_of_even
     (files.spec.trial.seconds, files.spec.robot.arm) = (90.0, ArmKind::Physics);
     files.spec.probes =
         Some(ProbeSpec { per_trial: 2, apart_s: 20.0, confidence: true, level_2: true, ..ProbeSpec::default() });
-    let out = folder("probes");
-    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() };
-    let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
-    let log = std::path::Path::new(&recording).join(LOG_NAME);
+    let log = simulate_into(files, 1, &folder("probes"))[0].join(LOG_NAME);
     let found = verify(&log).expect("a recording");
     assert!(found.verified && !found.cut, "{found:?}");
     let text = fs::read_to_string(&log).expect("a log");
@@ -52,9 +49,7 @@ fn a_changed_question_or_time_of_a_probe_does_not_verify() {
     let mut files = session("probes.toml");
     files.spec.trial.seconds = 90.0;
     files.spec.probes = Some(ProbeSpec { per_trial: 1, apart_s: 20.0, ..ProbeSpec::default() });
-    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: folder("probes-changed") };
-    let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
-    let log = std::path::Path::new(&recording).join(LOG_NAME);
+    let log = simulate_into(files, 1, &folder("probes-changed"))[0].join(LOG_NAME);
     let text = fs::read_to_string(&log).expect("a log");
     for (from, to) in [("\"inclusion\":0.", "\"inclusion\":0.9"), ("\"uses_estimate\":true", "\"uses_estimate\":false")]
     {

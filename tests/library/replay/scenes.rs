@@ -104,8 +104,7 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
 #[test]
 fn a_scene_shows_answers_of_probes_beside_the_estimate() {
     let (files, out) = (session("probes.toml"), folder("scene-probes"));
-    simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, 1, &out);
     let recording = only_recording(&out);
     let (moments, events) = shown(&recording);
     let state = |moment: &SceneUpdate, lane: &str| -> Option<String> {

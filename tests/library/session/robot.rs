@@ -187,7 +187,6 @@ fn a_robot_whose_human_is_passive_serves_alone_within_40_s() {
         let served = *engine.session().served.first().expect("it serves an order");
         assert_eq!(engine.session().kitchen.dish(served.dish).name, "shrimp nigiri");
         let done = done(&events);
-        println!("{arm:?}: served at {:.1} s: {done:?}", served.time.as_secs_f64());
         assert!(["counter", "rolling_mat"].contains(&done[0].as_str()), "{done:?}");
         let rest = [
             "cooking_pot",
@@ -264,11 +263,6 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
             apply(&mut session, stamped).expect("an event of the session");
         }
     }
-    println!(
-        "{name}: idle in {:.1} % of {all_s:.0} s, of that {:.2} % needlessly",
-        100.0 * idle_s / all_s,
-        100.0 * needless_s / idle_s
-    );
     assert!(idle_s > 0.02 * all_s && needless_s < 0.02 * idle_s, "{name}: {needless_s} of {idle_s} s");
 }
 

@@ -14,6 +14,10 @@ use tomcom_core::measures::belief_basis::BeliefSource;
 use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
 use tomcom_study::acting_arm::SignalSenderWithParameter;
 use tomcom_study::analysis::offer_summary::OfferSummary;
+use tomcom_study::column::CsvTable;
+use tomcom_study::detail_totals::DetailTotals;
+use tomcom_study::facts::RecordingFacts;
+use tomcom_study::figures::StudySummary;
 use tomcom_study::robot_tally::RobotEventSummary;
 use tomcom_study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
 
@@ -86,6 +90,20 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         stale_consensus: None,
         probes: None,
     }
+}
+
+/// The figures of these trials alone.
+fn summary(trials: &[TrialStatistics]) -> StudySummary {
+    with_details(trials, DetailTotals::default())
+}
+
+fn with_details(trials: &[TrialStatistics], details: DetailTotals) -> StudySummary {
+    StudySummary::from_trials(trials, details, &RecordingFacts::default(), 0)
+}
+
+/// The report with these figures, beside all tables.
+fn page(figures: &StudySummary, trials: &[TrialStatistics]) -> String {
+    tomcom_study::report::page(figures, trials, &RecordingFacts::default(), &CsvTable::ALL)
 }
 
 /// Participants with errors in the first and in the second trial; those of the first list are assisted in the second one.

@@ -19,12 +19,11 @@ use tomcom_study::analysis::probe_record::{
 use tomcom_study::column::CsvRow;
 use tomcom_study::detail_totals::DetailTotals;
 use tomcom_study::facts::RecordingFacts;
-use tomcom_study::figures::StudySummary;
 use tomcom_study::report;
 use tomcom_study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
 use tomcom_study::trial_details::TrialDetails;
 
-use super::{near, trial};
+use super::{near, summary, trial, with_details};
 use crate::support::*;
 
 /// An aspect of the synthetic kitchen at a probe.
@@ -177,7 +176,6 @@ fn biases(studies: u64, blind_share: f64) -> [[f64; 3]; 2] {
 fn weights_take_out_the_choice_of_questions_by_the_estimate() {
     for blind_share in [0.5, 0.0] {
         let [weighted, unweighted] = biases(1000, blind_share);
-        println!("{blind_share} blind: bias weighted {weighted:?}, unweighted {unweighted:?}");
         for (bias, what) in weighted.iter().zip(["share", "places", "recipes"]) {
             assert!(bias.abs() < 0.01, "{what} with {blind_share} blind: bias {bias}");
         }
@@ -325,12 +323,7 @@ fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participant
 #[test]
 fn probes_stand_in_tables_and_report() {
     let mut trials = super::trials(&[[12, 6], [10, 5], [14, 8]], &[[8, 9], [6, 7], [9, 8]]);
-    let none = report::page(
-        &StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0),
-        &trials,
-        &RecordingFacts::default(),
-        &[],
-    );
+    let none = report::page(&summary(&trials), &trials, &RecordingFacts::default(), &[]);
     assert!(!none.contains("What people knew"));
     let mut details = Vec::new();
     for (index, trial) in trials.iter_mut().enumerate() {
@@ -348,7 +341,7 @@ fn probes_stand_in_tables_and_report() {
     }
     let mut totals = DetailTotals::default();
     trials.iter().zip(&details).for_each(|(trial, details)| totals.add(trial, details.clone()));
-    let figures = StudySummary::from_trials(&trials, totals, &RecordingFacts::default(), 0);
+    let figures = with_details(&trials, totals);
     let found = figures.probes.as_ref().expect("there are probes");
     assert_eq!((found.participants, found.counts.counted), (6, 24));
     let effect = figures.effects.iter().find(|effect| effect.measure == PROBES_WRONG).expect("it is compared");

@@ -27,7 +27,7 @@ use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
 use tomcom_study::trial_details::TrialDetails;
 use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
-use super::{at, near, trial, trials};
+use super::{at, near, summary, trial, trials, with_details};
 use crate::support::*;
 
 #[test]
@@ -51,10 +51,10 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             score: None,
         });
     }
-    let figures = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let figures = summary(&trials);
     let accepted = figures.acceptance.clone().expect("answers");
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
-    let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
+    let page = super::page(&figures, &trials);
     assert!(page.contains("<title>No kitchen: a study of simulated participants</title>"));
     let mut names: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     names.sort_unstable();
@@ -68,12 +68,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     assert!(!page.contains("NaN") && !page.contains("inf "));
     let people: Vec<TrialStatistics> =
         trials.into_iter().map(|trial| TrialStatistics { kind: ParticipantKind::Display, ..trial }).collect();
-    let page = report::page(
-        &StudySummary::from_trials(&people, DetailTotals::default(), &RecordingFacts::default(), 0),
-        &people,
-        &RecordingFacts::default(),
-        &CsvTable::ALL,
-    );
+    let page = super::page(&summary(&people), &people);
     assert!(!page.contains("simulated participants</title>"));
 }
 
@@ -84,8 +79,8 @@ fn few_participants_have_no_r_among_the_main_results() {
         let errors: Vec<[u64; 2]> =
             (0..participants as u64 / 2).map(|index| [24 + index, 12 + index * index]).collect();
         let trials = trials(&errors, &errors);
-        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
-        let page = report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL);
+        let summary = summary(&trials);
+        let page = super::page(&summary, &trials);
         assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
         page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
     };
@@ -147,12 +142,7 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
 fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
     let report = |trials: &[TrialStatistics], details: DetailTotals, tables: &[CsvTable]| {
-        report::page(
-            &StudySummary::from_trials(trials, details, &RecordingFacts::default(), 0),
-            trials,
-            &RecordingFacts::default(),
-            tables,
-        )
+        report::page(&with_details(trials, details), trials, &RecordingFacts::default(), tables)
     };
     let page = report(&trials, DetailTotals::default(), &[CsvTable::Trials]);
     assert!(page.contains("6 after the set number of presses.") && page.contains("arm was timed."));
@@ -251,8 +241,8 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
     let wizards = trials.iter().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
     let mut details = DetailTotals::default();
     details.add(wizards, TrialDetails { offers, ..TrialDetails::default() });
-    let figures = StudySummary::from_trials(&trials, details, &RecordingFacts::default(), 0);
-    let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
+    let figures = with_details(&trials, details);
+    let page = super::page(&figures, &trials);
     for words in [
         "The wizard saw 3 offers, which stood 3.0 s in the median, 2.0 s at least",
         "1 taken, 1 sent by its own key, 1 no longer worth it",

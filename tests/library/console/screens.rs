@@ -232,14 +232,18 @@ fn a_question_is_seen_in_the_smallest_window() {
 
 #[test]
 fn notes_of_one_moment_stand_beside_each_other_in_the_timeline() {
+    let row = |stage: &Stage, size: (u16, u16)| {
+        let screen = stage.screen(size);
+        let row = screen.lines().find(|line| line.contains(if size.0 == 80 { " events " } else { " notes " }));
+        row.unwrap_or_else(|| panic!("no row at {size:?}:\n{screen}")).to_string()
+    };
+    let before = Stage::sushi(ParticipantKind::Simulated);
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     for note in ["wrong recipe", "overlooked a change", "slip"] {
         stage.at(22.6, Event::Marker { note: note.to_string() });
     }
     for size in SIZES {
-        let screen = stage.screen(size);
-        let row = screen.lines().find(|line| line.contains(if size.0 == 80 { " events " } else { " notes " }));
-        assert!(row.is_some_and(|row| row.contains("123")), "{size:?}:\n{screen}");
+        assert!(!row(&before, size).contains("123") && row(&stage, size).contains("123"), "{}", row(&stage, size));
     }
 }
 

@@ -6,8 +6,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::console::notice::NoticeLevel;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
+use tomcom::console::view;
 use tomcom_core::base::printable::{printable, printable_lines};
 use tomcom_session::apply;
 use tomcom_session::files::file_error::FileError;
@@ -45,10 +44,7 @@ fn control_characters_are_written_out_and_all_else_stays() {
 #[test]
 fn the_console_shows_notes_devices_and_messages_written_out() {
     let mut session = session();
-    let keys =
-        KeyBindings::live(&session.kitchen, &session.spec, &KeyFileBindings::default()).expect("the keys are free");
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys, theme, (200, 60));
+    let mut model = console_model(&session.kitchen, &session.spec, (200, 60));
     let events = [
         Event::TrialStarted,
         Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }),

@@ -7,11 +7,8 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpStream, UdpSocket};
 use tokio::time::timeout;
 use tomcom::console::console_model::ConsoleModel;
-use tomcom::console::keymap::KeyFileBindings;
-use tomcom::console::keys::KeyBindings;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::preflight::checks;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
 use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
@@ -317,11 +314,7 @@ fn an_address_that_is_silent_for_five_seconds_is_the_trackers_no_more() {
 #[test]
 fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     let files = session_file("default");
-    let kitchen = kitchen("sushi");
-    let keys =
-        KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the layout's keys are free");
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys, theme, (120, 40));
+    let mut model = console_model(&files.kitchen.kitchen, &files.spec, (120, 40));
     let from = |address: &str, why: &GazeSenderRejection| RejectedGaze {
         told: format!("gaze from {address} is rejected: {}", why.words()),
         remedy: why.remedy().to_string(),
@@ -352,9 +345,7 @@ fn the_checks_say_what_was_found_in_rejected_gaze() {
     let kitchen = kitchen("sushi");
     let mut spec = files.spec;
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
-    let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys, theme, (120, 40));
+    let mut model = console_model(&kitchen, &spec, (120, 40));
     let mut engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
     let gaze = |engine: &SessionEngine, model: &ConsoleModel| {
         let found =

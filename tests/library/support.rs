@@ -7,6 +7,8 @@ pub use std::sync::Arc;
 
 pub use rand::RngExt;
 pub use serde_json::{Value, json};
+use tomcom::console::view::theme::{TerminalBackground, Theme};
+use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_kitchen;
 pub use tomcom::edge::files::read_session;
 pub use tomcom::run::simulate::{SimulationRequest, simulate};
@@ -61,6 +63,12 @@ pub fn engine_of(files: SessionSetup, trial: u64) -> SessionEngine {
 
 pub fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
+}
+
+/// The console of a session, with colours and all signs on a dark ground.
+pub fn console_model(kitchen: &Kitchen, spec: &SessionSpec, size: (u16, u16)) -> ConsoleModel {
+    let keys = KeyBindings::live(kitchen, spec, &KeyFileBindings::default()).expect("the layout's keys are free");
+    ConsoleModel::new(keys, Theme { colour: true, unicode: true, ground: TerminalBackground::Dark }, size)
 }
 
 /// An empty folder for a test.

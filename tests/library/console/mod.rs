@@ -16,7 +16,6 @@ use ratatui::backend::TestBackend;
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -44,9 +43,7 @@ impl Stage {
             spec.participant.gaze = GazeSource::Mouse;
         }
         let kitchen = kitchen(kitchen_name);
-        let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");
-        let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-        let mut model = ConsoleModel::new(keys, theme, (120, 40));
+        let mut model = console_model(&kitchen, &spec, (120, 40));
         model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
         let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());

@@ -102,10 +102,6 @@ fn the_keys_of_a_sheet_make_events_and_a_held_one_answers_once() {
 
 #[test]
 fn only_enter_confirms_answers_and_a_reason_to_go_on() {
-    let told = |command: Option<ConsoleCommand>| match command {
-        Some(ConsoleCommand::Input(Event::Protocol(event))) => event,
-        other => panic!("{other:?}"),
-    };
     let mut stage = planned(2, true);
     stage.at(0.0, Event::TrialStarted);
     stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
@@ -113,25 +109,17 @@ fn only_enter_confirms_answers_and_a_reason_to_go_on() {
     stage.at(9.0, Event::Protocol(questionnaire));
     let Some(FormContent::Questions(questionnaire)) = sheet(&stage.session) else { panic!("a questionnaire") };
     let items = questionnaire.items.len();
-    let tell = |stage: &mut Stage, key: KeyCode| {
-        stage.wait(1.0);
-        let event = told(stage.key(key));
-        let now = stage.model.now.as_secs_f64();
-        stage.at(now, Event::Protocol(event.clone()));
-        event
-    };
     for arrow in [KeyCode::Right, KeyCode::Left] {
-        assert!(matches!(tell(&mut stage, arrow), ProtocolEvent::ItemShown { .. }), "arrows go between items");
+        assert!(matches!(give(&mut stage, arrow), ProtocolEvent::ItemShown { .. }), "arrows go between items");
     }
     // An answer shows the next item.
     for _ in 0..items {
-        assert!(matches!(tell(&mut stage, KeyCode::Char('3')), ProtocolEvent::ItemAnswered { .. }));
+        assert!(matches!(give(&mut stage, KeyCode::Char('3')), ProtocolEvent::ItemAnswered { .. }));
     }
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Right), None, "{}", stage.notice());
     assert!(stage.notice().contains("enter confirms"), "{}", stage.notice());
-    stage.wait(1.0);
-    assert_eq!(told(stage.key(KeyCode::Enter)), ProtocolEvent::AnswersConfirmed);
+    assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::AnswersConfirmed);
 }
 
 /// The sheet of a questionnaire about the person: an item of every kind.

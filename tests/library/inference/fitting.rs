@@ -60,35 +60,30 @@ fn coarse() -> HumanModel {
     model
 }
 
+/// A search for tau and the lapse of these people in the burger kitchen, and who they are.
+fn decisions(
+    tau: f64,
+    lapse: f64,
+    (humans, seed): (u64, u64),
+    most_tries: usize,
+) -> (FitSummary, FitSettings, HumanModel) {
+    let mut truth = HumanModel::default();
+    (truth.decision.tau, truth.decision.lapse) = (tau, lapse);
+    let experiment = Experiment { humans, presses: 60, gaze_hz: 15.0, signal_s: None, seed };
+    let parameters = vec![HumanModelParameter::Tau, HumanModelParameter::Lapse];
+    let plan = FitSettings { parameters, start: Some(coarse()), most_tries };
+    (fit(&trials(&kitchen("burger"), &truth, &experiment), &plan, || {}), plan, truth)
+}
+
 #[test]
 fn fitting_recovers_how_a_human_decides() {
-    let kitchen = kitchen("burger");
-    let mut truth = HumanModel::default();
-    (truth.decision.tau, truth.decision.lapse) = (2.0, 0.15);
-    let experiment = Experiment { humans: 12, presses: 60, gaze_hz: 15.0, signal_s: None, seed: 17 };
-    let trials = trials(&kitchen, &truth, &experiment);
-    let plan = FitSettings {
-        parameters: vec![HumanModelParameter::Tau, HumanModelParameter::Lapse],
-        start: Some(coarse()),
-        most_tries: 150,
-    };
-    check(&fit(&trials, &plan, || {}), &plan, &truth, 4.0);
+    let (found, plan, truth) = decisions(2.0, 0.15, (12, 17), 150);
+    check(&found, &plan, &truth, 4.0);
 }
 
 #[test]
 fn a_tau_that_no_press_tells_is_bounded_from_below() {
-    let kitchen = kitchen("burger");
-    let mut truth = HumanModel::default();
-    (truth.decision.tau, truth.decision.lapse) = (1000.0, 0.05);
-    let experiment = Experiment { humans: 8, presses: 60, gaze_hz: 15.0, signal_s: None, seed: 23 };
-    let trials = trials(&kitchen, &truth, &experiment);
-    let plan = FitSettings {
-        parameters: vec![HumanModelParameter::Tau, HumanModelParameter::Lapse],
-        start: Some(coarse()),
-        most_tries: 200,
-    };
-    let found = fit(&trials, &plan, || {});
-    println!("{}", describe(&found));
+    let (found, ..) = decisions(1000.0, 0.05, (8, 23), 200);
     let [tau, lapse] = &found.parameters[..] else { panic!("{found:?}") };
     assert!(found.converged && !tau.identified, "{found:?}");
     let Some([Some(from), None]) = tau.interval else { panic!("{tau:?}") };
@@ -109,7 +104,6 @@ fn a_search_that_did_not_end_gives_nothing_worse_than_it_began_with() {
         let parameters = vec![HumanModelParameter::Tau, HumanModelParameter::Lapse];
         let plan = FitSettings { parameters, start: Some(truth.clone()), most_tries };
         let found = fit(&trials, &plan, || {});
-        println!("{}", describe(&found));
         assert!(!found.converged && found.log_likelihood >= found.log_likelihood_before, "{found:?}");
     }
 }
@@ -128,7 +122,7 @@ fn people() -> (HumanModel, HumanModel) {
     (truth, start)
 }
 
-/// By hand: `cargo test --release --test inference fitting -- --ignored --nocapture`.
+/// By hand: `cargo test --release --test library fitting_recovers -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes, in release"]
 fn fitting_recovers_how_a_human_decides_and_looks() {
@@ -146,7 +140,6 @@ fn fitting_recovers_how_a_human_decides_and_looks() {
     check(&fit(&trials(&kitchen, &truth, &experiment), &plan, || {}), &plan, &truth, 4.0);
 }
 
-/// By hand, as above.
 #[test]
 #[ignore = "takes minutes, in release"]
 fn fitting_recovers_how_a_human_forgets() {
@@ -195,7 +188,6 @@ fn a_fit_says_which_recordings_were_made_with_which_model() {
     let trials = FitTrials::read(&GatheredRecordings::find(&paths).expect("recordings"), false).expect("trials");
     let plan = FitSettings { parameters: choose(&[], &trials.model).expect("parameters"), start: None, most_tries: 1 };
     let told = describe(&fit(&trials, &plan, || {}));
-    println!("{told}");
     assert!(told.contains("before: the parameters of the first recording (paper-2021)"), "{told}");
     let line = |begin: &str| told.lines().find_map(|line| line.strip_prefix(begin)).unwrap_or_else(|| panic!("{told}"));
     assert!(line("made with plain: ").ends_with("fit/b/seed1-S001"), "{told}");

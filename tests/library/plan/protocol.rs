@@ -1,8 +1,7 @@
 //! What happens around a trial: steps, items, and recordings that are cut or left.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, update};
 use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome};
 use tomcom_study::files::recordings;
 
@@ -177,10 +176,7 @@ fn hasty_answers_are_all_taken() {
     run.next_phase();
     run.trial();
     run.next_phase();
-    let keys =
-        KeyBindings::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyFileBindings::default());
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys.expect("keys"), theme, (80, 24));
+    let mut model = console_model(&run.engine.session().kitchen, &run.engine.session().spec, (80, 24));
     let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
     for (index, item) in items.iter().enumerate() {
         model.clock = at(5.0 + 0.3 * index as f64);

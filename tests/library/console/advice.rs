@@ -472,7 +472,7 @@ fn wizard_and_assistant_stand_side_by_side_at_every_size() {
         one.shows(size, &["1/1  0:05  only tom-com: highlight cooking pot", "p c", "╭─╯"]);
         compared(3).shows(size, &figures);
         compared(3).shows(size, &["5/5  0:12  dev, not wizard: press take nori, then assembly board", "◆"]);
-        compared(3).shows(size, &["wizard ", "tom-com ", "tom ", "dev "]);
+        compared(3).shows(size, &["wizard", "tom-com", "tom ", "dev"]);
         assert!(plain.screen(size).is_ascii(), "{}", plain.screen(size));
     }
     check_snapshot("console", "compared_all_120x40", compared(3).screen((120, 40)));

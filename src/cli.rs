@@ -2,7 +2,6 @@
 
 mod args;
 mod choices;
-mod cohorts;
 mod command_hint;
 mod data;
 mod estimates;
@@ -43,16 +42,16 @@ use crate::console;
 use crate::edge::doctor;
 use crate::edge::files;
 use crate::edge::key_file;
+use crate::run::options;
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
-use crate::run::{options, timing};
 use tomcom_core::base::printable::printable;
 use tomcom_session::log::{self, LogEnding};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;
+use tomcom_study::analysis::event_lines;
 use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
 use tomcom_study::analysis::recording_summary::RecordingSummary;
-use tomcom_study::analysis::{event_lines, timing_summary};
 use tomcom_study::standing;
 
 /// Exit code of a command that failed.
@@ -81,7 +80,6 @@ pub fn main() -> ExitCode {
         CliCommand::Replay(args) => replay(&args),
         CliCommand::Review(args) => review::review(&args),
         CliCommand::List(args) => list::list(&args),
-        CliCommand::Robustness(args) => cohorts::robustness(&args),
         CliCommand::Power(args) => pools::power(&args),
         CliCommand::Arms(args) => pools::arms(&args),
         CliCommand::Simulate(args) => simulation::simulate(&args),
@@ -132,28 +130,11 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
-    let args = &ReplayArgs { recordings: list::each_chosen(&args.recordings)?, ..args.clone() };
-    if args.check_beliefs {
-        return estimates::check_beliefs(args);
-    }
-    if args.accuracy {
-        return estimates::accuracy(args);
-    }
-    if args.offers {
-        return estimates::offers(args);
-    }
-    let [recording] = &args.recordings[..] else {
-        let help = "one recording to replay, or several with --check-beliefs, --accuracy or --offers";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found {} recordings", args.recordings.len())));
-    };
+    let recording = &list::chosen(&args.recording)?;
     if args.verify {
         let found = verify::verify(recording)?;
         print(args.format, &found, || verify::describe(&found))?;
         return if found.verified { Ok(()) } else { Err(Failure::No) };
-    }
-    if args.timing {
-        let figures = timing::measure(recording)?;
-        return print(args.format, &figures, || timing_summary::describe(&figures));
     }
     if let Some(rater) = &args.rater {
         return data::rate(recording, rater);

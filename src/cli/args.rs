@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
-use super::cohorts::RobustnessArgs;
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::list::ListArgs;
@@ -16,7 +15,6 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::run::sweep::ParameterSweepAxis;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::shard::SimulationShard;
 
@@ -43,7 +41,6 @@ pub(super) enum CliCommand {
     Review(ReviewArgs),
     List(ListArgs),
     Simulate(SimulateArgs),
-    Robustness(RobustnessArgs),
     Power(PowerArgs),
     Arms(ArmsArgs),
     Study(StudyArgs),
@@ -67,50 +64,22 @@ pub(super) enum CliCommand {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a
-    /// folder of recordings, one is chosen from a list.
-    #[arg(required = true, value_name = "RECORDING")]
-    pub(super) recordings: Vec<PathBuf>,
+    /// The folder of a recording, or its events.jsonl; of a folder of recordings, one is chosen from a list.
+    pub(super) recording: PathBuf,
     /// Run the session again from the recording's header and inputs; every line must be identical.
     #[arg(long, conflicts_with = "follow")]
     pub(super) verify: bool,
-    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the
-    /// presses.
-    #[arg(long, conflicts_with_all = ["verify", "follow"])]
-    pub(super) check_beliefs: bool,
-    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, of another participant
-    /// (several: repeat the option). Without it, each half of the participants is judged with the thresholds of the
-    /// other half.
-    #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
-    pub(super) choose_on: Vec<PathBuf>,
-    /// Measure computing times of inference and planning.
-    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
-    pub(super) timing: bool,
-    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference planner.
-    /// Takes long.
-    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing"])]
-    pub(super) accuracy: bool,
-    /// With --accuracy: largest number of steps, spread evenly over the recordings.
-    #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    pub(super) steps: u64,
-    /// With --accuracy: largest number of steps for the plain reference planner; 0 for none.
-    #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
-    pub(super) reference_steps: u64,
-    /// Measure how steady offers are: how long they stand, and whether a simulated hand that reads an offer sends what
-    /// it has read.
-    #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy"])]
-    pub(super) offers: bool,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
     /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in
     /// view: letters code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first
     /// error without a code. Codes are saved beside the log at once.
-    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
+    #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "format"])]
     pub(super) rater: Option<String>,
     /// Settle as two raters together what they coded differently: goes through these errors with both codes in view,
     /// and saves the consensus beside the log.
-    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
+    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "format"])]
     pub(super) settle: Option<Vec<String>>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
@@ -142,8 +111,7 @@ pub(super) struct PlanArgs {
 /// Participants are simulated. Signals come from nobody, the assistant, or a scripted wizard.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\n          \
-                  tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid\nMore: docs/study.md"
+    after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\nMore: docs/study.md"
 )]
 pub(super) struct SimulateArgs {
     /// The session file to simulate.
@@ -158,7 +126,7 @@ pub(super) struct SimulateArgs {
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Who sends signals: by default nobody, with --sweep the assistant, with a plan as the plan says.
+    /// Who sends signals: by default nobody, with a plan as the plan says.
     #[arg(long, value_enum)]
     pub(super) condition: Option<SimulatedCondition>,
     /// Communication concept of the assistant, instead of the session file's.
@@ -167,12 +135,6 @@ pub(super) struct SimulateArgs {
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
-    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5,
-    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off. Several settings make a grid. The assistant sends
-    /// the signals unless --condition says otherwise. With a plan, its settings apply, and every trial has another
-    /// participant.
-    #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
-    pub(super) sweep: Vec<ParameterSweepAxis>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
     /// scripted wizard reads them where the session shows recommendations; nobody else sees them.
     #[arg(long)]

@@ -1,47 +1,14 @@
-//! Commands that check estimates: beliefs, net benefits of signals, parameters of the human model.
+//! The command `tomcom fit`.
 
 use std::path::Path;
 
-use super::args::{FitArgs, ReplayArgs};
+use super::args::FitArgs;
 use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
 use crate::edge::files;
-use crate::run::accuracy::AccuracyStepCounts;
-use crate::run::{accuracy, check_beliefs, steadiness};
-use tomcom_study::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
+use tomcom_study::analysis::fitting;
 use tomcom_study::fit;
-
-/// Runs the command `tomcom replay RECORDING... --check-beliefs`.
-pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
-    let (recordings, choose_on) = (gathered(&args.recordings)?, gathered(&args.choose_on)?);
-    let bar = progress((recordings.paths.len() + choose_on.paths.len()) as u64, "recordings");
-    let found = check_beliefs::check(&recordings, &choose_on, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || belief_check::describe(&found))
-}
-
-/// Runs the command `tomcom replay RECORDING... --accuracy`.
-pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
-    let extent = AccuracyStepCounts {
-        steps: args.steps as usize,
-        reference_steps: args.reference_steps.min(args.steps) as usize,
-    };
-    // Each step is planned twice: with the budget of a session, and with the larger one.
-    let bar = progress(2 * args.steps + args.reference_steps, "answers of the planner at most");
-    let found = accuracy::measure(&gathered(&args.recordings)?, extent, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || planner_accuracy::describe(&found))
-}
-
-/// Runs the command `tomcom replay RECORDING... --offers`.
-pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
-    let recordings = gathered(&args.recordings)?;
-    let bar = progress(recordings.paths.len() as u64, "recordings");
-    let found = steadiness::measure(&recordings, || bar.inc(1))?;
-    bar.finish_and_clear();
-    print(args.format, &found, || offer_steadiness::describe(&found))
-}
 
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {

@@ -5,7 +5,7 @@ use super::failure::{Failure, wrong_argument};
 use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
 use crate::edge::files;
-use crate::run::{simulate, sweep};
+use crate::run::simulate;
 use tomcom_core::base::words::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
@@ -29,9 +29,6 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.session, found, remedy));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
-    if !args.sweep.is_empty() {
-        files.spec.plan = None;
-    }
     let trials = match (args.trials, files.study()) {
         (trials, None) => trials.unwrap_or(1),
         (trials, Some(study)) => {
@@ -51,11 +48,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     tell_unused(args, &files.spec);
     tell_absent_wizard(args, &files.spec);
     // If there is a plan, the plan defines the conditions.
-    files.spec.trial.condition = match args.condition {
-        None if !args.sweep.is_empty() => Condition::Assistant,
-        None => Condition::None,
-        Some(condition) => condition.into(),
-    };
+    files.spec.trial.condition = args.condition.map_or(Condition::None, Condition::from);
     if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
@@ -65,12 +58,6 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };
     let simulation = simulate::SimulationRequest { files, trials, shard: args.shard, out: args.out.clone() };
-    if !args.sweep.is_empty() {
-        let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
-        let figures = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;
-        bar.finish_and_clear();
-        return print(args.format, &figures, || sweep::describe(&figures, &args.sweep));
-    }
     let bar = progress(simulation.own_trials().count() as u64, "trials");
     let figures = simulate::simulate(&simulation, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -83,7 +70,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
 /// Reports assistant settings of the session file that only apply at the console: simulated trials ignore these
 /// settings unless options ask for the assistant.
 fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
-    if spec.plan.is_some() || !args.sweep.is_empty() {
+    if spec.plan.is_some() {
         return;
     }
     let acts = args.condition.is_none() && spec.trial.condition == Condition::Assistant;
@@ -123,11 +110,7 @@ fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure>
         () if is_planned && condition.is_some() => {
             ("--condition, of a session with a plan", "no --condition: the plan says who sends signals")
         }
-        () if !args.sweep.is_empty() && condition == Some(Condition::None) => (
-            "--sweep, with --condition none",
-            "--condition assistant or wizard; the sweep adds trials without signals by itself",
-        ),
-        () if args.concept.is_some() && !is_planned && args.sweep.is_empty() && is_silent && !args.shadow => {
+        () if args.concept.is_some() && !is_planned && is_silent && !args.shadow => {
             ("--concept, where no assistant is asked", "--concept together with --condition assistant or --shadow")
         }
         () => return Ok(()),

@@ -2,7 +2,6 @@
 
 mod arrival;
 pub mod ask;
-pub mod battery_file;
 pub mod clock;
 mod compared_clock;
 pub mod connection_table;

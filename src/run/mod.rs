@@ -1,8 +1,6 @@
 //! Shells that run sessions: they combine session, robot, participant, files and clock, which no other module combines.
 
-pub mod accuracy;
 mod advisor_desk;
-pub mod check_beliefs;
 mod coding_desk;
 mod desk;
 pub mod error;
@@ -17,13 +15,9 @@ pub mod plan;
 pub mod recording_list;
 pub mod resume;
 pub mod review_console;
-pub mod robustness;
 pub mod seekable_replay;
 pub mod series;
 pub mod simulate;
-pub mod steadiness;
-pub mod sweep;
-pub mod timing;
 pub mod train;
 mod training_shell;
 mod unfinished_recording;

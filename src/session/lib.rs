@@ -5,7 +5,7 @@
 //!
 //! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`,
 //!   `probe_settings`, [`wall_display`], [`stream_settings`], [`tracker`] (with its events and state), and the
-//!   specifications in [`plan`]; [`settings`], all of them together. These are used by [`battery`], `session_file`,
+//!   specifications in [`plan`]; [`settings`], all of them together. These are used by `session_file`,
 //!   `requirements`, [`person_code`], [`header`], [`orders`], and the studies in [`plan`].
 //! - Events: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`,
 //!   `probe_event`, `preflight_check`, [`wizard_screen`]; [`event`], all of them together.
@@ -30,7 +30,6 @@ pub mod advice_moments;
 pub mod advisor;
 pub mod answer_value;
 pub mod apply;
-pub mod battery;
 pub mod code_correction;
 mod condition;
 mod console_settings;

@@ -45,7 +45,6 @@ pub mod bids_export;
 pub mod charts;
 pub mod code_exchange;
 pub mod codes;
-pub mod cohort_chart;
 pub mod column;
 pub mod concept_totals;
 pub mod consents;

@@ -11,6 +11,7 @@ mod display_probes;
 mod display_server;
 mod escapes;
 mod examples;
+mod fit;
 mod gathering;
 mod gaze;
 mod gaze_senders;
@@ -26,7 +27,6 @@ mod readers;
 mod replay;
 mod robot_on_display;
 mod session;
-mod states_met;
 mod study;
 mod support;
 #[cfg(unix)]

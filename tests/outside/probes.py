@@ -4,7 +4,7 @@
 
 Simulated participants answer from what they believe, with a share of wrong answers. From the tables: weighted areas under the ROC, the
 calibration error and its bins, accuracies by group, log scores, the share of wrong answers of each trial. Then the participants are made
-people, by taking their recorded beliefs out of the recordings: `replay --check-beliefs` must give the same figures from their answers.
+people, by taking their recorded beliefs out of the recordings: `tomcom-research beliefs` must give the same figures from their answers.
 """
 
 import json
@@ -157,7 +157,7 @@ def main():
     assert "What people knew" in (recordings.parent / f"{recordings.name}-study" / "report.html").read_text()
 
     paths = as_people(recordings_in(recordings), scratch / "people")
-    checked = json.loads(run(tomcom, "replay", *paths, "--check-beliefs", "--format", "json"))
+    checked = json.loads(run(tomcom.with_name("tomcom-research"), "beliefs", *paths, "--format", "json"))
     assert checked["beliefs_from"] == "probes" and checked["probes"]["by_true_beliefs"] is None
     for name in ["auc", "auc_locations", "auc_recipes", "auc_baseline", "ece"]:
         near(f"{name} of people", checked[name], found[name])

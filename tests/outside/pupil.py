@@ -90,7 +90,8 @@ def verify(tomcom, recording):
 
 
 def timing(tomcom, recording):
-    done = subprocess.run([tomcom, "replay", recording, "--timing", "--format", "json"], capture_output=True, text=True, check=True)
+    research = Path(tomcom).with_name("tomcom-research")
+    done = subprocess.run([research, "speed", recording, "--format", "json"], capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 

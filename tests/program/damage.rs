@@ -207,13 +207,11 @@ fn a_pipe_in_place_of_a_log_is_refused_by_every_reader() {
     [LOG_NAME, "lock", "exclusion.toml", "recording.rrd"].iter().for_each(|name| pipe(&recording.join(name)));
     let [folder, all, log] =
         [&recording, &home.join("recordings"), &recording.join(LOG_NAME)].map(|path| path.display().to_string());
-    let readers: [&[&str]; 12] = [
+    let readers: [&[&str]; 10] = [
         &["replay", &folder],
         &["replay", &log],
         &["replay", &folder, "--verify"],
         &["replay", &folder, "--follow"],
-        &["replay", &folder, "--timing"],
-        &["replay", &folder, "--accuracy"],
         &["compare", &folder],
         &["codes", &folder],
         &["review", &folder, "--save"],
@@ -273,8 +271,6 @@ fn what_is_no_regular_file_of_usual_size_is_refused_by_every_reader_of_settings(
                 &session("asks", format!("{planned}[[plan.questionnaire]]\nfile = \"{place}\"\nafter = [1]\n")),
             ],
             vec!["plan", &session("tutorial", format!("{planned}tutorial = \"{place}\"\n"))],
-            vec!["robustness", place],
-            vec!["robustness", &file("battery.toml", format!("session = \"{place}\"\n[[cohort]]\nname = \"a\"\n"))],
             vec!["codes", &recording, "--import", place],
             vec!["study", &recording, "--frozen", place],
         ]

@@ -23,30 +23,14 @@ fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
     let root = lab.root.display().to_string();
     let (recording, other) = (format!("{root}/seed1-P01-1"), format!("{root}/seed1-P01-2"));
     let study = format!("{root}/results");
-    let sweep = format!("{root}/sweep");
     let save = format!("--save={root}/stream");
     let (codes, fitted) = (format!("{root}/codes"), format!("{root}/fitted"));
-    let commands: [(&[&str], &str); 6] = [
+    let commands: [(&[&str], &str); 5] = [
         (&["codes", &recording, "--export", &codes], "codes"),
         (&["fit", &recording, "--parameters", "tau", "--tries", "10", "--out", &fitted], "fitted"),
         (&["review", &recording, &other, &save], "stream"),
         (&["study", &root, "--skip", "concepts", "--out", &study], "results/participants.csv"),
         (&["study", &root, "--skip", "concepts", "--out", &study], "results/report.html"),
-        (
-            &[
-                "simulate",
-                "sessions/burger.toml",
-                "--arm",
-                "timed",
-                "--sweep",
-                "gaze=off",
-                "--concept",
-                "none",
-                "--out",
-                &sweep,
-            ],
-            "sweep/sweep.csv",
-        ),
     ];
     for (arguments, file) in commands {
         lab.put(file, "of somebody else\n");

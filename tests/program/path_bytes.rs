@@ -40,15 +40,9 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
     let [all, recording] = [at("all"), at("all/seed7-S001")];
     let simulated = run(0, &[&simulate[..], &[all.clone(), word("--rerun")]].concat());
     assert_eq!(simulated["recordings"][0], format!("{shown}/all/seed7-S001"));
-    run(
-        0,
-        &[&simulate[..], &[at("swept"), word("--sweep"), word("gaze=off"), word("--concept"), word("none")]].concat(),
-    );
-    let of_recording: [(&[&str], &[OsString]); 9] = [
+    let of_recording: [(&[&str], &[OsString]); 7] = [
         (&["replay"], &[]),
         (&["replay"], &[word("--verify")]),
-        (&["replay"], &[word("--timing")]),
-        (&["replay"], &[word("--offers")]),
         (&["compare"], &[word("--with"), word("tom-com")]),
         (&["codes"], &[word("--export"), at("codes.csv")]),
         (&["export"], &[word("--mcap"), word("--bids"), at("bids")]),

@@ -6,7 +6,6 @@
 //! - `signal`, [`recommendation`] (a concept's answer), [`repeats`] (the rule against repeated signals), [`situation`].
 //! - `concept_name`, [`settings`], [`concept`] (the interface), [`offer`] (a recommendation as the wizard sees it).
 //! - Implementations of the interface: [`planner`] (ToM-Com), [`tom`], [`dev`]; [`concepts`] creates one by its name.
-//!   `reference` is the planner in its plainest form, for tests.
 
 pub mod concept;
 mod concept_name;
@@ -15,7 +14,6 @@ pub mod dev;
 pub mod offer;
 pub mod planner;
 pub mod recommendation;
-pub mod reference;
 pub mod repeats;
 pub mod settings;
 mod signal;

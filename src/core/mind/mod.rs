@@ -13,7 +13,6 @@ pub mod model_table;
 pub mod named_models;
 pub mod observation;
 pub mod recorded_estimate;
-pub mod reference;
 pub mod signal_model;
 
 use std::collections::BTreeMap;

@@ -8,7 +8,6 @@ use serde::de::DeserializeOwned;
 use super::file_error::{FileError, FileResult};
 use super::known_settings::places_of;
 use crate::SessionSpec;
-use crate::battery::BatterySpec;
 use crate::plan::{Questionnaire, Tutorial};
 use tomcom_core::kitchen::layout::LayoutSpec;
 use tomcom_core::kitchen::recipe::RecipesSpec;
@@ -109,10 +108,6 @@ impl ParsedFile for Questionnaire {
 
 impl ParsedFile for Tutorial {
     const KIND: FileKind = FileKind::Tutorial;
-}
-
-impl ParsedFile for BatterySpec {
-    const KIND: FileKind = FileKind::Battery;
 }
 
 impl ParsedFile for HumanModel {

@@ -1,9 +1,6 @@
 //! Computation over sessions and recordings: judged presses and estimates, fits, comparisons and summaries. Everything
 //! in this module is a function of events that the caller passes in; files, threads and clocks belong to the caller.
-pub mod belief_check;
 pub mod bids;
-pub mod cohort_lines;
-pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;
 pub mod event_lines;
@@ -17,10 +14,8 @@ pub mod lesson_report;
 pub mod likelihood;
 pub mod looks;
 pub mod lsl;
-pub mod offer_steadiness;
 pub mod offer_summary;
 pub mod order_work;
-pub mod planner_accuracy;
 pub mod probe_accuracy;
 pub mod probe_collector;
 pub mod probe_detection;
@@ -32,8 +27,6 @@ pub mod recording_summary;
 pub mod recording_table;
 pub mod seen_contents;
 pub mod signal_time;
-pub mod sweep_row;
-pub mod timing_summary;
 pub mod training_record;
 pub mod trial_bootstrap;
 pub mod trial_summary;

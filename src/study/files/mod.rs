@@ -8,6 +8,7 @@ pub mod mcap_file;
 pub mod pool_file;
 pub mod power_files;
 pub mod recordings;
+pub mod simulated_trials;
 pub mod study_part_file;
 pub mod training;
 pub mod written_tables;

@@ -1,17 +1,8 @@
-//! Inference of the human's belief against exact computation, against humans who are simulated from the model itself, against
-//! its own plain reference, and under whatever may come.
+//! Inference of the human's belief under whatever may come. The plain reference, and exact computation: src/research.
 
-mod calibration;
-mod exact;
-mod freezes;
-mod grid;
 mod laws;
-mod paper;
-mod particles;
-mod proposals;
 mod signals;
 mod unknown_gaze;
-mod world;
 
 use rand::RngExt;
 use tomcom_core::base::rng::Stream;
@@ -19,18 +10,6 @@ use tomcom_core::kitchen::{Kitchen, LocationId, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom_core::mind::model::{HumanModel, LookingModel};
 use tomcom_core::mind::named_models::PAPER_2021;
-
-/// The model for the tiny kitchen: places are all but certain at first, so that little has to be gone through, and whatever
-/// is possible is gone through instead of drawn.
-fn tiny_model() -> HumanModel {
-    let mut model = HumanModel::default();
-    model.prior.location_truth = 0.99999;
-    model.prior.location_precision = 100.0;
-    model.inference.states = 4096;
-    // The grid of exact beliefs has no signals that wait to be read.
-    model.signal = PAPER_2021.signal;
-    model
-}
 
 /// A human who looks at nothing while the gaze is unknown, and believes signals at once.
 fn looks_at_nothing() -> HumanModel {

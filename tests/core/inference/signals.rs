@@ -2,17 +2,13 @@
 
 use std::sync::Arc;
 
-use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::named_models::PAPER_2021;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::reference::belief_set::ParticleSet;
-use tomcom_core::mind::reference::person::Particle;
 use tomcom_core::mind::signal_model::SignalModel;
 
 use super::looks_at_nothing;
@@ -182,42 +178,4 @@ fn without_a_delay_a_signal_is_believed_at_once_and_never_counted() {
     bench.observe(5.0, ObservedEvidence::EndedSignal);
     assert_eq!(bench.filter.take_signal_over(), None);
     assert_eq!(bench.filter.forecast().probability(LocationKind::Order), 1.0);
-}
-
-#[test]
-fn a_signal_without_a_delay_is_one_event_that_is_noticed_or_not_and_may_be_misread() {
-    let signal = SignalModel { noticed: 0.6, highlight_noticed: Some(0.3), misread: 0.2, ..PAPER_2021.signal };
-    let mut model = HumanModel { signal, ..looks_at_nothing() };
-    // Beliefs that no draw of the prior makes certain.
-    (model.prior.location_truth, model.prior.location_precision) = (0.5, 50.0);
-    (model.prior.recipe_truth, model.prior.recipe_precision) = (0.5, 50.0);
-    let mut bench = SignalBench::new(model.clone());
-    let (kitchen, state) = (bench.kitchen.clone(), bench.state);
-    let (order, place) = (kitchen.orders[0], kitchen.location_named("counter").expect("a location"));
-    let mut random = stream(12_402, "humans", 0);
-    let mut people = ParticleSet::new(kitchen.clone(), model);
-    people.start(SessionTime::ZERO, state, 20_000, &mut random);
-    for (seconds, location) in [(1.0, order), (2.0, place)] {
-        let observation =
-            Observation { time: SessionTime::from_secs_f64(seconds), what: ObservedEvidence::Told { location } };
-        bench.filter.observe(&observation, &mut bench.cost);
-        people.experience(&observation, &mut bench.cost, &mut random);
-    }
-    let projected = people.projected(&vec![1.0; people.of.len()]);
-    for aspect in [AspectId::of_location(order), bench.recipe, AspectId::of_location(place)] {
-        let [filter, reference] =
-            [bench.filter.belief(), &projected].map(|belief| belief.p_truth(&kitchen, state, aspect));
-        println!("{}: filter {filter:.4}, reference {reference:.4}", kitchen.aspects[aspect.index()].name);
-        assert!((filter - reference).abs() < 0.015, "{filter} and {reference}");
-    }
-    // Whoever notices an order's signal reads both the order and its recipe.
-    let is_certain = |of: &[f64]| of.contains(&1.0);
-    let [both, one] = [2, 1].map(|many| {
-        let read = |person: &&Particle| {
-            [order.index(), bench.recipe.index()].iter().filter(|index| is_certain(&person.of[**index])).count() == many
-        };
-        people.of.iter().filter(read).count() as f64 / people.of.len() as f64
-    });
-    // In the second up to the other signal 0.35 % of those who read the recipe forget it again.
-    assert!((both - 0.6).abs() < 0.02 && one < 0.004, "{both} read both, {one} only one");
 }

@@ -4,7 +4,6 @@
 mod codes;
 mod job_array;
 mod pool;
-mod robustness;
 mod wizard;
 
 use crate::support::*;

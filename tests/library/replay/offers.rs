@@ -1,10 +1,8 @@
 //! Recordings with offers: they verify, go on after a cut, and are measured.
 
 use tomcom::run::resume::resume;
-use tomcom::run::steadiness::measure;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_study::analysis::offer_summary::TimedOffer;
-use tomcom_study::gathered::GatheredRecordings;
 
 use super::{folder, session};
 use crate::support::*;
@@ -37,24 +35,6 @@ fn a_recording_with_offers_verifies_whole_and_cut_at_every_offer() {
         let found = verify(&cut).expect("a recording");
         assert!(found.verified && found.cut, "cut after line {index}: {found:?}");
     }
-}
-
-#[test]
-fn the_measured_hand_reads_offers_and_every_offer_is_counted() {
-    let recordings = shadowed("offers-measured");
-    let gathered = GatheredRecordings::find(&recordings).expect("recordings");
-    let found = measure(&gathered, || ()).expect("recordings");
-    let (mut offers, mut visible) = (0, 0);
-    for recording in &recordings {
-        let mut replay = RecordingReplay::open(recording).expect("a recording");
-        replay.run().expect("a recording");
-        offers += TimedOffer::all(replay.session()).len() as u64;
-        visible += TimedOffer::visible(replay.session()).len();
-    }
-    assert_eq!((found.offers.all.n, visible), (offers, 0), "nobody could see them");
-    let hand = found.hand;
-    assert!(hand.readings > 0 && hand.readings == hand.as_read + hand.something_else + hand.nothing, "{hand:?}");
-    assert_eq!(measure(&gathered, || ()).expect("recordings"), found, "the hand is seeded");
 }
 
 #[test]

@@ -97,18 +97,6 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session file"));
     assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session file"));
     assert!(complaint(&["compare", "tests/golden"]).contains("a folder without recordings"));
-    // What is summed up counts once, whatever path leads to it; a copy is told.
-    let copy = Path::new(out).join("copy.jsonl");
-    fs::copy(Path::new(recordings[0]).join("events.jsonl"), &copy).expect("copied");
-    let (one, copy) = (recordings[0], copy.to_str().expect("a path in UTF-8"));
-    let alone = check(&["replay", "--offers", one], 0).stdout;
-    assert_eq!(check(&["replay", "--offers", one, &format!("{one}/events.jsonl")], 0).stdout, alone);
-    let twice = check(&["replay", "--offers", one, copy], 0);
-    assert_eq!(twice.stdout, alone);
-    let told = String::from_utf8_lossy(&twice.stderr).into_owned();
-    assert!(told.contains("1 recording is a copy, and is not counted: "), "{told}");
-    let told = complaint(&["replay", "--check-beliefs", one, "--choose-on", copy]);
-    assert!(told.contains("a recording that is named for two purposes"), "{told}");
     let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
     let swept: Vec<u64> =
         swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();

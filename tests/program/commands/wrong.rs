@@ -85,9 +85,6 @@ fn told_about(name: &str, bad: &Bad) -> String {
         "keys" => ("sessions/keys.toml", &["keys", "sessions/default.toml"]),
         "parameters" => ("sessions/parameters.toml", &["keys", "sessions/parameterised.toml"]),
         "questionnaire" => ("sessions/questionnaires/acceptance.toml", &["plan", "sessions/study.toml"]),
-        "battery" => {
-            ("sessions/people/robustness.toml", &["robustness", "sessions/people/robustness.toml", "--arm", "timed"])
-        }
         "log" => ("recording/events.jsonl", &["replay", "recording", "--format", "json"]),
         other => panic!("{name}: the kind {other}"),
     };
@@ -105,7 +102,6 @@ fn told_about(name: &str, bad: &Bad) -> String {
         ("sessions/study.toml", read("sessions/study.toml")),
         ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
         ("sessions/tutorials/sushi.toml", read("sessions/tutorials/sushi.toml")),
-        ("sessions/people/robustness.toml", read("sessions/people/robustness.toml")),
         ("recording/events.jsonl", read("tests/golden/format-3-hand.jsonl")),
     ];
     let mut edited = String::new();

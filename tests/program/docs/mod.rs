@@ -20,8 +20,16 @@ use self::markdown::{Block, Page};
 use crate::program::{self, TOMCOM};
 
 /// Why a block may be left out.
-const REASONS: [&str; 6] =
-    ["builds", "needs a person", "needs the network", "takes minutes", "needs GNU parallel", "needs a cluster"];
+const REASONS: [&str; 7] = [
+    "builds",
+    "needs a person",
+    "needs the network",
+    "takes minutes",
+    "needs GNU parallel",
+    "needs a cluster",
+    // Its tests run these.
+    "needs tomcom-research",
+];
 /// What stands in blocks; of the last two nothing is looked at.
 const LANGUAGES: [&str; 8] = ["console", "sh", "toml", "json", "python", "rust", "text", "r"];
 

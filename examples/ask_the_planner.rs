@@ -9,7 +9,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::{Concept, DecisionPoint};
 use tomcom_core::communication::planner::Planner;
 use tomcom_core::communication::settings::AssistantSpec;
-use tomcom_core::communication::situation::Situation;
+use tomcom_core::communication::concept::Situation;
 use tomcom_core::communication::{HighlightSet, available};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, Kitchen, OrderContent};

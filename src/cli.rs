@@ -45,7 +45,7 @@ use crate::edge::key_file;
 use crate::run::options;
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 use tomcom_session::log::{self, LogEnding};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;

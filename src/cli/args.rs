@@ -16,7 +16,7 @@ use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use tomcom_core::mind::fitting::HumanModelParameter;
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]

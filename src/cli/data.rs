@@ -11,7 +11,7 @@ use super::list::{exists, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::edge::forget::{self, ParticipantData};
 use crate::run::review_console;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::person_code;
 use tomcom_session::settings::is_code;
 use tomcom_study::code_exchange::{self, ImportableCodes};

@@ -10,7 +10,7 @@ use super::output::{OutputFormat, print, progress, put_aside};
 use crate::edge::near_path;
 use crate::run::pick_recording;
 use crate::run::recording_list::{self, RecordingListDetail};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::log::LOG_NAME;
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;

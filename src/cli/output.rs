@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use crate::edge::terminal;
-use tomcom_core::base::printable::printable_lines;
+use tomcom_core::base::text::printable_lines;
 
 /// Format of a command's output: text or JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -8,7 +8,7 @@ use crate::run::open_viewer::{
     OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, review, running, save,
     until_asked_to_end,
 };
-use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
 
 impl From<RerunViewerError> for Failure {

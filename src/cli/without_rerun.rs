@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::failure::Failure;
-use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::features::{Feature, MissingFeature};
 

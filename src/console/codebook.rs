@@ -5,7 +5,7 @@ use super::key_action::{KeyAction, KeyBinding, RaterAction};
 use super::keys::KeyBindings;
 use super::text_columns::{width, wrap};
 use tomcom_core::kitchen::Kitchen;
-use tomcom_core::measures::cause_codes::ErrorCauseKind;
+use tomcom_core::measures::raters::ErrorCauseKind;
 
 /// Columns between two codebook entries in a line.
 const GAP: u16 = 2;

@@ -5,7 +5,7 @@ use super::console_model::ConsoleModel;
 use super::key_action::RaterAction;
 use super::notice::NoticeLevel;
 use super::playback::ReplayAction;
-use tomcom_core::measures::cause_codes::ErrorCauseCode;
+use tomcom_core::measures::raters::ErrorCauseCode;
 use tomcom_session::Session;
 
 /// Carries out an action of the rater's keys.

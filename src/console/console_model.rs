@@ -24,7 +24,7 @@ use super::rater_session::RaterSession;
 use super::view::theme::Theme;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
+use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_session::history::belief_track::BeliefHistory;
 use tomcom_session::history::signal_judge::SignalJudge;

@@ -11,7 +11,7 @@ use super::notice::NoticeLevel;
 use super::probe_keys;
 use super::sending::{refuse, send};
 use super::sheet_key::SheetKey;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
 use tomcom_session::probes::StartedProbe;
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};

@@ -9,7 +9,7 @@ use super::gaze_advice::AccuracyCheckAction;
 use super::notice::NoticeLevel;
 use super::sending::send;
 use tomcom_core::gaze::calibration::GazeAccuracy;
-use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::{Event, Session};
 
 /// Key that selects accepting the gaze without a correction.

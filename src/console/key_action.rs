@@ -8,7 +8,7 @@ use super::compared::ComparisonAction;
 use super::playback::ReplayAction;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{ButtonId, LocationId};
-use tomcom_core::measures::cause_codes::ErrorCauseKind;
+use tomcom_core::measures::raters::ErrorCauseKind;
 
 /// Whose keys are active: the wizard's, or the buttons of a person who plays the participant at this keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

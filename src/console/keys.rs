@@ -12,7 +12,7 @@ use super::playback::ReplayAction;
 use super::table;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{ButtonId, Kitchen, LocationId};
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::{ParticipantKind, SessionSpec};
 
 /// Key bindings of a console: the key table.

@@ -1,7 +1,7 @@
 //! State of a replay: position, speed, and the replay's keys.
 
 use tomcom_core::base::time::SessionTime;
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::replay::ReplayLandmark;
 
 /// Speeds of a replay as multiples of real time; infinity for as fast as possible.
 pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];

@@ -11,7 +11,7 @@ use super::playback::{Playback, ReplayAction, SPEEDS};
 use super::preflight;
 use super::sending::refusal;
 use tomcom_core::communication::Sender;
-use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::admit::admit;
 use tomcom_session::event::SignalEndReason;
 use tomcom_session::offers;

@@ -14,7 +14,7 @@ use super::key_action::KeyAction;
 use super::key_action::ManualAction;
 use super::notice::NoticeLevel;
 use super::probe_keys::{ProbeAnswerer, answerer};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::admit::admit;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
 use tomcom_session::probes::of_trial;

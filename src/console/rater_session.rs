@@ -1,7 +1,7 @@
 //! State of coding a recording: the codes of one rater, or of two raters who settle their differences.
 
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_session::error_list::ListedError;
 use tomcom_session::history::wording;
 

@@ -6,7 +6,7 @@ use super::form::sheet;
 use super::picker::PickerQuestion;
 use super::view::regions::{LEAST, PanelAreas, ScreenSize};
 use tomcom_session::Session;
-use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::event::WizardScreenContent;
 
 /// What the wizard's screen shows now: its panels and the open dialog or sheet.
 pub fn screen(session: &Session, model: &ConsoleModel) -> WizardScreenContent {

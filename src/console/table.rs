@@ -13,8 +13,8 @@ use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer};
 use super::playback::ReplayAction;
 use tomcom_core::communication::{self, HighlightSet, Signal};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId};
-use tomcom_core::measures::cause_codes::ErrorCauseKind;
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_core::measures::raters::ErrorCauseKind;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";

@@ -2,7 +2,7 @@
 
 use ratatui::text::Span;
 
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 
 /// Terminal columns that a text takes.
 pub fn width(text: &str) -> u16 {

@@ -1,7 +1,7 @@
 //! Position of the physical arm's tip on the table.
 
 use tomcom_arm::kinematics::SerialArm;
-use tomcom_core::robot::moment::ArmPhase;
+use tomcom_core::robot::ArmPhase;
 use tomcom_session::Session;
 use tomcom_session::settings::ArmKind;
 

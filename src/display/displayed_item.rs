@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::page_language::DisplayWords;
 use tomcom_session::Session;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, ItemOption};
 use tomcom_session::wall_display::AnswerDevice;
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use tomcom_core::kitchen::Kitchen;
-use tomcom_core::kitchen::content_wording::SCREEN_LANGUAGE;
+use tomcom_core::kitchen::parts::SCREEN_LANGUAGE;
 use tomcom_session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use tomcom_core::base::time::SessionTime;
-use tomcom_session::files::wall_time::WallTime;
+use tomcom_session::files::WallTime;
 
 /// Gap between two readings of the clock after which the program counts as having been suspended.
 const STANDSTILL: Duration = Duration::from_secs(1);

@@ -18,7 +18,7 @@ use crate::console::view::theme::TerminalBackground;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::SessionSpec;
 use tomcom_session::features::Feature;
-use tomcom_session::files::wall_time::WallTime;
+use tomcom_session::files::WallTime;
 use tomcom_session::log::RecordingLock;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
 use tomcom_session::settings::ConsoleSpec;

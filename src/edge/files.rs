@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::key_file::check_keys;
-use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_core::kitchen::files::LayoutSpec;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::files::parse::parse;

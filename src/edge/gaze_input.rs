@@ -4,7 +4,7 @@ use std::net::IpAddr;
 use std::time::Instant;
 
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_session::tracker::TrackerRecording;
 
 /// Largest number of tracker messages that wait for the session.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use serde::Deserialize;
 
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 use tomcom_core::gaze::GazeSample;
 
 /// Largest age of a gaze sample, in seconds; a larger age is an error of the sender.

@@ -8,7 +8,7 @@ use crate::console::KeyFileBindings;
 use crate::console::key_action::{KeyError, KeyErrorSource, KeyLayer};
 use crate::console::keys;
 use tomcom_core::kitchen::Kitchen;
-use tomcom_core::kitchen::layout::{LayoutSpec, is_same_key};
+use tomcom_core::kitchen::files::{LayoutSpec, is_same_key};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::parse::{FileKind, ParsedFile, parse};
 use tomcom_session::header::RecordedFile;

@@ -27,8 +27,8 @@ pub use self::blueprint::{ShownRecording, TRIAL_TIME};
 use self::viewer_server::ViewerServer;
 use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SeriesStyle};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
-use tomcom_arm::link::{CollisionSolid, LinkShape};
-use tomcom_core::base::printable::{printable, printable_lines};
+use tomcom_arm::kinematics::{CollisionSolid, LinkShape};
+use tomcom_core::base::text::{printable, printable_lines};
 use tomcom_core::base::time::SessionTime;
 
 /// Version of Rerun with which streams are written; viewers of the same version can read the streams.

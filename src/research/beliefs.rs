@@ -7,21 +7,19 @@ use std::sync::Arc;
 
 use serde::Serialize;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::{count, decimal};
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{Kitchen, KitchenChange, LocationId, Press};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::belief_detection::{
-    BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups,
-};
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::{
     FlagThresholds, MOST_FALSE_FLAGS, ThresholdChoice, ThresholdSource, chosen_thresholds,
 };
 use tomcom_core::mind::belief::Belief;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 use tomcom_session::settings::ParticipantKind;

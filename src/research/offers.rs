@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::{count, percent};
+use tomcom_core::base::text::{count, percent};
 use tomcom_core::communication::offer::{Offer, OfferCloseReason};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Signal, unavailable};

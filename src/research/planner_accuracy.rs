@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
-use tomcom_core::base::words::{count, decimal};
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::Kitchen;

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use tomcom_core::base::path_text::PathText;
-use tomcom_core::base::words::decimal;
+use tomcom_core::base::text::PathText;
+use tomcom_core::base::text::decimal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
@@ -20,7 +20,7 @@ use tomcom_session::files::overwrite;
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::RecordingWriteError;
 use tomcom_session::settings::{Condition, GazeSource};
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_study::analysis::kitchen_summary::plan_lengths;
 use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use tomcom_study::files::simulated_trials::{SimulationRequest, describe_moved, each_trial};

@@ -25,7 +25,7 @@ use crate::edge::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, t
 use crate::edge::terminal_input::TerminalInput;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::SessionSpec;
-use tomcom_session::accuracy_check::AcceptedGazeCheck;
+use tomcom_session::gaze_check::AcceptedGazeCheck;
 use tomcom_session::settings::{ConsoleSpec, GazeSource};
 
 /// Largest number of tracker messages that are processed together; more would delay the wizard's keys.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::options::SessionStart;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::Session;
 use tomcom_study::analysis::exclusion_status::ExclusionStatus;
 use tomcom_study::analysis::trial_summary::TrialSummary;

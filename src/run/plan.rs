@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{recordings_of, slot_name, stands};
-use tomcom_core::base::path_text::PathText;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::PathText;
+use tomcom_core::base::text::count;
 use tomcom_session::files::KitchenWithSources;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};

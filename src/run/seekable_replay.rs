@@ -10,7 +10,7 @@ use std::path::Path;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::WizardVisibility;

@@ -7,14 +7,14 @@ use std::time::Instant;
 
 use super::leaving::ways_to_look;
 use super::options;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::ruling;
 use tomcom_session::settings::{Condition, ParticipantSpec};
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::analysis::kitchen_summary::plan_lengths;
 use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals};

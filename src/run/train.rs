@@ -14,7 +14,7 @@ use super::training_shell::TrainingShell;
 use crate::console::playback::SPEEDS;
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use tomcom_session::files::file_error::{FileError, FileResult};
-use tomcom_session::files::wall_time::WallTime;
+use tomcom_session::files::WallTime;
 use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::wizard_log::false_belief_periods;
 use tomcom_study::analysis::training_record::{WatchedRecording, WizardTrainingRecord};

@@ -16,7 +16,7 @@ use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, 
 use crate::edge::key_file::key_map;
 use crate::edge::terminal::{TerminalScreen, theme};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::wizard_performance::{

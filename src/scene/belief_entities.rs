@@ -6,7 +6,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, Kitchen, State, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_core::mind::recorded_estimate::RecordedEstimate;
+use tomcom_core::mind::RecordedEstimate;
 use tomcom_core::mind::{AspectBelief, RecordedBelief};
 use tomcom_session::history::wording;
 use tomcom_session::{Event, Session, TimestampedEvent};

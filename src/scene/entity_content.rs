@@ -4,7 +4,7 @@
 use nalgebra::Isometry3;
 
 use super::colours::SceneColour;
-use tomcom_arm::link::CollisionSolid;
+use tomcom_arm::kinematics::CollisionSolid;
 
 /// New content of one entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,13 +6,13 @@ use crate::Session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
-use tomcom_core::communication::concepts::concept;
+use tomcom_core::communication::concept::concept;
 use tomcom_core::communication::recommendation::Recommendation;
-use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::communication::concept::{RobotIntent, Situation};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, State};
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_core::mind::signal_model::SignalReadingForecast;
+use tomcom_core::mind::model::SignalReadingForecast;
 
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]

@@ -42,7 +42,7 @@ use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 

@@ -20,9 +20,9 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::mind::RecordedBelief;
-use tomcom_core::mind::recorded_estimate::RecordedEstimate;
-use tomcom_core::robot::moment::ArmSample;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::mind::RecordedEstimate;
+use tomcom_core::robot::ArmSample;
+use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{AbortReason, IdleReason};
 
 /// An event with its sequence number in the log and its time.

@@ -7,7 +7,7 @@ use crate::tracker::TrackerEvent;
 use crate::{AppliedEvent, Event, Session, TimestampedEvent, apply};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
-use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
 use tomcom_core::measures::JudgedPress;
@@ -16,10 +16,10 @@ use tomcom_core::measures::errors::PressJudge;
 use tomcom_core::measures::sequences::FalseBeliefTracker;
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_core::mind::filter::signals_so_far::EndedSignal;
+use tomcom_core::mind::filter::signals::EndedSignal;
 use tomcom_core::mind::filter::{BeliefFilter, PressEvidence};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
-use tomcom_core::mind::recorded_estimate::RecordedEstimate;
+use tomcom_core::mind::RecordedEstimate;
 
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]

@@ -8,9 +8,9 @@ pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
 use super::session_state::Session;
 use super::tracker::TrackerConnection;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
-use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
+use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_core::mind::model::HumanModel;
 
 /// Sampling rate of the gaze below which short looks are missed, in Hz.

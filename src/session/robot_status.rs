@@ -2,8 +2,8 @@
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::ButtonId;
-use tomcom_core::robot::moment::ArmSample;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::ArmSample;
+use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{AbortReason, IdleReason};
 
 /// State of the robot in a session.

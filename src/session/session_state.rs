@@ -19,7 +19,7 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{HighlightSet, Sender, Signal};
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{DishId, Kitchen, LocationId, State};
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 
 /// Time without a gaze sample after which gaze counts as missing, in seconds.
 const SILENT_S: f64 = 1.0;

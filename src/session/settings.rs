@@ -20,7 +20,7 @@ use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
 use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
 use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
-use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
+use tomcom_people::wizard::{WizardKind, WizardSpec};
 
 /// The settings of a session file: who takes part, under which condition, and for how long.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,9 +5,9 @@ use super::phase::TrialPhase;
 use super::probe_event::ProbeEvent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, LocationId, State};
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::SafetyMode;
 
 /// An entry of the session's timeline.
 #[derive(Clone, Debug, PartialEq)]

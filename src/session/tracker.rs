@@ -6,8 +6,8 @@ use super::participant_settings::GazeSource;
 use super::setting_checks::SettingError;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::quality::DroppedInputCounts;
-use tomcom_core::gaze::stamp_check::StampFault;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::device_clock::StampFault;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_core::gaze::tags::{DisplayTags, TagError};
 use tomcom_core::kitchen::Kitchen;
 

@@ -2,7 +2,7 @@
 
 use super::plan::{Tutorial, TutorialStep, TutorialStepKind};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 
 /// A press of the participant in a tutorial.

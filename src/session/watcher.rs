@@ -26,7 +26,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
-use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, KitchenChange, LocationId, State};
 use tomcom_core::measures::matching::CommunicationEvent;

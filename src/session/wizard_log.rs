@@ -8,7 +8,7 @@ use crate::settings::ParticipantKind;
 use crate::wizard_screen::WizardScreenContent;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;

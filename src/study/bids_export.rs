@@ -14,8 +14,8 @@ use crate::analysis::bids::{
 };
 use crate::files::bids_tree::BidsTree;
 use crate::planned_trial::{RecordingCopy, copies_in_words};
-use tomcom_core::base::path_text::PathText;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::PathText;
+use tomcom_core::base::text::count;
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_session::event::Event;

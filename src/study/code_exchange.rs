@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::codes::CodedRecording;
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::rater_codes::{self, RaterCodeRow};

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::figures::IdenticalCodes;
-use tomcom_core::base::words::{count, decimal};
-use tomcom_core::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
-use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
-use tomcom_core::measures::rater_choice::{RaterPair, of_most};
+use tomcom_core::base::text::{count, decimal};
+use tomcom_core::measures::raters::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
+use tomcom_core::measures::raters::{RaterConsensus, unsettled};
+use tomcom_core::measures::raters::{RaterPair, of_most};
 use tomcom_session::error_list::ListedError;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::history::wording;

@@ -7,7 +7,7 @@ use super::trial_details::TrialDetails;
 use super::trial_statistics::TrialStatistics;
 use crate::analysis::offer_summary::OfferTally;
 use crate::analysis::probe_record::ProbedTrial;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::matching::{MatchCounts, Similarity, WINDOW};
 use tomcom_session::settings::Condition;
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use tomcom_core::kitchen::{LocationId, LocationKind};
-use tomcom_people::wizard::settings::{WizardKind, WizardSpec};
+use tomcom_people::wizard::{WizardKind, WizardSpec};
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
 use tomcom_session::{LogHeader, Session};
 

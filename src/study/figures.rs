@@ -24,13 +24,13 @@ use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
-use tomcom_core::base::words::count;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::{AgreementTable, RaterAgreement};
+use tomcom_core::base::text::count;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::{AgreementTable, RaterAgreement};
 use tomcom_core::measures::matching::{MatchCounts, Similarity};
-use tomcom_core::measures::rater_choice::RaterPair;
+use tomcom_core::measures::raters::RaterPair;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
-use tomcom_session::code_correction::CodeCorrection;
+use tomcom_session::header::CodeCorrection;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::settings::ParticipantKind;
 

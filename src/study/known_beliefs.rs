@@ -11,8 +11,8 @@ use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::RaterCodes;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::RaterCodes;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
 /// Known false beliefs of a participant in one trial.

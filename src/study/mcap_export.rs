@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::analysis::foxglove::McapMessageConverter;
 use crate::files::mcap_file::McapFile;
-use tomcom_core::base::path_text::PathText;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::PathText;
+use tomcom_core::base::text::count;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::LogHeader;
 use tomcom_session::files::file_error::{FileError, FileResult};

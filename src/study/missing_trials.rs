@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::preregistration::RecordedPlan;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 
 /// Largest number of participants that are named in a text.
 const NAMED: usize = 8;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::preregistration::RecordedPlan;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 
 /// A counted trial of a participant in a study plan.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

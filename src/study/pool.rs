@@ -17,7 +17,7 @@ use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::plan::{Participants, Study};
 use tomcom_session::settings::Condition;
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{SessionSpec, TimestampedEvent};
 

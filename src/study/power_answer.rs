@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::drawn_study::{DrawnEffect, PowerTest, SignificanceTestMethod, reference, tests};
 use super::power::{RejectionCount, RejectionShare, WANTED, least_ratio};
 use super::simulation_pool::PoolHeader;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::plan::PrimaryOutcome;
 use tomcom_session::study_arm::StudyArm;
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use super::frozen_plan::FrozenPlan;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::LogHeader;
 
 /// The study plan to which a recording belongs.

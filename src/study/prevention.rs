@@ -16,7 +16,7 @@ use super::known_beliefs::KnownFalseBeliefs;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
 /// Number of nanoseconds in a millisecond; session time is in nanoseconds.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::SafetyMode;
 use tomcom_session::Event;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::settings::ArmKind;

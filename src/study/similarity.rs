@@ -6,7 +6,7 @@ use super::gathered::GatheredRecordings;
 use super::parallel;
 use super::standing::exclusion_status;
 use crate::analysis::compared_recording::{RecordingSenderComparison, SenderComparer};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::LogReader;
 use tomcom_session::watcher::SenderComparisonSettings;

@@ -27,7 +27,7 @@ use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialQuestionRow;
 use super::trial_details::TrialDetails;
 use super::trial_statistics::TrialStatistics;
-use tomcom_session::code_correction::CodeCorrection;
+use tomcom_session::header::CodeCorrection;
 use tomcom_session::header::RecordedFile;
 use tomcom_session::plan::PlanPosition;
 

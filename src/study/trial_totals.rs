@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::effect::LEVEL;
 use super::statistics::{ConfidenceInterval, share_interval};
 use super::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean, mean_length};
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::sequences::BeliefErrorCounts;
 
 /// Sums and rates over trials of a study: presses, errors, sequences, signals, orders.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use tomcom_core::kitchen::Kitchen;
-use tomcom_core::kitchen::layout::LayoutSpec;
+use tomcom_core::kitchen::files::LayoutSpec;
 
 /// Where a file or folder of the repository is.
 pub fn place(path: impl AsRef<Path>) -> PathBuf {

@@ -6,8 +6,8 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::device_clock::{ClockNews, DeviceClock};
 use tomcom_core::gaze::quality::{GazeFaultDetector, TOO_OLD_S};
-use tomcom_core::gaze::stamp_check::StampFault;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::device_clock::StampFault;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_core::gaze::tags::{CELLS, DisplayTags};
 use tomcom_core::kitchen::DisplayArea;
 

@@ -5,7 +5,7 @@ use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, OrderContent, State};
 use tomcom_core::robot::IdleReason;
-use tomcom_core::robot::initiative::own_ways;
+use tomcom_core::robot::policy::own_ways;
 use tomcom_core::robot::policy::{PolicyDecision, decide};
 
 use crate::files::kitchen;

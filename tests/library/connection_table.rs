@@ -3,7 +3,7 @@
 use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
-use tomcom::edge::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
+use tomcom_devices::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
 
 use crate::support::*;
 

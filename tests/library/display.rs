@@ -1,9 +1,9 @@
 //! The participant's display: what is told to the page, in which words, and what may never be.
 
-use tomcom::display::page_language::DisplayWords;
-use tomcom::display::{DisplayStage, TrialClockState, scene, sight, time_left};
+use tomcom_devices::sight::page_language::DisplayWords;
+use tomcom_devices::sight::{DisplayStage, TrialClockState, scene, sight, time_left};
 use tomcom_core::communication::signals;
-use tomcom_session::files::language::LanguageFile;
+use tomcom_session::files::LanguageFile;
 use tomcom_session::files::parse::parse;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::wall_display::{DisplayEvent, DisplaySpec};
@@ -290,8 +290,8 @@ fn what_the_display_tells_is_recorded_and_verified() {
 
 #[test]
 fn every_shape_is_drawn() {
-    let art = include_str!("../../src/edge/display/page/art.js");
-    for shape in tomcom_core::kitchen::look::SHAPES {
+    let art = include_str!("../../src/devices/display/page/art.js");
+    for shape in tomcom_core::kitchen::parts::SHAPES {
         assert!(art.contains(&format!("    {shape}(")) || art.contains(&format!("    {shape}: (")), "{shape}");
     }
 }
@@ -299,8 +299,8 @@ fn every_shape_is_drawn() {
 #[test]
 fn german_has_every_word_of_the_page_and_of_both_kitchens() {
     let read = |text: &str| parse::<LanguageFile>(Path::new("words"), text).expect("words").0;
-    let english = read(include_str!("../../src/display/languages/en.toml"));
-    let german = read(include_str!("../../src/display/languages/de.toml"));
+    let english = read(include_str!("../../src/devices/sight/languages/en.toml"));
+    let german = read(include_str!("../../src/devices/sight/languages/de.toml"));
     for key in english.keys() {
         assert!(german.contains_key(key), "{key}");
     }

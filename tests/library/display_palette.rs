@@ -63,7 +63,7 @@ fn read(path: &str) -> String {
 
 #[test]
 fn signals_and_the_two_rings_of_a_press_are_told_apart() {
-    let css = read("src/edge/display/page/display.css");
+    let css = read("src/devices/display/page/display.css");
     let colour = |name: &str| {
         let (_, after) = css.split_once(&format!("{name}: #")).unwrap_or_else(|| panic!("display.css has no {name}"));
         format!("#{}", &after[..6])

@@ -1,6 +1,6 @@
 //! Freeze probes on the participant's display: what the page is told of every question, and what an answer means.
 
-use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
+use tomcom_devices::sight::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
 use tomcom_session::apply;
 use tomcom_session::probes::{ProbeEndReason, ProbeOrigin, ProbeQuestion, ProbeSubject};
 

@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use tomcom::display::page_language::DisplayWords;
-use tomcom::edge::display::DisplayServer;
+use tomcom_devices::sight::page_language::DisplayWords;
+use tomcom_devices::display::DisplayServer;
 use tomcom_session::wall_display::DisplaySpec;
 
 use crate::support::*;

@@ -7,7 +7,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view;
-use tomcom_core::base::printable::{printable, printable_lines};
+use tomcom_core::base::text::{printable, printable_lines};
 use tomcom_session::apply;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::tracker::TrackerEvent;

@@ -9,9 +9,9 @@ use tokio::time::timeout;
 use tomcom::console::console_model::ConsoleModel;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::preflight::checks;
-use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
-use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
-use tomcom::edge::gaze_json::{GazeListener, listen};
+use tomcom_devices::datagram_holder::{ExclusiveDatagramSender, RELEASE};
+use tomcom_devices::gaze_input::{GazeSenderRejection, TrackerMessage};
+use tomcom_devices::gaze_json::{GazeListener, listen};
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::settings::GazeSenders;
 

@@ -1,14 +1,14 @@
 //! Streams of the Lab Streaming Layer: what they are called, what their channels are, and what is sent of a session. And gaze that comes
 //! in.
 
-use tomcom::edge::lsl::{LslError, load};
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_devices::lsl::{LslError, load};
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;
-use tomcom_study::analysis::lsl::{
+use tomcom_devices::lsl::{
     LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
 };
 

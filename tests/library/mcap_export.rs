@@ -2,7 +2,7 @@
 
 use mcap::MessageStream;
 use tomcom_arm::kinematics::UR5;
-use tomcom_core::robot::moment::JOINT_NAMES;
+use tomcom_core::robot::JOINT_NAMES;
 use tomcom_study::analysis::foxglove::McapChannel;
 use tomcom_study::mcap_export::export;
 

@@ -3,9 +3,9 @@
 use std::convert::Infallible;
 
 use tomcom_core::kitchen::{WeightedWorlds, World};
-use tomcom_core::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
+use tomcom_core::measures::detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
 use tomcom_core::mind::belief::Belief;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_core::mind::{ChoiceModel, RecordedBelief};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::signal_judge::{SignalJudge, SignalJudgementCounts};

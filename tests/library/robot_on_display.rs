@@ -1,6 +1,6 @@
 //! The robot's hand on the participant's display: where it is told to be, and that nothing of what comes is told.
 
-use tomcom::display::{RobotHand, RobotHandPose, scene};
+use tomcom_devices::sight::{RobotHand, RobotHandPose, scene};
 use tomcom_core::kitchen::ButtonAction;
 use tomcom_session::TimelineEvent;
 use tomcom_session::wall_display::RobotDepiction;

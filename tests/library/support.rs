@@ -31,7 +31,7 @@ pub use tomcom_session::probes::ProbeEvent;
 pub use tomcom_session::protocol::ProtocolEvent;
 pub use tomcom_session::replay::RecordingReplay;
 pub use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, WizardVisibility};
-pub use tomcom_session::shard::SimulationShard;
+pub use tomcom_session::headless::SimulationShard;
 pub use tomcom_session::study_arm::StudyArm;
 pub use tomcom_session::verify::verify;
 pub use tomcom_session::wall_display::AnswerDevice;

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tomcom::edge::rerun::StreamIdentity;
-use tomcom::edge::stream::RerunStream;
-use tomcom::scene::{EntityData, EntityUpdate, SceneUpdate};
+use tomcom_devices::rerun::StreamIdentity;
+use tomcom_devices::stream::RerunStream;
+use tomcom_devices::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 use crate::support::*;
 

@@ -3,7 +3,7 @@
 use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
 use tomcom_people::participant::population::{Population, TraitSpread};
-use tomcom_people::participant::slips::slipped_button;
+use tomcom_people::participant::hand::slipped_button;
 
 use super::behaviour::{Bench, unmoved};
 use crate::files::{self, kitchen};

@@ -4,7 +4,7 @@ use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
-use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::population::{Population, TraitSpread};
 
 use super::behaviour::{Bench, unmoved};

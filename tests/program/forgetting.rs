@@ -9,7 +9,7 @@ use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_session::LogHeader;
 use tomcom_session::log::{LogWriter, RecordingLock};
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 
 use crate::program::TOMCOM;
 

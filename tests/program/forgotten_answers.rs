@@ -7,7 +7,7 @@ use std::sync::Arc;
 use tomcom::edge::files::read_session;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::parse::parse;
 use tomcom_session::log::LogWriter;

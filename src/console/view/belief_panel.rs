@@ -13,7 +13,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
 use crate::console::text_columns::{fit, width, wrap};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_session::Session;

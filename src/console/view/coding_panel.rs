@@ -11,7 +11,7 @@ use crate::console::coding_list::ErrorListLayout;
 use crate::console::console_model::ConsoleModel;
 use crate::console::rater_session::{CodingRaters, RaterSession};
 use crate::console::text_columns::{fit, width, wrap};
-use tomcom_core::measures::cause_codes::ErrorCauseCode;
+use tomcom_core::measures::raters::ErrorCauseCode;
 use tomcom_session::Session;
 use tomcom_session::error_list::ListedError;
 use tomcom_session::history::wording;

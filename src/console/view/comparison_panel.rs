@@ -13,7 +13,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::decimal;
+use tomcom_core::base::text::decimal;
 use tomcom_session::Session;
 use tomcom_session::history::comparison::{
     Communication, CommunicationContent, SenderComparison, UnmatchedCommunication,

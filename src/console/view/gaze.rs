@@ -10,7 +10,7 @@ use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::console::text_columns::{fit, width};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::gaze::nearest_location;
 use tomcom_core::kitchen::LocationId;
 use tomcom_session::Session;

@@ -9,7 +9,7 @@ use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamSt
 use crate::console::probe_keys;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::SafetyMode;
 use tomcom_session::history::wording;
 use tomcom_session::settings::{Condition, GazeSource};
 use tomcom_session::tracker::TrackerConnection;

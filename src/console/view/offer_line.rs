@@ -11,7 +11,7 @@ use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::console::text_columns::{width, wrap};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::communication::recommendation::SignalReason;

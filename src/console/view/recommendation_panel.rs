@@ -9,7 +9,7 @@ use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::text_columns::wrap;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};

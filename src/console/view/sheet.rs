@@ -15,9 +15,9 @@ use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::form::{FormContent, WAIVERS, sheet};
 use crate::console::question::StartQuestion;
 use crate::console::text_columns::width;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::Session;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
 use tomcom_session::protocol::{ItemAnswer, StudyProtocolState};
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::page_input::ParticipantResponse;
 use crate::display::{DisplayContent, DisplayScene, RobotHandPose};
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 
 /// Longest message of a participant page, in bytes.
 pub(super) const MAX_BYTES: usize = 4096;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::Deserialize;
 
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 
 /// An input to the session from the participant page that takes part.
 #[derive(Clone, Debug, PartialEq)]

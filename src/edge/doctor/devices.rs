@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 use tomcom_core::gaze::tags::TagError;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::SessionSpec;

@@ -88,7 +88,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use tomcom_core::gaze::stamp_check::StampFault;
+    use tomcom_core::gaze::device_clock::StampFault;
 
     /// Test data: this computer's clock, and LSL's clock, which is 100 s ahead of the seconds since `origin`.
     fn clocks() -> (Instant, ClockOffsetEstimator) {

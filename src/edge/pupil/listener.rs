@@ -14,7 +14,7 @@ use super::zmtp::{ZmtpConnection, ZmtpMessage};
 use crate::edge::compared_clock::ClockOffsetEstimator;
 use crate::edge::gaze_input::{TrackerFixation, TrackerMessage, TrackerTime};
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 
 /// The display's surface counts as lost after this long without a datum about it.
 const UNSEEN: Duration = Duration::from_secs(1);

@@ -23,7 +23,7 @@ use listener::Listener;
 use message::{SURFACES, TOPICS};
 use recorder::CaptureRecordingControl;
 pub use recorder::CaptureRequest;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use zmtp::{SocketRole, ZmtpConnection};
 
 /// Time between attempts to connect to Pupil Capture.

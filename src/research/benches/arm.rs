@@ -7,9 +7,9 @@ use std::time::Instant;
 use nalgebra::Point3;
 use tomcom_arm::controller::ArmController;
 use tomcom_arm::physics::CYCLE_S;
-use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::physics::bodies::HandPose;
 use tomcom_core::kitchen::{Agent, ButtonId};
-use tomcom_core::robot::moment::ArmPhase;
+use tomcom_core::robot::ArmPhase;
 use tomcom_session::files::read_kitchen;
 
 /// So much is simulated, in seconds.

@@ -15,7 +15,7 @@ use tomcom_core::kitchen::{
     Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
 };
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
+use tomcom_core::mind::filter::unseen::UnknownGazeTimer;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 

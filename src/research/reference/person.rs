@@ -12,7 +12,7 @@ use tomcom_core::base::rng::Stream;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
 use tomcom_core::kitchen::{OrderContent, Recipes, State};
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::robot::policy;
 

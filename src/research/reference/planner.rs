@@ -15,7 +15,7 @@ use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::communication::concept::DecisionPoint;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::communication::settings::AssistantSpec;
-use tomcom_core::communication::situation::RobotIntent;
+use tomcom_core::communication::concept::RobotIntent;
 use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};

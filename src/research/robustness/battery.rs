@@ -9,7 +9,7 @@ use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::participant::population::Population;
 use tomcom_session::files::file_error::{FileError, FileResult, missing, read_text};
 use tomcom_session::files::parse::{FileKind, ParsedFile, parse};
-use tomcom_session::files::place::place_of;
+use tomcom_session::files::file_error::place_of;
 use tomcom_session::files::{SessionSetup, read_session};
 use tomcom_session::settings::{Condition, GazeSource, ParticipantKind, SessionSpec, SettingError};
 use toml::Spanned;

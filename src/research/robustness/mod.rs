@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::measures::belief_detection::{EstimateBeforePress, TrialBeliefs};
+use tomcom_core::measures::detection::{EstimateBeforePress, TrialBeliefs};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;

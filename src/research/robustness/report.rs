@@ -1,7 +1,7 @@
 //! The robustness table as text for the terminal, at most 125 characters wide, since few trials give shares beyond -100 %;
 //! and as a chart (SVG): what the assistant saves for each cohort, and how well the estimate finds false beliefs.
 
-use tomcom_core::base::words::{count, decimal};
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::flags::MOST_FALSE_FLAGS;
 use tomcom_study::report::STYLE;
 use tomcom_study::svg::{PlotAxis, SvgChart, document};

@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::measures::belief_detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
+use tomcom_core::measures::detection::{FalseBeliefDetection, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::flags::{ThresholdChoice, chosen_thresholds};
-use tomcom_core::measures::resampled_detection::DetectionScores;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::measures::detection::DetectionScores;
+use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_study::analysis::likelihood::PressLogLikelihood;
 use tomcom_study::analysis::trial_bootstrap::intervals;
 use tomcom_study::analysis::trial_summary::TrialSummary;

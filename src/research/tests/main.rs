@@ -15,7 +15,7 @@ mod sweep;
 use std::path::{Path, PathBuf};
 
 use tomcom_session::files::{SessionSetup, read_session};
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_study::files::simulated_trials::{SimulationRequest, each_trial};
 
 /// An empty folder for the test of this name.

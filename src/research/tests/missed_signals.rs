@@ -5,15 +5,15 @@ use std::sync::Arc;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::{Concept, DecisionPoint};
 use tomcom_core::communication::planner::Planner;
-use tomcom_core::communication::repeats::SignalRepeatRule;
+use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::communication::settings::AssistantSpec;
-use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::communication::concept::{RobotIntent, Situation};
 use tomcom_core::communication::{HighlightSet, Signal, signals};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, DishId, Kitchen, OrderContent, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::signal_model::SignalReadingForecast;
+use tomcom_core::mind::model::SignalReadingForecast;
 use tomcom_research::reference::planner::ReferencePlanner;
 
 use crate::files::kitchen;

@@ -7,7 +7,7 @@ use tomcom_session::Event;
 use tomcom_session::files::read_session;
 use tomcom_session::log::LogReader;
 use tomcom_session::settings::Condition;
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::verify::verify;
 use tomcom_study::files::simulated_trials::SimulationRequest;
 

@@ -7,7 +7,7 @@ use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
 use crate::edge::display::{DisplayHandle, DisplayServer, ParticipantResponse};
 use crate::run::desk::{OperatorDesk, PageInput};
-use tomcom_core::base::printable::printable;
+use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;

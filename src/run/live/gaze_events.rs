@@ -9,7 +9,7 @@ use crate::run::desk::GazeTracker;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeRateLimiter};
-use tomcom_core::gaze::stamp_check::StampFault;
+use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_session::tracker::{MissingConfidence, TrackerEvent};
 use tomcom_session::{Event, Session, TrialPhase};
 

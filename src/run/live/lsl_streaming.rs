@@ -7,7 +7,7 @@ use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
 use crate::edge::lsl::{LslCounts, LslSample, LslStreams};
 use crate::run::desk::OperatorDesk;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::{Session, TimestampedEvent};

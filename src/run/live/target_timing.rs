@@ -3,7 +3,7 @@
 use super::live_session::Live;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
-use tomcom_session::accuracy_check::{AcceptedGazeCheck, GazeCheckEvent, RunningGazeCheck};
+use tomcom_session::gaze_check::{AcceptedGazeCheck, GazeCheckEvent, RunningGazeCheck};
 use tomcom_session::settings::GazeSource;
 
 impl Live {

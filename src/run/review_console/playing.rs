@@ -7,7 +7,7 @@ use crate::console::notice::NoticeLevel;
 use crate::console::playback::{ReplayAction, SPEEDS};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::replay::ReplayLandmark;
 
 /// Longest time per frame that is spent on applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);

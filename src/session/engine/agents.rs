@@ -17,7 +17,7 @@ use tomcom_arm::worker::RobotTaskExecutor;
 use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_people::participant::SimulatedParticipant;
-use tomcom_people::participant::gaze_gaps::GazeDropoutSchedule;
+use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::population::Experience;
 use tomcom_people::wizard::ScriptedWizard;
 

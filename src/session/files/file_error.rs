@@ -10,7 +10,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 
 use super::place::place_of;
 use crate::features::{Feature, MissingFeature};
-use tomcom_core::base::printable::{printable, printable_lines};
+use tomcom_core::base::text::{printable, printable_lines};
 
 /// Result of reading a file, with an error that explains what is wrong with the file.
 pub type FileResult<T> = Result<T, FileError>;

@@ -24,11 +24,11 @@ use crate::ranges;
 use crate::settings::SettingError;
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
-use tomcom_core::kitchen::layout::LayoutSpec;
-use tomcom_core::kitchen::recipe::RecipesSpec;
-use tomcom_core::kitchen::{Kitchen, layout_ranges};
+use tomcom_core::kitchen::files::LayoutSpec;
+use tomcom_core::kitchen::files::RecipesSpec;
+use tomcom_core::kitchen::{Kitchen, files};
 use tomcom_core::mind::model::HumanModel;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]

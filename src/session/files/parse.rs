@@ -9,8 +9,8 @@ use super::file_error::{FileError, FileResult};
 use super::known_settings::places_of;
 use crate::SessionSpec;
 use crate::plan::{Questionnaire, Tutorial};
-use tomcom_core::kitchen::layout::LayoutSpec;
-use tomcom_core::kitchen::recipe::RecipesSpec;
+use tomcom_core::kitchen::files::LayoutSpec;
+use tomcom_core::kitchen::files::RecipesSpec;
 use tomcom_core::mind::model::HumanModel;
 
 /// Kind of a file that people write.

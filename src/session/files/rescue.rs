@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::file_error::read_regular;
-use tomcom_core::base::path_text::PathText;
+use tomcom_core::base::text::PathText;
 
 /// Prefix of the folders for rescued recordings in the system's folder for temporary files.
 pub const RESCUED: &str = "tomcom-rescued-";

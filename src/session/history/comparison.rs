@@ -7,7 +7,7 @@ use super::belief_track::AspectBeliefSnapshot;
 use crate::history::wording;
 use crate::wizard_screen::WizardScreenContent;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};

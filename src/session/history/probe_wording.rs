@@ -1,7 +1,7 @@
 //! Wording of freeze probes: questions, answers and events as texts.
 
 use crate::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 
 /// A name from the log as words on a screen, without underscores.
 fn said(name: &str) -> String {

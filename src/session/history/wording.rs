@@ -10,19 +10,19 @@ use crate::tracker::{TrackerEvent, TrackerRecording};
 use crate::tutorial::TutorialEvent;
 use crate::wall_display::AnswerDevice;
 use crate::{Session, TimelineEvent, TrialPhase};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::communication::recommendation::SignalReason;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::quality::DroppedInputCounts;
-use tomcom_core::kitchen::no_effect::NoEffectReason;
+use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
+use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_core::robot::IdleReason;
-use tomcom_core::robot::moment::ArmPhase;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::ArmPhase;
+use tomcom_core::robot::SafetyMode;
 
 /// A button's label in words: "cutting board", "take rice".
 pub fn button(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonId) -> String {

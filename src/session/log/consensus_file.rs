@@ -10,8 +10,8 @@ use super::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::files::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::files::replace_file;
 use crate::person_code;
-use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode};
-use tomcom_core::measures::consensus::{ConsensusCode, RaterConsensus};
+use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode};
+use tomcom_core::measures::raters::{ConsensusCode, RaterConsensus};
 
 /// Name of the consensus file in the folder of a recording.
 pub const CONSENSUS_NAME: &str = "consensus.csv";

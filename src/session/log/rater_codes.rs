@@ -11,9 +11,9 @@ use crate::files::file_error::{FileError, FileResult, MAX_TEXT, open_regular, re
 use crate::files::overwrite;
 use crate::files::replace_file;
 use crate::person_code;
-use tomcom_core::base::spreadsheet::SEPARATORS;
-use tomcom_core::base::words::count;
-use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::base::text::SEPARATORS;
+use tomcom_core::base::text::count;
+use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 
 /// Columns of the file of one rater's codes; an export of several recordings has one column more, before these. The file
 /// says whose codes it has, since its name can change when it is copied.

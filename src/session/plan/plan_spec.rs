@@ -9,7 +9,7 @@ use crate::person_code;
 use crate::setting_checks::{SettingError, is_code};
 use crate::study_arm::StudyArm;
 use crate::wall_display::AnswerDevice;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

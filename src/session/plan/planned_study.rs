@@ -15,7 +15,7 @@ use crate::tracker::TrackerSpec;
 use crate::wall_display::{AnswerDevice, DisplaySpec};
 use tomcom_core::base::rng::mix;
 use tomcom_core::communication::settings::ShadowMode;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_people::wizard::WizardKind;
 
 /// A planned trial in a participant's series (familiarisation or counted trial): it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,5 +1,5 @@
 //! The allowed ranges of all numbers in session files, in files with parameters of the human model, and in
-//! questionnaires. Those of layouts are in [`tomcom_core::kitchen::layout_ranges`]; `docs/settings.md` shows both.
+//! questionnaires. Those of layouts are in [`tomcom_core::kitchen::files`]; `docs/settings.md` shows both.
 //! A file with a number outside of its allowed range is refused, and so is the header of a recording.
 
 mod human;

@@ -7,7 +7,7 @@ use super::exclusion_status::ExclusionStatus;
 use super::lesson_report::WizardTrainingSummary;
 use super::offer_summary::OfferSummary;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::base::words::{count, decimal};
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::AspectId;
@@ -16,7 +16,7 @@ use tomcom_session::history::belief_track::AspectBeliefSnapshot;
 use tomcom_session::history::comparison::{Communication, UnmatchedCommunication};
 use tomcom_session::watcher::SenderComparisonSettings;
 use tomcom_session::wizard_log::{self, WizardSummary};
-use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::event::WizardScreenContent;
 
 /// Largest number of unmatched communications of each kind that are listed as text.
 const LISTED: usize = 20;

@@ -1,22 +1,22 @@
 //! A recording as text, with one line for each event, for pipes and plain terminals.
 
-use tomcom_core::base::printable::printable;
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::printable;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::OfferedAdvice;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::sequences::FALSE_BELOW;
-use tomcom_core::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
+use tomcom_core::mind::{AspectEstimate, RecordedEstimate};
 use tomcom_core::mind::{AspectBelief, RecordedBelief};
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::SafetyMode;
 use tomcom_session::event::{SignalEndReason, TrialEndReason};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::probe_wording;
 use tomcom_session::history::wording::{self, location as said};
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use tomcom_session::wall_display::DisplayEvent;
-use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::event::WizardScreenContent;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 /// Heading above the text lines of events.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeFaultCounts};
 use tomcom_session::Session;
 use tomcom_session::gaze_samples::faults;

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::training_record::{HarmfulFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::recommendation::{aspects_told, phrase};
 use tomcom_core::communication::{Signal, signals, unavailable};
 use tomcom_core::kitchen::{AspectId, Kitchen};

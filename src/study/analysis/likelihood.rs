@@ -8,9 +8,9 @@ use super::fitting::response_surface::{REACH, surface};
 use super::trial_bootstrap::interval;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen, WeightedWorlds, World};
-use tomcom_core::measures::belief_detection::{BeliefsBeforePress, TrialBeliefs};
+use tomcom_core::measures::detection::{BeliefsBeforePress, TrialBeliefs};
 use tomcom_core::mind::ChoiceModel;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 
 /// Gain below which the fit of the baseline "informed human" takes a finer surface, or ends, in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;

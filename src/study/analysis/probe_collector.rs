@@ -6,7 +6,7 @@ use super::probe_record::{
     AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
 };
 use super::seen_contents::LastSeenContents;
-use tomcom_core::base::incomplete_beta::regularized_incomplete_beta;
+use tomcom_core::base::maths::regularized_incomplete_beta;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationKind, OrderContent, Press,

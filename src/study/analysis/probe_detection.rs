@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::probe_record::{ProbeQuestionKind, ProbedQuestion, weighted_share};
-use tomcom_core::measures::belief_detection::{CALIBRATED, CALIBRATION_BINS, FalseBeliefDetection};
+use tomcom_core::measures::detection::{CALIBRATED, CALIBRATION_BINS, FalseBeliefDetection};
 use tomcom_core::measures::detection::{Calibration, weighted_auc};
 
 /// A probe question with its weight, and whether the participant's belief about the asked aspect is false.

@@ -9,7 +9,7 @@ use super::probe_detection::{ProbeDetection, WeightedProbeBelief};
 use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial};
 use super::probe_scores::ProbeLogScores;
 use super::trial_bootstrap::interval_where_known;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
 
 /// Seed of the bootstrap's random numbers: the same answers give the same intervals.

@@ -2,7 +2,7 @@
 
 use super::probe_accuracy::ProbeAccuracyGrouping;
 use super::probe_figures::ProbeSummary;
-use tomcom_core::base::words::{count, decimal, percent};
+use tomcom_core::base::text::{count, decimal, percent};
 
 /// The results of freeze probes as text for the terminal.
 pub fn describe(found: &ProbeSummary) -> String {

@@ -78,7 +78,7 @@ pub struct AspectAtFreeze {
     pub estimate_p: BTreeMap<String, f64>,
     /// Expected probability that the participant gives to the true value, in the estimate.
     pub estimate_p_truth: f64,
-    /// Estimated probability that the participant's belief is false, as in [`tomcom_core::measures::belief_detection`].
+    /// Estimated probability that the participant's belief is false, as in [`tomcom_core::measures::detection`].
     pub estimate_p_false: f64,
     /// Recorded belief of a simulated participant; `None` for people.
     pub believed: Option<RecordedBeliefAtFreeze>,

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::exclusion_status::ExclusionStatus;
 use super::gaze_summary::{self, GazeQualitySummary};
 use super::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::follower::SessionFollower;
 
 /// Summary of one recording, as `tomcom replay RECORDING` prints it.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::offer_summary::{OfferDurations, TimedOffer};
-use tomcom_core::base::path_text::PathText;
-use tomcom_core::base::words::{count, decimal};
+use tomcom_core::base::text::PathText;
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::kitchen::{Agent, DishId};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};

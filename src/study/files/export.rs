@@ -12,7 +12,7 @@ use crate::column::{CsvCell, CsvRow, CsvTable};
 use crate::dictionary::columns;
 use crate::report::page_head;
 use crate::study_part::AnalysedRecording;
-use tomcom_core::base::spreadsheet::without_formula;
+use tomcom_core::base::text::without_formula;
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::{self, Replacement};
 

@@ -20,7 +20,7 @@ use tomcom_session::log::{
 };
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::settings::{Condition, SessionSpec};
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{LogHeader, TimestampedEvent, headless};
 

@@ -4,9 +4,9 @@
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use tomcom_core::measures::rater_choice::{RaterChoice, RaterPair};
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::measures::raters::{RaterChoice, RaterPair};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::log::{LogReader, consensus_file, rater_codes};

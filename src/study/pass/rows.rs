@@ -19,7 +19,7 @@ use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCriterion, matched};
 use tomcom_core::measures::sequences::ErrorSequence;
 use tomcom_core::mind::RecordedBelief;
-use tomcom_core::mind::recorded_estimate::RecordedEstimate;
+use tomcom_core::mind::RecordedEstimate;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::wizard_log::clock_at;
 use tomcom_session::{Event, Session, TimestampedEvent};

@@ -23,7 +23,7 @@ use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogReader, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
-use tomcom_session::shard::SimulationShard;
+use tomcom_session::headless::SimulationShard;
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;

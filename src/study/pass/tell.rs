@@ -8,8 +8,8 @@ use crate::live_arms::SignalSenderResults;
 use crate::missing_trials::in_words;
 use crate::planned_trial::copies_in_words;
 use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
-use tomcom_core::base::words::count;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::base::text::count;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::matching::{MatchShares, Similarity};
 use tomcom_session::event::TrialEndReason;
 

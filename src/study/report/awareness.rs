@@ -9,8 +9,8 @@ use crate::analysis::probe_accuracy::{ProbeAccuracyGrouping, ProbeAnswerAccuracy
 use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, RecordedBeliefComparison};
 use crate::charts;
 use crate::figures::StudySummary;
-use tomcom_core::base::words;
-use tomcom_core::measures::belief_detection::CALIBRATED;
+use tomcom_core::base::text;
+use tomcom_core::measures::detection::CALIBRATED;
 
 /// Section of the report on what participants knew; empty without freeze probes.
 pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Markup {

@@ -7,8 +7,8 @@ use crate::charts::{self, MOST_SIGNALS};
 use crate::figures::StudySummary;
 use crate::live_arms::SignalSenderResults;
 use crate::roc::EQUAL_SIGNALS;
-use tomcom_core::base::words::count;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::base::text::count;
+use tomcom_core::measures::raters::BeliefSource;
 
 /// Section of the report that compares communication concepts by the errors that they prevent.
 pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Markup {

@@ -6,8 +6,8 @@ use super::elements::{arm, section};
 use crate::arm_group::RobotArmTotals;
 use crate::facts::RecordingFacts;
 use crate::figures::StudySummary;
-use tomcom_core::base::words;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::base::text;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
 
 /// Section of the report on methods: conduct and analysis of the trials.

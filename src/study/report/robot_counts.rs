@@ -6,7 +6,7 @@ use super::elements::{Captions, arm, count, nothing, number, section};
 use crate::arm_group::RobotArmTotals;
 use crate::figures::StudySummary;
 use crate::robot_tally::ArmSafetySummary;
-use tomcom_core::base::words;
+use tomcom_core::base::text;
 use tomcom_core::robot::AbortReason;
 
 /// Table of robot statistics with one column per kind of robot arm.

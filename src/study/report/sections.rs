@@ -9,9 +9,9 @@ use crate::figures::{StudySummary, pairs_in_words};
 use crate::missing_trials::in_words;
 use crate::planned_trial::copies_in_words;
 use crate::trial_statistics::TrialStatistics;
-use tomcom_core::base::words;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::RaterAgreement;
+use tomcom_core::base::text;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::RaterAgreement;
 use tomcom_session::event::TrialEndReason;
 
 /// Least number of participants with both trials from which on r and p are shown among the main results.

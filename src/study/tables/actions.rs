@@ -4,8 +4,8 @@ use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use tomcom_core::kitchen::{Agent, Kitchen, Press};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
-use tomcom_core::mind::recorded_estimate::rounded;
+use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
+use tomcom_core::mind::rounded;
 
 /// A recorded press of either agent with its time and number.
 #[derive(Clone, Copy, Debug)]

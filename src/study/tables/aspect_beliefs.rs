@@ -2,7 +2,7 @@
 
 use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::mind::AspectBelief;
-use tomcom_core::mind::recorded_estimate::AspectEstimate;
+use tomcom_core::mind::AspectEstimate;
 
 /// Row of the table of beliefs: estimated and recorded belief about one state aspect before a press of the human.
 #[derive(Clone, Copy, Debug)]

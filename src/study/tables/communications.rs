@@ -3,7 +3,7 @@
 use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind};
-use tomcom_core::mind::recorded_estimate::rounded;
+use tomcom_core::mind::rounded;
 
 /// Row of the table of communications: a communication that was sent, or that a concept would have sent.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Kitchen, LocationId};
-use tomcom_core::mind::recorded_estimate::rounded;
+use tomcom_core::mind::rounded;
 
 /// A gaze run: successive gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use crate::analysis::offer_summary::TimedOffer;
 use crate::column::{CsvColumn, CsvRow, CsvTable};
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
-use tomcom_core::mind::recorded_estimate::rounded;
+use tomcom_core::mind::rounded;
 
 /// Row of the table of offers: an offer to the wizard in a recording.
 #[derive(Clone, Copy, Debug)]

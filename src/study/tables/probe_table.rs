@@ -6,7 +6,7 @@ use crate::effect::StudyMeasure;
 use crate::trial_details::TrialDetails;
 use crate::trial_statistics::TrialStatistics;
 use tomcom_core::mind::WORTH_TELLING;
-use tomcom_core::mind::recorded_estimate::rounded;
+use tomcom_core::mind::rounded;
 
 /// Measure of situation awareness: share of wrong answers to freeze probes.
 pub const PROBES_WRONG: StudyMeasure = StudyMeasure {

@@ -2,8 +2,8 @@
 
 use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
-use tomcom_core::base::spreadsheet::GUARDED;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_core::base::text::GUARDED;
+use tomcom_session::questionnaire::AnswerValue;
 
 /// Row of the table of questionnaires: an answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::column::{CsvColumn, CsvRow, CsvTable};
-use tomcom_core::base::spreadsheet::GUARDED;
+use tomcom_core::base::text::GUARDED;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use tomcom_session::protocol::{ProtocolEvent, StudyPhase};

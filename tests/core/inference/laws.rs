@@ -12,7 +12,7 @@ use tomcom_core::kitchen::{
 };
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::{HumanModel, InferenceSettings};
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 use super::{any_number, any_state, check_proper, looks_at_nothing};

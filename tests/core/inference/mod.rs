@@ -9,7 +9,7 @@ use tomcom_core::base::rng::Stream;
 use tomcom_core::kitchen::{Kitchen, LocationId, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom_core::mind::model::{HumanModel, LookingModel};
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 
 /// A human who looks at nothing while the gaze is unknown, and believes signals at once.
 fn looks_at_nothing() -> HumanModel {

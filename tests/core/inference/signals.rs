@@ -9,7 +9,7 @@ use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, Order
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::signal_model::SignalModel;
+use tomcom_core::mind::model::SignalModel;
 
 use super::looks_at_nothing;
 use crate::files::kitchen;

@@ -8,7 +8,7 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen, State};
 use tomcom_core::mind::dirichlet::Dirichlet;
 use tomcom_core::mind::filter::BeliefFilter;
-use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
+use tomcom_core::mind::filter::unseen::UnknownGazeTimer;
 use tomcom_core::mind::model::{HumanModel, LookingModel};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 

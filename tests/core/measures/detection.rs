@@ -1,13 +1,11 @@
 //! How well an estimate finds false beliefs: areas under the curve, calibration, thresholds.
 
-use tomcom_core::base::incomplete_beta::regularized_incomplete_beta;
+use tomcom_core::base::maths::regularized_incomplete_beta;
 use tomcom_core::kitchen::{AspectId, ButtonId, Kitchen};
-use tomcom_core::measures::belief_detection::{
-    BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups,
-};
+use tomcom_core::measures::detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups};
 use tomcom_core::measures::detection::{Calibration, auc};
 use tomcom_core::measures::flags::{FlagThresholds, ThresholdChoice, ThresholdSource, chosen_thresholds};
-use tomcom_core::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
+use tomcom_core::mind::{AspectEstimate, RecordedEstimate};
 
 use super::aspect;
 use crate::files::kitchen;

@@ -16,7 +16,7 @@ use tomcom_core::measures::wizard_performance::{
 };
 use tomcom_core::mind::ChoiceModel;
 use tomcom_core::mind::belief::Belief;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
+use tomcom_core::mind::choice::ChoiceParameters;
 
 use crate::files::kitchen;
 

@@ -4,11 +4,11 @@ use nalgebra::{Point3, Vector3};
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::physics::CYCLE_S;
-use tomcom_arm::physics::hand_body::HandPose;
-use tomcom_arm::report::PressFailure;
+use tomcom_arm::physics::bodies::HandPose;
+use tomcom_arm::worker::PressFailure;
 use tomcom_core::base::rng::Stream;
-use tomcom_core::robot::moment::{ArmPhase, JOINTS, JointAngles};
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{ArmPhase, JOINTS, JointAngles};
+use tomcom_core::robot::SafetyMode;
 
 use super::{AT_REST, STILL_RAD, any_button, at, until_report};
 use crate::support::*;

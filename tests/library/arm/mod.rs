@@ -12,10 +12,10 @@ use std::sync::LazyLock;
 use tomcom::edge::files::read_kitchen;
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::physics::CYCLE_S;
-use tomcom_arm::physics::hand_body::HandPose;
-use tomcom_arm::report::PressFailure;
+use tomcom_arm::physics::bodies::HandPose;
+use tomcom_arm::worker::PressFailure;
 use tomcom_core::base::rng::Stream;
-use tomcom_core::robot::moment::ArmPhase;
+use tomcom_core::robot::ArmPhase;
 
 use crate::support::*;
 

@@ -1,16 +1,16 @@
 //! The arm alone: presses, stops and faults; and the human hand beside it.
 
 use nalgebra::Point3;
-use tomcom_arm::clearance::{Capsule, Obstruction};
+use tomcom_arm::reach::{Capsule, Obstruction};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::physics::CYCLE_S;
-use tomcom_arm::physics::hand_body::HandPose;
+use tomcom_arm::physics::bodies::HandPose;
 use tomcom_arm::reach::UnreachableReason;
 use tomcom_arm::reaching::{ReachingBehaviour, ReachingHand};
-use tomcom_arm::report::PressFailure;
+use tomcom_arm::worker::PressFailure;
 use tomcom_arm::trajectory::JOINT_SPEED_RAD_S;
-use tomcom_core::robot::moment::JointAngles;
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::JointAngles;
+use tomcom_core::robot::SafetyMode;
 
 use super::{AT_REST, Came, SUSHI, any_button, at, until_report};
 use crate::support::*;

@@ -1,12 +1,12 @@
 //! The motion of the arm to its buttons, and its inverse kinematics.
 
 use tomcom::edge::files::read_kitchen;
-use tomcom_arm::clearance::{ArmSurroundings, Obstruction};
+use tomcom_arm::reach::{ArmSurroundings, Obstruction};
 use tomcom_arm::inverse::{twist, wrapped};
 use tomcom_arm::kinematics::SerialArm;
-use tomcom_arm::motion::JointMotion;
+use tomcom_arm::trajectory::JointMotion;
 use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
-use tomcom_core::robot::moment::JointAngles;
+use tomcom_core::robot::JointAngles;
 
 use super::SUSHI;
 use crate::support::*;

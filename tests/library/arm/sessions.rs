@@ -1,11 +1,11 @@
 //! Sessions with the arm: what their events say of it, and how it stops and gives up presses there.
 
 use nalgebra::Point3;
-use tomcom_arm::clearance::Capsule;
+use tomcom_arm::reach::Capsule;
 use tomcom_arm::controller::ArmController;
 use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::moment::{ArmPhase, ArmSample, JOINTS};
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::{ArmPhase, ArmSample, JOINTS};
+use tomcom_core::robot::SafetyMode;
 
 use super::{STILL_RAD, SUSHI};
 use crate::support::*;

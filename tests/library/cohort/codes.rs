@@ -1,9 +1,9 @@
 //! Raters' codes: agreement, the file beside the log, export and import.
 
 use miette::Diagnostic;
-use tomcom_core::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use tomcom_core::measures::consensus::{RaterConsensus, unsettled};
-use tomcom_core::measures::rater_choice::RaterChoice;
+use tomcom_core::measures::raters::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::measures::raters::{RaterConsensus, unsettled};
+use tomcom_core::measures::raters::RaterChoice;
 use tomcom_session::log::rater_codes::{read_all, write};
 use tomcom_session::log::{RecordingError, RecordingLock, consensus_file};
 use tomcom_study::code_exchange::{self, export};

@@ -58,7 +58,7 @@ fn what_cannot_be_simulated_is_told_beforehand() {
         simulate(&request, Path::new("plan.toml"), || ()).expect_err("refused").to_string()
     };
     let mut person = paper(30);
-    person.spec.wizard.kind = tomcom_people::wizard::settings::WizardKind::Person;
+    person.spec.wizard.kind = tomcom_people::wizard::WizardKind::Person;
     assert!(refused(person).contains("the condition wizard, which would be simulated as none"));
     let mut alone = paper(30);
     alone.spec.plan.as_mut().expect("a plan").conditions = vec![StudyArm::None];

@@ -1,7 +1,7 @@
 //! Scripted wizards: what they send, what they say, and that both come out the same again.
 
 use tomcom_core::communication::HighlightSet;
-use tomcom_people::wizard::settings::{OfferReading, WizardKind, WizardSpec};
+use tomcom_people::wizard::{OfferReading, WizardKind, WizardSpec};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 use tomcom_session::admit::hygiene;
 

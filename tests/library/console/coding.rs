@@ -5,7 +5,7 @@ use tomcom::console::key_action::{KeyAction, RaterAction};
 use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::rater_session::{CodingRaters, RaterSession};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
 use tomcom_session::TimelineEvent;
 use tomcom_session::error_list::ListedError;
 

@@ -6,7 +6,7 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::Playback;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::event::WizardScreenContent;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::support::*;

@@ -6,7 +6,7 @@ use tomcom::console::gaze_pairing::GazePairing;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::robot::safety::SafetyMode;
+use tomcom_core::robot::SafetyMode;
 use tomcom_session::TimelineEvent;
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::tracker::TrackerEvent;

@@ -7,8 +7,8 @@ use tomcom::console::display_status::ParticipantDisplayHealth;
 use tomcom::console::gaze_advice::AccuracyCheckAction;
 use tomcom::console::preflight::checks;
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
-use tomcom_core::gaze::recorded_gaze::RecordedGazeSummary;
-use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_core::gaze::recorded::RecordedGazeSummary;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::preflight_checks::PreflightVerdict;
 
 use super::{SIZES, Stage, input, type_in};

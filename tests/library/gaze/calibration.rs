@@ -1,7 +1,7 @@
 //! The check of the gaze with targets in a session.
 
 use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure};
-use tomcom_session::accuracy_check::{GazeCheckEvent, RunningGazeCheck};
+use tomcom_session::gaze_check::{GazeCheckEvent, RunningGazeCheck};
 use tomcom_session::admit::is_external;
 
 use super::engine;

@@ -3,11 +3,11 @@
 use std::time::{Duration, Instant};
 
 use rmpv::Value;
-use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
-use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
-use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
-use tomcom::edge::pupil::{CaptureConfiguration, follow};
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_devices::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
+use tomcom_devices::pupil::message::{self, CaptureNotification, PupilBlink};
+use tomcom_devices::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
+use tomcom_devices::pupil::{CaptureConfiguration, follow};
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_session::preflight_checks;
 use tomcom_session::tracker::TrackerEvent;
 

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use rmpv::Value;
-use tomcom::edge::gaze_file::{self, GazeFile};
-use tomcom::edge::pupil::message::{self, CaptureNotification, PupilMessage};
-use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
+use tomcom_devices::gaze_file::{self, GazeFile};
+use tomcom_devices::pupil::message::{self, CaptureNotification, PupilMessage};
+use tomcom_devices::pupil::zmtp::ZmtpFrameAssembler;
 use tomcom::run::options::SettingOverrides;
-use tomcom_core::gaze::surface::SurfaceHomography;
+use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use tomcom_session::tracker::{MissingConfidence, TrackerSpec};

@@ -1,6 +1,6 @@
 //! Questionnaires with items of every kind: what is an answer, what a log holds, and what the files of the program ask.
 
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::files::parse::parse;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec};
 

@@ -1,6 +1,6 @@
 //! The participant's tutorial: what its steps ask for, what the page is told meanwhile, and that it is no part of the trial.
 
-use tomcom::display::{DisplayStage, ShownContent, sight};
+use tomcom_devices::sight::{DisplayStage, ShownContent, sight};
 use tomcom::run::leaving::TutorialProgress;
 use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use tomcom_session::protocol::StudyPhase;

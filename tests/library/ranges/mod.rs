@@ -5,10 +5,10 @@ mod simulated;
 
 use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::number_range::{NumberRange, numbers};
-use tomcom_core::kitchen::layout_ranges;
+use tomcom_core::kitchen::files;
 use tomcom_core::mind::choice::ChoiceModel;
-use tomcom_core::mind::choice_parameters::ChoiceParameters;
-use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::mind::choice::ChoiceParameters;
+use tomcom_core::robot::ArmSample;
 use tomcom_session::files::read_human_model;
 use tomcom_session::log::SimulatedLogState;
 use tomcom_session::ranges;
@@ -80,8 +80,8 @@ const SETTINGS: &str = r#"
 fn every_setting() -> toml::Table {
     let given: tomcom_session::SessionSpec = toml::from_str(SETTINGS).expect("a session");
     let mut all = toml::Table::try_from(given).expect("settings are TOML");
-    let offers = Some(tomcom_people::wizard::settings::OfferReading::default());
-    let wizard = tomcom_people::wizard::settings::WizardSpec { offers, ..Default::default() };
+    let offers = Some(tomcom_people::wizard::OfferReading::default());
+    let wizard = tomcom_people::wizard::WizardSpec { offers, ..Default::default() };
     all.insert("wizard".to_string(), toml::Value::try_from(wizard).expect("settings are TOML"));
     let plan = all["plan"].as_table_mut().expect("a plan");
     // Those are written to recordings; a file may leave them out.

@@ -2,8 +2,8 @@
 //! can be read.
 
 use tomcom_core::base::number_range::NumberRange;
-use tomcom_core::kitchen::layout_ranges;
-use tomcom_people::wizard::settings::WizardKind;
+use tomcom_core::kitchen::files;
+use tomcom_people::wizard::WizardKind;
 use tomcom_session::apply::apply;
 use tomcom_session::ranges;
 

@@ -3,7 +3,7 @@
 use tomcom::run::watch_desk::ComparisonThreadHandle;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::measures::matching::ComparedContent;
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::advisor::Advisor;
 use tomcom_session::headless;

@@ -1,6 +1,6 @@
 //! The scene that Rerun shows of a session.
 
-use tomcom::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
+use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_session::history::probe_wording;
 
 use super::{folder, session, simulated};

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_session::TimelineEvent;
-use tomcom_session::history::landmark::ReplayLandmark;
+use tomcom_session::replay::ReplayLandmark;
 
 use super::{SESSIONS, simulated};
 use crate::support::*;

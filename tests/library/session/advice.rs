@@ -1,10 +1,10 @@
 //! Advice: when the assistant is asked, what becomes of its signals as offers, and of the proposals of DEV.
 
-use tomcom::display::sight;
+use tomcom_devices::sight::sight;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::recommendation::{HumanPressProposal, Recommendation, SignalOption};
 use tomcom_session::offers;
-use tomcom_session::wizard_screen::WizardScreenContent;
+use tomcom_session::event::WizardScreenContent;
 
 use super::{at, check, engine, press, refused};
 use crate::support::*;

@@ -2,7 +2,7 @@
 
 use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom_core::communication::signals;
-use tomcom_core::mind::named_models::{PAPER_2021, PLAIN};
+use tomcom_core::mind::model::{PAPER_2021, PLAIN};
 use tomcom_session::files::parse::parse;
 use tomcom_session::settings::RobotSpec;
 

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use tomcom_core::robot::IdleReason;
-use tomcom_core::robot::initiative::own_ways;
+use tomcom_core::robot::policy::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::orders::OrderList;
 use tomcom_session::{apply, headless, silence};

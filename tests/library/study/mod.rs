@@ -10,8 +10,8 @@ mod rater_episodes;
 mod report;
 mod tables;
 
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_kinds::BeliefErrorCounts;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::sequences::BeliefErrorCounts;
 use tomcom_study::acting_arm::SignalSenderWithParameter;
 use tomcom_study::analysis::offer_summary::OfferSummary;
 use tomcom_study::column::CsvTable;

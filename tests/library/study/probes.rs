@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use rand::seq::SliceRandom;
 use tomcom_core::base::rng::Stream;
-use tomcom_core::measures::belief_basis::BeliefSource;
+use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::mind::RecordedBelief;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;

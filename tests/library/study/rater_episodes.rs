@@ -2,8 +2,8 @@
 
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::FalseBeliefTarget;
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_study::belief_trace::{BeliefEvidence, BeliefEvidenceEvent};
 use tomcom_study::known_beliefs::{KnownFalseBeliefs, RaterFalseBeliefAgreement};

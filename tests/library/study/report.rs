@@ -3,12 +3,12 @@
 use tomcom_core::communication::offer::{
     Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
 };
-use tomcom_core::measures::belief_basis::BeliefSource;
-use tomcom_core::measures::cause_codes::{ErrorCauseCode, RaterCodes};
-use tomcom_core::measures::consensus::RaterConsensus;
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::safety::SafetyMode;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_core::robot::SafetyMode;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::log::{consensus_file, rater_codes};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_study::analysis::offer_summary::TimedOffer;

@@ -1,7 +1,7 @@
 //! The study's tables: columns that are declared once, the rows and the dictionary that follow, and the files they go to.
 
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};

@@ -8,7 +8,7 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::signal_model::SignalModel;
+use tomcom_core::mind::model::SignalModel;
 use tomcom_research::reference::ReferenceFilter;
 
 use crate::files::kitchen;

@@ -11,7 +11,7 @@ use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom_core::mind::gaze_presence::UnknownGazeTimer;
+use tomcom_core::mind::filter::unseen::UnknownGazeTimer;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_research::reference::belief_set::ParticleSet;

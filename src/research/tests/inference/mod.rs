@@ -16,7 +16,7 @@ mod signals;
 mod world;
 
 use tomcom_core::mind::model::{HumanModel, LookingModel};
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 
 /// The model for the tiny kitchen: places are all but certain at first, so that little has to be gone through, and whatever
 /// is possible is gone through instead of drawn.

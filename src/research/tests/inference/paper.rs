@@ -8,14 +8,14 @@ use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{Concept, DecisionPoint};
 use tomcom_core::communication::planner::Planner;
 use tomcom_core::communication::settings::AssistantSpec;
-use tomcom_core::communication::situation::{RobotIntent, Situation};
+use tomcom_core::communication::concept::{RobotIntent, Situation};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, OrderContent, Recipes, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief, LEAST_MEAN};
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_core::robot::policy;
 

@@ -6,9 +6,9 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, DishId, OrderContent};
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::HumanModel;
-use tomcom_core::mind::named_models::PAPER_2021;
+use tomcom_core::mind::model::PAPER_2021;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
-use tomcom_core::mind::signal_model::SignalModel;
+use tomcom_core::mind::model::SignalModel;
 use tomcom_research::reference::belief_set::ParticleSet;
 use tomcom_research::reference::person::Particle;
 

@@ -3,7 +3,7 @@
 use super::sample_rows::{LongTable, LongTableRow};
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts};
 use tomcom_core::mind::AspectBelief;
-use tomcom_core::mind::recorded_estimate::AspectEstimate;
+use tomcom_core::mind::AspectEstimate;
 use tomcom_session::TimestampedEvent;
 use tomcom_session::event::Event;
 

@@ -7,9 +7,9 @@ use serde_json::{Map, Value, json};
 
 use super::labels::free;
 use super::tsv::{self, BidsFile};
-use tomcom_core::base::spreadsheet::GUARDED;
+use tomcom_core::base::text::GUARDED;
 use tomcom_session::Session;
-use tomcom_session::answer_value::AnswerValue;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem};
 
 /// A questionnaire that a participant has filled in.

@@ -7,7 +7,7 @@ use super::sample_rows::{LongTable, LongTableFacts, LongTableRow, SampleRows, Vi
 use super::spans::OpenSpans;
 use super::tsv::{self, BidsFile, TaskFacts, or_nothing, seconds, yes};
 use tomcom_core::base::time::SessionTime;
-use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::event::{Event, TrialEndReason};
 use tomcom_session::plan::AnswerFormat;
 use tomcom_session::probes::ProbeEvent;

@@ -6,7 +6,7 @@ use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, device_seconds, or_nothing, seconds};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::robot::moment::ArmSample;
+use tomcom_core::robot::ArmSample;
 use tomcom_session::settings::GazeSource;
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::{Session, TimestampedEvent};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::Agent;
-use tomcom_session::accuracy_check::GazeCheckEvent;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::event::Event;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::protocol::ProtocolEvent;

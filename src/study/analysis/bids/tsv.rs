@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value, json};
 
-use tomcom_core::base::spreadsheet::without_formula;
+use tomcom_core::base::text::without_formula;
 use tomcom_core::base::time::SessionTime;
 
 /// Text of a cell in a BIDS table that has no value.

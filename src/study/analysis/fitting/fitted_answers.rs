@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tomcom_core::base::words::count;
+use tomcom_core::base::text::count;
 use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
 
 /// Effect of the answers to freeze probes on a fit of the human model.

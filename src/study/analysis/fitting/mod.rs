@@ -21,7 +21,7 @@ use self::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
 pub use self::fitted_answers::ProbeAnswerFit;
 use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use self::surface_search::BoundReached;
-use tomcom_core::base::words::{count, short};
+use tomcom_core::base::text::{count, short};
 use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use tomcom_core::mind::model::HumanModel;
 

@@ -8,7 +8,7 @@ use super::channels::McapChannel;
 use crate::analysis::event_lines;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::robot::moment::{ArmSample, JOINT_NAMES};
+use tomcom_core::robot::{ArmSample, JOINT_NAMES};
 use tomcom_session::TimestampedEvent;
 use tomcom_session::event::Event;
 use tomcom_session::follower::SessionFollower;

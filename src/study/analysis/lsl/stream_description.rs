@@ -4,7 +4,7 @@ use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::signals;
 use tomcom_core::kitchen::{Kitchen, Location};
-use tomcom_core::robot::moment::JOINT_NAMES;
+use tomcom_core::robot::JOINT_NAMES;
 use tomcom_session::SessionSpec;
 use tomcom_session::settings::LslOutlet;
 

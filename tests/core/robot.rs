@@ -57,48 +57,25 @@ fn decides(orders: &[&str], contents: &[(&str, &str)], is_passive: bool, expecte
 }
 
 #[test]
-fn it_begins_by_itself_with_any_part_that_it_can_fetch() {
+fn while_the_human_is_active_it_works_on_what_is_nearest_and_leaves_the_rest_to_the_human() {
+    // By itself with any part that it can fetch, of any order until the human works on one.
     check(&["salmon maki"], &[], &["take nori", "take rice", "take salmon"]);
-}
-
-#[test]
-fn it_begins_with_any_order_until_the_human_works_on_one() {
     let orders = ["salmon maki", "tuna nigiri"];
     check(&orders, &[], &["take nori", "take rice", "take salmon", "take tuna"]);
     check(&orders, &[("human_hand", "salmon raw")], &["take nori", "take rice"]);
     check(&orders, &[("human_hand", "rice shaped")], &["take nori", "take tuna"]);
-}
-
-#[test]
-fn it_rests_without_an_order() {
     check(&[], &[("robot_hand", "rice raw")], &["no order"]);
-}
-
-#[test]
-fn it_leaves_to_the_human_what_only_the_human_can_do() {
+    // What only the human can do is left to the human.
     check(&["shrimp nigiri"], &[("assembly_board", "rice shaped + nori")], &["human's turn"]);
-    check(
-        &["salmon nigiri"],
-        &[("assembly_board", "nori + salmon cut"), ("human_hand", "rice cooked")],
-        &["human's turn"],
-    );
-}
-
-#[test]
-fn it_does_not_do_again_what_is_done() {
+    let shaping = [("assembly_board", "nori + salmon cut"), ("human_hand", "rice cooked")];
+    check(&["salmon nigiri"], &shaping, &["human's turn"]);
+    // What is done is not done again, and of two orders the nearer one is worked on.
     check(&["tuna maki"], &[("assembly_board", "rice cooked + nori")], &["take tuna"]);
-}
-
-#[test]
-fn it_works_on_the_order_that_is_nearer() {
     check(&["salmon nigiri", "tuna maki"], &[("assembly_board", "rice cooked + nori")], &["take tuna"]);
     check(&["tuna maki", "salmon nigiri"], &[("assembly_board", "rice shaped + nori")], &["take salmon"]);
-}
-
-#[test]
-fn it_frees_what_it_blocks() {
-    let contents = [("robot_hand", "salmon raw"), ("assembly_board", "rice cooked + nori")];
-    check(&["tuna maki"], &contents, &["trash"]);
+    // It frees what it blocks.
+    let blocked = [("robot_hand", "salmon raw"), ("assembly_board", "rice cooked + nori")];
+    check(&["tuna maki"], &blocked, &["trash"]);
 }
 
 /// The situation of a recording in which the robot stood for 165 s, although nine presses of its own would have served an
@@ -191,6 +168,5 @@ fn while_the_human_is_passive_it_never_goes_in_circles_and_serves_on_the_shortes
             }
         }
     }
-    println!("served {served}, idled {idled}");
     assert!(served > 20 && idled > 20, "{served}, {idled}");
 }

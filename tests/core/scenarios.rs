@@ -140,8 +140,7 @@ impl Scenario {
         let state = self.state(&kitchen);
         let belief = self.belief(&kitchen, state);
         let situation = Situation { robot: self.outlook(&kitchen), ..Situation::new(state, &belief) };
-        let signals: Vec<Signal> =
-            signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
+        let signals = usual_signals(&kitchen);
         concept.advise(&mut CostToGo::new(kitchen), &DecisionPoint { error, ..moment(situation, &signals) })
     }
 }
@@ -156,6 +155,10 @@ fn nobody_looks_around() -> AssistantSpec {
 /// A moment at the start of a session.
 fn moment<'a>(situation: Situation<'a>, signals: &'a [Signal]) -> DecisionPoint<'a> {
     DecisionPoint { seq: 0, time: SessionTime::ZERO, presses: 0, situation, signals, error: None }
+}
+
+fn usual_signals(kitchen: &Kitchen) -> Vec<Signal> {
+    signals(kitchen, HighlightSet::usual(kitchen)).into_iter().map(|(_, signal)| signal).collect()
 }
 
 fn value_named(kitchen: &Kitchen, aspect: AspectId, label: &str) -> usize {
@@ -240,8 +243,7 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
     let spec = nobody_looks_around();
     let mut cost = CostToGo::new(kitchen.clone());
     let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
-    let signals: Vec<Signal> =
-        signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
+    let signals = usual_signals(&kitchen);
     for scenario in paths.iter().map(|path| Scenario::read(path)).filter(|other| other.layout == first.layout) {
         let state = scenario.state(&kitchen);
         let belief = scenario.belief(&kitchen, state);
@@ -264,8 +266,7 @@ fn benefits_of_signals_that_would_not_be_sent_take_fewer_rollouts_and_the_others
     let (kitchen, spec) = (scenario.kitchen(), AssistantSpec::default());
     let state = scenario.state(&kitchen);
     let belief = scenario.belief(&kitchen, state);
-    let signals: Vec<Signal> =
-        signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
+    let signals = usual_signals(&kitchen);
     let situation = Situation { robot: scenario.outlook(&kitchen), ..Situation::new(state, &belief) };
     let moment = moment(situation, &signals);
     let mut cost = CostToGo::new(kitchen.clone());
@@ -289,8 +290,7 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
     let state = scenario.state(&kitchen);
     let belief = scenario.belief(&kitchen, state);
     let pot = AspectId::of_location(kitchen.location_named("cooking_pot").expect("a pot"));
-    let signals: Vec<Signal> =
-        signals(&kitchen, HighlightSet::usual(&kitchen)).into_iter().map(|(_, signal)| signal).collect();
+    let signals = usual_signals(&kitchen);
     let benefit = |other_looks_hz: f64, capture: f64, changed: &[AspectId]| {
         let mut spec = AssistantSpec::default();
         (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(other_looks_hz), Some(capture));

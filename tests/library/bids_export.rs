@@ -1,13 +1,10 @@
 //! Recordings as a BIDS data set: every event has a row, durations are those of the log, and no two codes become one label.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use serde_json::Value;
 use tomcom_study::analysis::bids::dataset::{BidsLabelMap, session_label};
 use tomcom_study::analysis::bids::events::LEVELS;
 use tomcom_study::bids_export::{BidsSummary, describe, export};
+
+use crate::support::*;
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bids").join(name);

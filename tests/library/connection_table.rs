@@ -1,10 +1,11 @@
 //! The connections of a listener: who is let in, who gives way, who stays.
 
 use std::net::IpAddr;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use tomcom_devices::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
+
+use crate::support::*;
 
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 10,
@@ -53,20 +54,6 @@ async fn closed(places: &[ConnectionHandle]) -> Vec<usize> {
 }
 
 #[tokio::test]
-async fn silent_connections_never_keep_a_new_one_out() {
-    let mut arrivals = Arrivals::new();
-    let silent = arrivals.several("10.0.0.1", 20);
-    assert_eq!(arrivals.table.count(), LIMITS.per_address);
-    assert_eq!(closed(&silent).await, (0..16).collect::<Vec<_>>(), "the oldest gave way");
-    // From many addresses: that with the most gives way, and who has just come stays.
-    let crowd: Vec<_> = (2..8).flat_map(|host| arrivals.several(&format!("10.0.0.{host}"), 1)).collect();
-    assert_eq!(arrivals.table.count(), LIMITS.most);
-    let other = arrivals.several("10.0.0.99", 1);
-    assert_eq!((closed(&silent[16..]).await, closed(&crowd).await), (vec![0], vec![]));
-    assert!(closed(&other).await.is_empty());
-}
-
-#[tokio::test]
 async fn who_was_heard_of_last_stays() {
     let mut arrivals = Arrivals::new();
     let places = arrivals.several("10.0.0.1", 4);
@@ -93,22 +80,6 @@ async fn what_was_admitted_stays_unless_it_is_silent_and_nothing_else_gives_way(
     arrivals.now += Duration::from_secs(4);
     assert!(arrivals.arrive("127.0.0.1").is_some());
     assert_eq!(closed(&trackers).await, [0]);
-}
-
-#[tokio::test]
-async fn a_reserved_place_is_kept_and_counts_for_nobody() {
-    let mut arrivals = Arrivals::new();
-    let acting = arrivals.several("10.0.0.1", 1);
-    acting[0].reserve(true);
-    let watching = arrivals.several("10.0.0.1", 2);
-    assert!(watching.iter().all(ConnectionHandle::admit), "beside the one that is reserved");
-    arrivals.now += Duration::from_secs(3600);
-    arrivals.several("10.0.0.1", 5);
-    arrivals.several("10.0.0.2", 5);
-    arrivals.several("10.0.0.3", 5);
-    assert!(closed(&acting).await.is_empty(), "silent for an hour, and reserved");
-    acting[0].reserve(false);
-    assert!(watching.iter().all(ConnectionHandle::admit), "those that are admitted stay so");
 }
 
 #[test]

@@ -1,27 +1,14 @@
-//! The participant's display: what is told to the page, in whole sessions, and what may never be.
+//! The participant's display: what is told to the page, in which words, and what may never be.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use serde_json::Value;
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{Sender, Signal, signals};
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::communication::signals;
 use tomcom_devices::sight::page_language::DisplayWords;
-use tomcom_devices::sight::{DisplayStage, scene, sight};
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
+use tomcom_devices::sight::{DisplayStage, TrialClockState, scene, sight, time_left};
 use tomcom_session::files::LanguageFile;
-use tomcom_session::files::SessionSetup;
 use tomcom_session::files::parse::parse;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom_session::verify::verify;
-use tomcom_session::wall_display::{AnswerDevice, DisplayEvent, DisplaySpec};
-use tomcom_session::{Event, LogHeader, Session};
+use tomcom_session::protocol::StudyPhase;
+use tomcom_session::wall_display::{DisplayEvent, DisplaySpec};
+
+use crate::support::*;
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
@@ -34,8 +21,7 @@ pub(super) fn files(path: &str) -> SessionSetup {
 }
 
 pub(super) fn engine(files: SessionSetup) -> SessionEngine {
-    let kitchen = Arc::new(files.kitchen.kitchen);
-    SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+    engine_of(files, 0)
 }
 
 /// Lets a session run until its trial is over, or so many seconds; after each step the wizard does something, and somebody
@@ -49,7 +35,7 @@ fn run(
     let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
     let give = |engine: &mut SessionEngine, event| drop(engine.input(engine.session().time, event));
     give(engine, Event::TrialStarted);
-    let end = SessionTime::from_secs_f64(seconds);
+    let end = at(seconds);
     for step in 0.. {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {
@@ -104,39 +90,9 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 }
 
 /// Fields of what the page is told.
-const FIELDS: [&str; 31] = [
-    "clock",
-    "probe",
-    "tutorial",
-    "why",
-    "reason",
-    "about",
-    "stage",
-    "practice",
-    "contents",
-    "served",
-    "presses",
-    "intention",
-    "robot_waits",
-    "signal",
-    "cue",
-    "question",
-    "item",
-    "stack",
-    "dish",
-    "number",
-    "at",
-    "effective",
-    "location",
-    "storage",
-    "recipe",
-    "highlight",
-    "next",
-    "order",
-    "items",
-    "target",
-    "checks",
-];
+const FIELDS: &str = "clock probe tutorial why reason about stage practice contents served presses \
+                      intention robot_waits signal cue question item stack dish number at effective \
+                      location storage recipe highlight next order items target checks";
 
 /// Holds a sight against the session: every text in it is one that the participant may see now, and nothing else.
 pub(super) fn check(session: &Session) {
@@ -158,7 +114,7 @@ pub(super) fn check(session: &Session) {
     };
     for (field, text) in &found {
         let is_fine = match field.as_str() {
-            "field" => FIELDS.contains(&text.as_str()),
+            "field" => FIELDS.split(' ').any(|known| known == text),
             "stage" => true,
             "clock" => session.spec.display.clock && ["goes", "stands"].contains(&text.as_str()),
             "reason" => words.contains_key(&format!("why {text}")),
@@ -214,7 +170,6 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
                 looked += 1;
                 told += usize::from(sight(session).signal.is_some());
             });
-            println!("{path}, {condition:?}: {looked} messages, {told} of them with a signal");
             assert!(looked > 100 && told > 0, "{path}, {condition:?}: {looked} messages, {told} with a signal");
         }
     }
@@ -300,12 +255,9 @@ fn what_the_display_tells_is_recorded_and_verified() {
     files.spec.participant.kind = ParticipantKind::Display;
     files.spec.participant.gaze = GazeSource::Mouse;
     let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("display");
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = empty_folder("display");
     let mut log = LogWriter::create_live(&folder, "2026-03-14", &header).expect("the folder can be written");
     let mut engine = engine(files);
-    let at = SessionTime::from_secs_f64;
     let press = |button: &str, pressed_s| Event::Press {
         agent: Agent::Human,
         button: button.to_string(),
@@ -384,4 +336,126 @@ fn a_language_may_come_from_a_file() {
     std::fs::write(&session, format!("layout = {layout:?}\n[display]\nlanguage = \"fi.toml\"\n")).expect("written");
     let error = format!("{:?}", miette::Report::new(read_session(&session).expect_err("no such file")));
     assert!(error.contains("session.toml:3:") && error.contains("\"en\", \"de\""), "{error}");
+}
+
+#[test]
+fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
+    for shown in [false, true] {
+        let mut files = files("sessions/default.toml");
+        (files.spec.display.clock, files.spec.display.served) = (shown, shown);
+        files.spec.trial.seconds = 600.0;
+        let mut engine = engine(files);
+        let expect = |engine: &SessionEngine, now_s: f64, clock, left_s| {
+            let (seen, left) = (sight(engine.session()), time_left(engine.session(), at(now_s)));
+            let wanted = shown.then_some(clock).flatten();
+            assert_eq!((seen.clock, seen.served), (wanted, shown.then_some(0)), "at {now_s} s");
+            assert_eq!(left.map(SessionTime::as_secs_f64), shown.then_some(left_s), "at {now_s} s");
+        };
+        let give = |engine: &mut SessionEngine, now_s, event| assert_eq!(engine.input(at(now_s), event).refused, None);
+        expect(&engine, 1.0, None, 600.0);
+        give(&mut engine, 2.0, Event::TrialStarted);
+        expect(&engine, 12.0, Some(TrialClockState::Goes), 590.0);
+        // It stands in a pause, and goes on from there.
+        give(&mut engine, 12.0, Event::TrialPaused);
+        expect(&engine, 50.0, Some(TrialClockState::Stands), 590.0);
+        give(&mut engine, 62.0, Event::TrialResumed);
+        expect(&engine, 72.0, Some(TrialClockState::Goes), 580.0);
+        give(&mut engine, 72.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+        expect(&engine, 99.0, Some(TrialClockState::Stands), 580.0);
+        let scene = scene(engine.session());
+        assert_eq!((scene.clock, scene.served, scene.sound), (shown, shown, false));
+    }
+    let usual = toml::from_str::<DisplaySpec>("").expect("settings");
+    assert!(!usual.served && !usual.clock && !usual.sound);
+}
+
+/// The scene's pictures and storages in a language, by the names of items.
+fn worded(session: &str, change: impl Fn(&mut DisplaySpec)) -> impl Fn(&str) -> String {
+    let mut files = files(session);
+    change(&mut files.spec.display);
+    let scene = scene(engine(files).session());
+    move |name| scene.items.get(name).or_else(|| scene.dishes.get(name)).expect("an item or a dish").label.clone()
+}
+
+#[test]
+fn contents_are_worded_as_the_kitchens_files_say_and_the_session_has_the_last_word() {
+    let english = worded("sessions/default.toml", |_| ());
+    assert_eq!(["rice cooked", "nori", "salmon maki"].map(&english), ["cooked rice", "nori", "salmon maki"]);
+    let german = worded("sessions/default.toml", |display| display.language = "de".to_string());
+    assert_eq!(["rice cooked", "nori", "salmon maki"].map(&german), ["gekochter Reis", "Nori", "Lachs-Maki"]);
+    let burger = worded("sessions/burger.toml", |display| display.language = "de".to_string());
+    assert_eq!(["beef grilled", "tomato sliced"].map(&burger), ["gegrilltes Rind", "Tomatenscheiben"]);
+    let own = worded("sessions/default.toml", |display| {
+        display.language = "de".to_string();
+        display.words.insert("rice cooked".to_string(), "Kochreis".to_string());
+    });
+    assert_eq!(["rice cooked", "rice raw"].map(&own), ["Kochreis", "roher Reis"]);
+}
+
+/// What the page is told about the human's press of these buttons, one after the other.
+fn reasons(change: impl Fn(&mut DisplaySpec), buttons: &[&str]) -> Vec<Option<String>> {
+    let mut files = files("sessions/default.toml");
+    files.spec.participant.kind = ParticipantKind::Keyboard;
+    files.spec.robot.arm = ArmKind::Timed;
+    change(&mut files.spec.display);
+    let mut engine = engine(files);
+    let mut told = Vec::new();
+    assert_eq!(engine.input(SessionTime::ZERO, Event::TrialStarted).refused, None);
+    for (index, button) in buttons.iter().enumerate() {
+        let press = Event::Press { agent: Agent::Human, button: (*button).to_string(), at_ns: None };
+        assert_eq!(engine.input(SessionTime(1_000_000 * (index as u64 + 1)), press).refused, None, "{button}");
+        check(engine.session());
+        let now = serde_json::to_value(sight(engine.session())).expect("a sight is JSON");
+        let why = now.pointer("/presses/0/why/reason").and_then(Value::as_str);
+        told.push(why.map(str::to_string));
+        assert!(now.pointer("/presses/1/why").is_none(), "the robot gives no reasons");
+    }
+    told
+}
+
+#[test]
+fn a_press_without_effect_says_why_unless_the_session_switches_that_off() {
+    let presses = [
+        ("trash", Some("hand_empty")),
+        ("cooking_pot", Some("both_empty")),
+        ("cook", Some("place_empty")),
+        ("shape", Some("hand_empty")),
+        ("serve 2", Some("place_empty")),
+        ("take rice", None),
+        ("take nori", Some("hand_full")),
+        ("rolling_mat", Some("not_accepted")),
+        ("cooking_pot", None),
+        ("take salmon", None),
+        ("cooking_pot", Some("place_full")),
+        ("cutting_board", None),
+        ("cook", None),
+        ("cook", Some("not_processed")),
+        ("take nori", None),
+        ("assembly_board", None),
+        ("take nori", None),
+        ("assembly_board", Some("not_stacked")),
+        ("plate", None),
+        ("serve 1", Some("not_served")),
+    ];
+    let buttons: Vec<&str> = presses.iter().map(|(button, _)| *button).collect();
+    let orders = |told: Vec<Option<String>>| -> Vec<(String, Option<String>)> {
+        buttons.iter().map(|button| button.to_string()).zip(told).collect()
+    };
+    let expected: Vec<(String, Option<String>)> =
+        presses.iter().map(|(button, why)| (button.to_string(), why.map(str::to_string))).collect();
+    assert_eq!(orders(reasons(|_| (), &buttons)), expected);
+    let silent = reasons(|display| display.reasons = false, &buttons);
+    assert!(silent.iter().all(Option::is_none), "{silent:?}");
+}
+
+#[test]
+fn both_languages_have_a_line_for_every_reason_that_names_no_content() {
+    for language in DisplaySpec::LANGUAGES {
+        let spec = DisplaySpec { language: language.to_string(), ..DisplaySpec::default() };
+        let words = DisplayWords::for_display(&spec).of_page();
+        let lines: Vec<&String> =
+            words.iter().filter(|(key, _)| key.starts_with("why ")).map(|(_, line)| line).collect();
+        assert_eq!(lines.len(), 10, "{language}");
+        assert!(lines.iter().all(|line| line.chars().count() <= 40 && line.ends_with('.')), "{lines:?}");
+    }
 }

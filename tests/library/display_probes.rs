@@ -1,17 +1,11 @@
 //! Freeze probes on the participant's display: what the page is told of every question, and what an answer means.
 
-use std::collections::BTreeSet;
-
-use serde_json::Value;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen};
 use tomcom_devices::sight::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
-use tomcom_session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use tomcom_session::settings::ParticipantKind;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, Session, TimestampedEvent, apply};
+use tomcom_session::apply;
+use tomcom_session::probes::{ProbeEndReason, ProbeOrigin, ProbeQuestion, ProbeSubject};
 
 use super::display::{engine, files};
+use crate::support::*;
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
@@ -39,7 +33,7 @@ impl Probed {
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
-        let stamped = TimestampedEvent { seq: self.seq, time: SessionTime::from_secs_f64(seconds), event };
+        let stamped = TimestampedEvent { seq: self.seq, time: at(seconds), event };
         apply(&mut self.session, &stamped).unwrap_or_else(|error| panic!("{error:?}: {stamped:?}"));
         self.seq += 1;
     }
@@ -171,9 +165,7 @@ fn a_pause_hides_the_question_and_stops_its_time() {
     let questions = every_question(&probed.session.kitchen.clone());
     probed.begin(30.0, questions[..2].to_vec());
     probed.probe(31.0, ProbeEvent::Asked { probe: 1, question: 1 });
-    let left_s = |probed: &Probed, now: f64| {
-        probe_left(&probed.session, SessionTime::from_secs_f64(now)).map(SessionTime::as_secs_f64)
-    };
+    let left_s = |probed: &Probed, now: f64| probe_left(&probed.session, at(now)).map(SessionTime::as_secs_f64);
     assert_eq!(left_s(&probed, 35.0), Some(20.0));
     let shown = probed.told();
     probed.at(36.0, Event::TrialPaused);

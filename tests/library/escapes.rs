@@ -1,26 +1,18 @@
 //! Text from outside reaches a terminal only as text: what could command it is written out.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::console::console_model::NoticeLevel;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
+use tomcom::console::view;
 use tomcom_core::base::text::{printable, printable_lines};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::files::LayoutSpec;
+use tomcom_session::apply;
 use tomcom_session::files::file_error::FileError;
-use tomcom_session::files::parse::parse;
-use tomcom_session::follower::SessionFollower;
 use tomcom_session::tracker::TrackerEvent;
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply};
-use tomcom_study::analysis::event_lines;
 
-use crate::kitchen;
+use crate::support::*;
 
 /// Clears the screen, sets the title of the window, reverses the direction of writing, and begins a sequence in one byte.
 const HOSTILE: &str = "a\x1b[2J\x1b]0;title\x07b\u{202e}c\u{9b}31md\r\ne";
@@ -32,7 +24,7 @@ fn is_harmless(text: &str) -> bool {
 }
 
 fn session() -> Session {
-    let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+    let spec = default_settings();
     Session::new(kitchen("sushi"), spec, 0)
 }
 
@@ -52,10 +44,7 @@ fn control_characters_are_written_out_and_all_else_stays() {
 #[test]
 fn the_console_shows_notes_devices_and_messages_written_out() {
     let mut session = session();
-    let keys =
-        KeyBindings::live(&session.kitchen, &session.spec, &KeyFileBindings::default()).expect("the keys are free");
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys, theme, (200, 60));
+    let mut model = console_model(&session.kitchen, &session.spec, (200, 60));
     let events = [
         Event::TrialStarted,
         Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }),
@@ -74,24 +63,6 @@ fn the_console_shows_notes_devices_and_messages_written_out() {
     assert!(rows.iter().all(|row| is_harmless(row)), "{rows:#?}");
     assert!(rows.iter().any(|row| row.contains(&format!("cannot write {WRITTEN_OUT}"))), "{rows:#?}");
     assert!(rows.iter().any(|row| row.contains("a\\u001b[2J") && !row.contains("cannot write")), "the note: {rows:#?}");
-}
-
-#[test]
-fn a_recording_is_told_with_notes_and_devices_written_out() {
-    let session = session();
-    let cost = CostToGo::new(session.kitchen.clone());
-    let mut follower = SessionFollower::new(session, cost);
-    let told = [
-        (Event::Marker { note: HOSTILE.to_string() }, "marker: "),
-        (Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }), "eye tracker connected: "),
-        (Event::Tracker(TrackerEvent::Lost { reason: HOSTILE.to_string() }), "eye tracker lost: "),
-    ];
-    for (seq, (event, words)) in told.into_iter().enumerate() {
-        let stamped = TimestampedEvent { seq: seq as u64, time: SessionTime::ZERO, event };
-        follower.apply(&stamped).expect("the event fits");
-        let line = event_lines::line(&stamped, &follower).expect("a line");
-        assert!(line.ends_with(&format!("{words}{WRITTEN_OUT}")), "{line}");
-    }
 }
 
 /// How an error is shown, without colours.
@@ -122,11 +93,4 @@ fn an_error_shows_the_place_in_the_file_written_out() {
     let marked = lines[place + 1];
     assert_eq!(column(lines[place], 'x'), marked.chars().position(|letter| "─┬".contains(letter)), "{text}");
     assert_eq!(marked.chars().filter(|letter| "─┬".contains(*letter)).count(), "x\\u001b[31m".len(), "{text}");
-}
-
-#[test]
-fn a_layout_with_control_characters_gives_an_error_that_can_be_shown() {
-    let text = "name = \"a\\u001b[2J\"\nfoo\x1b[31m = 1\n";
-    let error = parse::<LayoutSpec>(Path::new("layout.toml"), text).expect_err("it is no layout");
-    assert!(is_harmless(&shown(&error)), "{}", shown(&error));
 }

@@ -1,7 +1,6 @@
 //! Who may send gaze: trackers, as many as come and go, and nobody who is none.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -9,23 +8,14 @@ use tokio::net::{TcpStream, UdpSocket};
 use tokio::time::timeout;
 use tomcom::console::console_model::ConsoleModel;
 use tomcom::console::console_model::NoticeLevel;
-use tomcom::console::keys::KeyBindings;
-use tomcom::console::keys::KeyFileBindings;
 use tomcom::console::preflight::checks;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_devices::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom_devices::gaze_json::{ExclusiveDatagramSender, RELEASE};
 use tomcom_devices::gaze_json::{GazeListener, listen};
-use tomcom_session::engine::SessionEngine;
 use tomcom_session::preflight_checks::RejectedGaze;
-use tomcom_session::settings::{GazeSenders, GazeSource, ParticipantKind};
-use tomcom_session::{Event, SessionSpec};
+use tomcom_session::settings::GazeSenders;
 
-use crate::kitchen;
+use crate::support::*;
 
 const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 /// Nothing that is waited for takes longer; that it does not come is the failure.
@@ -73,12 +63,13 @@ async fn a_connection_that_begins_with_no_object_is_closed_and_what_was_found_is
     let joined = text.replace('\n', "").repeat(3);
     let long = [&b"{\"x\": "[..], &[b'1'; 5000][..]].concat();
     let no_object = |start: &str| GazeSenderRejection::NoObject(start.to_string());
-    let broken: [(&[&[u8]], GazeSenderRejection); 14] = [
+    let broken: [(&[&[u8]], GazeSenderRejection); 15] = [
         (&[&post], GazeSenderRejection::HttpRequest),
         (&[b"\n\n", &post], GazeSenderRejection::HttpRequest),
         (&[b"{'x': 0.5, 'y': 0.5}\n"], no_object("{'x': 0.5, 'y': 0.5}")),
         (&[b"[0.1, 0.2, 0.9]\n"], no_object("[0.1, 0.2, 0.9]")),
         (&[b"nonsense\n"], no_object("nonsense")),
+        (&[b"\x1b[2J0.5;0.5;1;and more than fits\n"], no_object("\\u001b[2J0.5;0.5;1;and more t")),
         (&[&little], GazeSenderRejection::Utf16),
         (&[&big], GazeSenderRejection::Utf16),
         (&[&[&b"\xff\xfe"[..], &little].concat()], GazeSenderRejection::Utf16),
@@ -121,15 +112,6 @@ async fn a_tracker_may_begin_in_pieces_or_with_a_sample_that_is_none() {
     for _ in 0..3 {
         assert_eq!(next(&mut listener).await, TrackerMessage::Malformed(1));
     }
-    tracker.write_all(SAMPLE).await.expect("sent");
-    assert_eq!(next(&mut listener).await, sample());
-}
-
-#[tokio::test]
-async fn who_connects_and_says_nothing_is_no_sender() {
-    let mut listener = open(GazeSenders::First).await;
-    drop(TcpStream::connect(listener.address).await.expect("connected"));
-    let mut tracker = TcpStream::connect(listener.address).await.expect("connected");
     tracker.write_all(SAMPLE).await.expect("sent");
     assert_eq!(next(&mut listener).await, sample());
 }
@@ -196,25 +178,6 @@ async fn datagrams_are_taken_from_the_address_that_sent_first() {
     let found = next(&mut listener).await;
     let is_no_object = |why: &GazeSenderRejection| matches!(why, GazeSenderRejection::NoObject(_));
     assert!(matches!(&found, TrackerMessage::Rejected { why, senders: 1, .. } if is_no_object(why)), "{found:?}");
-}
-
-#[tokio::test]
-async fn datagrams_of_one_program_are_one_sender() {
-    let mut listener = open(GazeSenders::First).await;
-    let (program, tracker) = (socket(1).await, socket(1).await);
-    for _ in 0..61 {
-        program
-            .send_to(b"\xef\xbb\xbf{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n", listener.address)
-            .await
-            .expect("sent");
-    }
-    tracker.send_to(SAMPLE, listener.address).await.expect("sent");
-    assert_eq!(next(&mut listener).await, rejected(GazeSenderRejection::ByteOrderMark, 1));
-    let mut news = next(&mut listener).await;
-    while news != sample() {
-        assert_eq!(news, rejected(GazeSenderRejection::ByteOrderMark, 0), "on a machine that took more than a second");
-        news = next(&mut listener).await;
-    }
 }
 
 #[tokio::test]
@@ -349,29 +312,9 @@ fn an_address_that_is_silent_for_five_seconds_is_the_trackers_no_more() {
 }
 
 #[test]
-fn the_setting_is_read_and_kept() {
-    let read = |settings: &str| toml::from_str::<SessionSpec>(&format!("layout = \"\"\n[participant]\n{settings}"));
-    let first = read("gaze = \"json\"").expect("settings");
-    assert_eq!(first.participant.gaze_senders, GazeSenders::First);
-    let any = read("gaze_senders = \"any\"").expect("settings");
-    assert!(serde_json::to_string(&any).expect("JSON").contains(r#""gaze_senders":"any""#));
-    assert!(read("gaze_senders = \"all\"").is_err());
-    let open = read("gaze_listen = \"0.0.0.0\"\ngaze_from = [\"192.168.1.20\", \"fd00::7\"]").expect("settings");
-    assert!(open.check().is_ok());
-    let kept = serde_json::to_string(&open).expect("JSON");
-    assert!(kept.contains(r#""gaze_listen":"0.0.0.0","gaze_from":["192.168.1.20","fd00::7"]"#), "{kept}");
-    assert!(read("gaze_listen = \"0.0.0.0\"").expect("settings").check().is_ok(), "open to who knows the pairing code");
-    assert!(read("gaze_from = [\"the tracker\"]").is_err());
-}
-
-#[test]
 fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-    let kitchen = kitchen("sushi");
-    let keys =
-        KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the layout's keys are free");
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys, theme, (120, 40));
+    let files = session_file("default");
+    let mut model = console_model(&files.kitchen.kitchen, &files.spec, (120, 40));
     let from = |address: &str, why: &GazeSenderRejection| RejectedGaze {
         told: format!("gaze from {address} is rejected: {}", why.words()),
         remedy: why.remedy().to_string(),
@@ -398,20 +341,17 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
 
 #[test]
 fn the_checks_say_what_was_found_in_rejected_gaze() {
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let files = session_file("default");
     let kitchen = kitchen("sushi");
     let mut spec = files.spec;
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
-    let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys, theme, (120, 40));
+    let mut model = console_model(&kitchen, &spec, (120, 40));
     let mut engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
     let gaze = |engine: &SessionEngine, model: &ConsoleModel| {
         let found =
             checks(engine.session(), model).into_iter().find(|check| check.name == "gaze").expect("a check of gaze");
         (found.found, found.remedy.unwrap_or_default())
     };
-    let at = SessionTime::from_secs_f64;
     model.now = at(1.0);
     assert_eq!(gaze(&engine, &model).1, "start the program that sends gaze to port 50021");
     let why = GazeSenderRejection::Utf16;
@@ -422,22 +362,4 @@ fn the_checks_say_what_was_found_in_rejected_gaze() {
     assert_eq!(engine.input(at(2.0), Event::Gaze(GazeSample::new(0.5, 0.5, 1.0))).refused, None);
     model.now = at(60.0);
     assert_eq!(gaze(&engine, &model).0, "no gaze sample arrives");
-    // Every reason says what to do.
-    let all = [
-        GazeSenderRejection::Unlisted,
-        GazeSenderRejection::Unpaired,
-        GazeSenderRejection::WrongCode,
-        GazeSenderRejection::Locked,
-        GazeSenderRejection::ByteOrderMark,
-        GazeSenderRejection::Utf16,
-        GazeSenderRejection::HttpRequest,
-        GazeSenderRejection::NoObject("x".to_string()),
-        GazeSenderRejection::NoLineBreak,
-        GazeSenderRejection::LongLine(4096),
-        GazeSenderRejection::Silent(10),
-        GazeSenderRejection::OtherSender(IpAddr::V4(Ipv4Addr::LOCALHOST)),
-        GazeSenderRejection::Crowded,
-        GazeSenderRejection::GaveWay,
-    ];
-    assert!(all.iter().all(|why| !why.words().is_empty() && !why.remedy().is_empty()));
 }

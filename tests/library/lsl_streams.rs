@@ -1,36 +1,25 @@
 //! Streams of the Lab Streaming Layer: what they are called, what their channels are, and what is sent of a session. And gaze that comes
 //! in.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
-
-use serde_json::{Value, json};
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_devices::lsl::{LslError, load};
 use tomcom_devices::lsl::{
     LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
 };
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::BeliefSnapshot;
-use tomcom_session::log::LogReader;
-use tomcom_session::probes::ProbeEvent;
-use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
+
+use crate::support::*;
 
 /// Name of the recording.
 const RECORDING: &str = "2026-03-14-P07-1";
 
 /// The default session, which sends these streams.
 fn spec(outlets: &[LslOutlet]) -> SessionSpec {
-    let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+    let mut spec = session_file("default").spec;
     spec.participant.code = "P07".to_string();
     spec.lsl = Some(LslSpec { outlets: outlets.to_vec(), ..LslSpec::default() });
     spec
@@ -262,7 +251,7 @@ fn beliefs_and_net_benefits_are_the_logs() {
 
 #[test]
 fn streams_are_named_after_the_participant_and_described_with_the_layout() {
-    let kitchen = read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen;
+    let kitchen = session_file("default").kitchen.kitchen;
     let streams = describe(&spec(&LslOutlet::ALL), &kitchen);
     let names: Vec<&str> = streams.iter().map(|stream| stream.name.as_str()).collect();
     assert_eq!(names[..2], ["tomcom-markers-P07", "tomcom-events-P07"]);

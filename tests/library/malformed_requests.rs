@@ -7,10 +7,9 @@ use std::panic;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use tomcom_core::base::rng::stream;
-
 use crate::display_server::{LOCAL, page, serve, status};
 use crate::readers::mutate;
+use crate::support::*;
 use crate::viewers;
 
 const SEED: u64 = 25;

@@ -1,15 +1,12 @@
 //! Recordings as MCAP: every event is a message, at its session time, as its schema says.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use mcap::MessageStream;
-use serde_json::Value;
 use tomcom_arm::kinematics::UR5;
 use tomcom_core::robot::JOINT_NAMES;
 use tomcom_study::analysis::foxglove::McapChannel;
 use tomcom_study::mcap_export::export;
+
+use crate::support::*;
 
 /// A golden recording in a folder of its own.
 fn golden(name: &str, test: &str) -> PathBuf {

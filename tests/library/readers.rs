@@ -1,49 +1,11 @@
 //! Whatever files hold, reading them gives a value or an error that can be shown.
 
-use std::fs;
-
-use rand::RngExt;
-use tomcom_core::base::rng::{Stream, stream};
-
 #[path = "../fuzz/targets/read/mod.rs"]
 mod read;
 
-/// The reader with this name.
-fn reader(name: &str) -> read::Reader {
-    let found = read::READERS.into_iter().find(|(known, _)| *known == name);
-    found.unwrap_or_else(|| panic!("no reader {name}")).1
-}
+use tomcom_core::base::rng::Stream;
 
-/// Every settings file cut and changed at many places, and logs with broken bytes.
-#[test]
-fn the_readers_survive_cut_and_changed_files() {
-    let files = [
-        ("layout", "layouts/sushi.toml"),
-        ("layout", "layouts/burger.toml"),
-        ("recipes", "recipes/sushi.toml"),
-        ("session", "sessions/default.toml"),
-        ("session", "sessions/study.toml"),
-        ("questionnaire", "sessions/questionnaires/acceptance.toml"),
-    ];
-    for (name, path) in files {
-        let read = reader(name);
-        let text = fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
-        for at in (0..text.len()).step_by(text.len().div_ceil(10)) {
-            let mut changed = text.clone();
-            read(&changed[..at]);
-            changed[at] = changed[at].wrapping_add(1) | 1;
-            read(&changed);
-        }
-    }
-    let log = fs::read("tests/golden/format-3-hand.jsonl").expect("a log");
-    let events = log.splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header");
-    for (name, text) in [("log", &log[..]), ("events", events)] {
-        let text = &text[..text.len().min(60_000)];
-        for at in (0..text.len()).step_by(text.len() / 10) {
-            reader(name)(&[&text[..at], b"\xff\x00}", &text[at..]].concat());
-        }
-    }
-}
+use crate::support::*;
 
 /// Seed of the mutations, printed by a failure through the case's number.
 const SEED: u64 = 24;
@@ -103,18 +65,19 @@ fn input(reader: &str) -> Vec<u8> {
     bytes
 }
 
-/// One to eight random changes: a byte set, a range removed, a range repeated, or a special piece put in.
+/// One to eight random changes: a byte set, a range removed, a range repeated, the end cut off, or a special piece put in.
 pub fn mutate(bytes: &mut Vec<u8>, random: &mut Stream) {
     for _ in 0..random.random_range(1..=8) {
         let at = random.random_range(0..=bytes.len());
         let end = (at + random.random_range(0..64)).min(bytes.len());
-        match random.random_range(0..4) {
+        match random.random_range(0..5) {
             0 if at < bytes.len() => bytes[at] = random.random(),
             1 => drop(bytes.drain(at..end)),
             2 => {
                 let range = bytes[at..end].to_vec();
                 bytes.splice(at..at, range);
             }
+            3 if random.random_bool(0.2) => bytes.truncate(at),
             _ => {
                 let piece = PIECES[random.random_range(0..PIECES.len())];
                 bytes.splice(at..at, piece.iter().copied());

@@ -1,16 +1,12 @@
 //! The robot's hand on the participant's display: where it is told to be, and that nothing of what comes is told.
 
-use serde_json::json;
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
+use tomcom_core::kitchen::ButtonAction;
 use tomcom_devices::sight::{RobotHand, RobotHandPose, scene};
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::settings::ArmKind;
+use tomcom_session::TimelineEvent;
 use tomcom_session::wall_display::RobotDepiction;
-use tomcom_session::{Event, Session, TimelineEvent};
 
 use super::display::{engine, files};
+use crate::support::*;
 
 /// Time from pose to pose, in seconds, as in a live session.
 const STEP_S: f64 = 0.05;
@@ -32,7 +28,7 @@ fn poses(
     assert_eq!(engine.input(SessionTime::ZERO, Event::TrialStarted).refused, None);
     let mut poses = Vec::new();
     for step in 0..(seconds / STEP_S) as u32 {
-        let now = SessionTime::from_secs_f64(STEP_S * f64::from(step));
+        let now = at(STEP_S * f64::from(step));
         while engine.next_due().is_some_and(|due| due <= now) {
             engine.fire();
         }

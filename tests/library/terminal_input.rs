@@ -5,11 +5,12 @@ use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use rand::RngExt;
 use tomcom::console::ConsoleMessage::{self, Click, Focus, Key, Paste, Pointer, Wheel};
 use tomcom::edge::terminal_bytes::TerminalParser;
 use tomcom::edge::terminal_input::TerminalInput;
-use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::rng::Stream;
+
+use crate::support::*;
 
 const SILENCE: Duration = Duration::from_millis(50);
 /// Seed of the random bytes, printed by a failure through the case's number.

@@ -1,7 +1,6 @@
 //! The crate `tomcom-people` from outside: a simulated participant, its slips, traits and drop-outs of gaze.
 
 mod behaviour;
-mod drop_outs;
 #[path = "../core/files.rs"]
 mod files;
 mod slips;

@@ -1,8 +1,10 @@
-//! Traits that nobody has in the calibrated population: stubbornness, wrong recipes that one is sure of, right guesses of the
-//! robot, not knowing how to go on.
+//! Traits that nobody has in the calibrated population, and drop-outs of gaze.
 
+use tomcom_core::base::rng::stream;
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
+use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::population::{Population, TraitSpread};
 
 use super::behaviour::{Bench, unmoved};
@@ -57,7 +59,6 @@ fn who_does_not_know_how_to_go_on_waits_until_something_changes_or_a_signal_is_r
         bench.one.on_signal(bench.now, Some(counter), &Signal::Highlight("counter".to_string()));
     });
     let changed = presses_after(&stuck(), |bench| bench.put("counter", "crab raw"));
-    println!("presses of 20 people in 30 s: {usual}; stuck {alone}, {told} after a signal, {changed} after a change");
     assert!(usual > 50 && alone < usual / 8, "{usual}, {alone}");
     assert!(told >= alone + 10, "four of five read the signal: {told}, {alone}");
     assert!(changed >= alone + 15, "they look around and see the change: {changed}, {alone}");
@@ -130,4 +131,21 @@ fn who_guesses_the_robot_knows_what_it_did_unseen() {
     };
     assert!(after_unseen_press(0.0) < 0.3, "known without a look");
     assert!(after_unseen_press(0.999_999) > 0.8, "not guessed");
+}
+
+#[test]
+fn drop_outs_follow_their_seed() {
+    let schedule = |seed| {
+        let mut gaps = GazeDropoutSchedule::new(10.0, [1.0, 8.0], stream(seed, "drop-outs", 0));
+        (0..60_000)
+            .map(|step| gaps.swallows(SessionTime::from_secs_f64(f64::from(step) / 100.0)))
+            .collect::<Vec<bool>>()
+    };
+    let lost = schedule(4);
+    assert_eq!(lost, schedule(4));
+    assert_ne!(lost, schedule(5));
+    let runs: Vec<usize> = lost.chunk_by(|a, b| a == b).filter(|run| run[0]).map(<[bool]>::len).collect();
+    assert!(runs.len() > 20, "{}", runs.len());
+    // The last one may be cut by the end.
+    assert!(runs[..runs.len() - 1].iter().all(|run| (99..=801).contains(run)), "{runs:?}");
 }

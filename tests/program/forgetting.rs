@@ -1,4 +1,4 @@
-//! `tomcom forget`: it asks first, and forgets a person everywhere.
+//! `tomcom forget`: it asks first, forgets a person everywhere, and leaves alone what is of others.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,8 +7,9 @@ use std::process::{Command, Stdio};
 
 use tomcom::edge::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
+use tomcom_session::LogHeader;
 use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::RecordingLock;
+use tomcom_session::log::{LogWriter, RecordingLock};
 
 use crate::program::TOMCOM;
 
@@ -105,6 +106,13 @@ impl RecordingsFolder {
     }
 }
 
+/// Asserts that the program ended with this code and said all of this; what it said.
+pub fn ended((code, told): (Option<i32>, String), expected: i32, says: &[&str]) -> String {
+    assert_eq!(code, Some(expected), "{told}");
+    says.iter().for_each(|words| assert!(told.contains(words), "{words:?} is not in\n{told}"));
+    told
+}
+
 /// A record of training on these recordings.
 fn record(wizard: &str, recordings: &[&str]) -> String {
     let judged = |name: &&str| {
@@ -129,24 +137,17 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     lab.put("training/W2-1.json", record("W2", &["seed9-S001"]));
     let is_there = |path: &str| lab.at(path).exists();
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01"]);
-    assert!(
-        code == Some(2)
-            && told.contains("seed1-P01-1 (recording)")
-            && told.contains("nothing was deleted")
-            && told.contains("--yes"),
-        "{told}"
-    );
+    let told = ended(lab.forget(&["P01"]), 2, &["seed1-P01-1 (recording)", "nothing was deleted", "--yes"]);
     assert!(told.contains("    events.jsonl, session.toml\n"), "every file is listed: {told}");
     assert_eq!(lab.files(), before);
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(!is_there("seed1-P01-1") && !is_there("seed1-P01-2") && !is_there("training/W1-2.json"));
     let left = lab.text("training/W1-1.json");
     assert!(left.contains("seed9-S001") && !left.contains("P01"), "what was trained on others stays: {left}");
     assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(1), "there is nothing left");
-    assert_eq!(lab.forget(&["W1", "--yes"]).0, Some(0));
+    ended(lab.forget(&["W1", "--yes"]), 0, &[]);
     assert!(!is_there("training/W1-1.json") && is_there("training/W2-1.json"));
-    assert_eq!(lab.forget(&["Jane Doe", "--yes"]).0, Some(2));
+    ended(lab.forget(&["Jane Doe", "--yes"]), 2, &[]);
 }
 
 /// Tables that were made before the correction have the old code.
@@ -155,9 +156,8 @@ fn rows_from_before_a_code_was_corrected_go_with_the_recording() {
     let lab = RecordingsFolder::of_two_people("corrected");
     lab.study();
     let recording = lab.at("seed1-P01-1").display().to_string();
-    let (code, told) = lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]);
-    assert_eq!(code, Some(0), "{told}");
-    assert_eq!(lab.forget(&["P88", "--yes"]).0, Some(0));
+    ended(lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]), 0, &[]);
+    ended(lab.forget(&["P88", "--yes"]), 0, &[]);
     for table in ["actions", "trials"] {
         let left = lab.text(&format!("study/{table}.csv"));
         assert!(!left.contains("seed1-P01-1") && left.contains("seed1-P01-2"), "{table}: {left}");
@@ -182,8 +182,7 @@ fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     // A session file of somebody is no recording, whoever it is for.
     lab.put("pilot/session.toml", "layout = \"x\"\n[participant]\ncode = \"P01\"\n");
     let (before, study) = (lab.files(), lab.text("study/trials.csv"));
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     let after = lab.files();
     for (path, bytes) in &before {
         let is_gone = path.starts_with("seed1-P01") || path == "study/report.html";
@@ -214,22 +213,17 @@ fn nothing_goes_while_a_recording_is_being_written() {
     lab.study();
     let lock = RecordingLock::take(&lab.at("seed1-P01-2")).expect("a lock");
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(
-        code == Some(1) && told.contains("nothing was deleted") && told.contains("writes this recording"),
-        "{told}"
-    );
+    ended(lab.forget(&["P01", "--yes"]), 1, &["nothing was deleted", "writes this recording"]);
     assert_eq!(lab.files(), before);
     assert_eq!(lab.forget(&["P02", "--yes"]).0, Some(0), "that of somebody else is no matter");
     drop(lock);
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(lab.files().keys().all(|path| path.starts_with("study/")), "{:?}", lab.files().keys());
     // Where no lock can be taken, as in a folder that cannot be written to, it is the same.
     let lab = RecordingsFolder::of_two_people("unlockable");
     fs::create_dir(lab.at("seed1-P01-2/lock")).expect("made");
     let before = lab.files();
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(code == Some(1) && told.contains("nothing was deleted") && told.contains("seed1-P01-2"), "{told}");
+    ended(lab.forget(&["P01", "--yes"]), 1, &["nothing was deleted", "seed1-P01-2"]);
     assert_eq!(lab.files(), before);
 }
 
@@ -264,4 +258,138 @@ fn json_lists_what_is_to_be_deleted_what_was_and_what_is_left() {
         deleted["left"][0]["reason"].as_str().is_some_and(|reason| reason.contains("tomcom did not write it")),
         "{deleted}"
     );
+}
+
+#[test]
+fn files_of_other_programs_stay_as_they_are_whatever_stands_in_them() {
+    let lab = RecordingsFolder::of_two_people("foreign");
+    lab.put("ages/participants.csv", "participant,age\nP01,31\nP02,32\n");
+    lab.put("old/trials.csv", "1,2,3\n4,5,1\n");
+    lab.put("report.html", "<td>P01</td>");
+    lab.put("figures.json", "{\"P01\": 1}");
+    lab.put("text.txt", "P01 seed1-P01-1");
+    lab.put("seed1-P01-1.mp4", "a video");
+    let before = lab.files();
+    let told = ended(lab.forget(&["P01", "--yes"]), 0, &[]);
+    assert!(told.contains("not looked for: copies, tables and exports in other folders, files of other"), "{told}");
+    let after = lab.files();
+    for (path, bytes) in &before {
+        let is_gone = path.starts_with("seed1-P01-1/") || path.starts_with("seed1-P01-2/");
+        assert_eq!(after.get(path), Some(bytes).filter(|_| !is_gone), "{path}");
+    }
+}
+
+#[test]
+fn a_code_that_looks_like_one_with_a_seed_is_another_person() {
+    let lab = RecordingsFolder::of_two_people("seeds");
+    lab.give("seed1-P02-1", "seed1-P01");
+    lab.give("seed1-P02-2", "seed1-P01");
+    lab.study();
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
+    assert!(lab.at("seed1-P02-1").exists() && !lab.at("seed1-P01-1").exists());
+    let left = lab.text("study/participants.csv");
+    assert!(left.lines().count() == 2 && left.contains("\nseed1-P01,"), "{left}");
+}
+
+#[test]
+fn files_of_others_in_a_recordings_folder_stay_and_are_told() {
+    let lab = RecordingsFolder::of_two_people("strange");
+    lab.put("seed1-P01-1/consent.pdf", "a scan");
+    let nested = lab.at("seed1-P01-2/nested");
+    fs::rename(lab.at("seed1-P02-1"), &nested).expect("moved");
+    ended(lab.forget(&["P01", "--yes"]), 1, &["consent.pdf: in the folder of one of the participant's recordings"]);
+    let left: Vec<String> = lab.files().into_keys().filter(|path| path.starts_with("seed1-P01")).collect();
+    let nested = ["events.jsonl", "session.toml"].map(|name| format!("seed1-P01-2/nested/{name}"));
+    assert_eq!(left, [&["seed1-P01-1/consent.pdf".to_string()][..], &nested].concat());
+    // What an analysis of the recording alone left in it goes with it.
+    let recording = lab.at("seed1-P02-2");
+    ended(lab.run(&["study", recording.to_str().expect("UTF-8"), "--skip", "concepts"]), 0, &[]);
+    assert!(recording.join("study/report.html").exists());
+    ended(lab.forget(&["P02", "--yes"]), 0, &[]);
+    assert!(!recording.exists());
+}
+
+#[test]
+fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
+    let lab = RecordingsFolder::of_two_people("ambiguous");
+    for (from, to) in [("seed1-P01-1", "a/trial-1"), ("seed1-P02-1", "b/trial-1"), ("seed1-P01-2", "a/trial-2")] {
+        fs::create_dir_all(lab.at(to).parent().expect("a folder")).expect("made");
+        fs::rename(lab.at(from), lab.at(to)).expect("moved");
+    }
+    // Of both folders together the table of trials says whose each recording is.
+    let (a, b, out) = (lab.at("a"), lab.at("b"), lab.at("study"));
+    let told = lab.run(&[
+        "study",
+        a.to_str().unwrap(),
+        b.to_str().unwrap(),
+        "--skip",
+        "concepts",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(told.0, Some(0), "{}", told.1);
+    let codes = "recording,rater,press,cause,aspect\ntrial-1,R1,4,slip,\n";
+    lab.put("a/codes.csv", codes);
+    lab.put(
+        "clear.csv",
+        "recording,rater,press,cause,aspect\ntrial-2,R1,4,slip,\nb/trial-1,R1,4,slip,\na/trial-1,R1,4,slip,\n",
+    );
+    ended(lab.forget(&["P01", "--yes"]), 1, &["a/codes.csv: it names a recording, and recordings of several people"]);
+    assert_eq!(lab.text("a/codes.csv"), codes);
+    assert_eq!(lab.text("clear.csv"), "recording,rater,press,cause,aspect\nb/trial-1,R1,4,slip,\n");
+    assert!(
+        !lab.at("a/trial-1").exists() && !lab.at("a/trial-2").exists() && lab.at("b/trial-1/events.jsonl").exists()
+    );
+    let actions = lab.text("study/actions.csv");
+    assert!(
+        actions.contains("b/trial-1,") && !actions.contains("a/trial-1,") && !actions.contains("trial-2,"),
+        "{actions}"
+    );
+}
+
+#[test]
+fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
+    let lab = RecordingsFolder::of_two_people("rescued");
+    let rescue = |root: &str| {
+        let files = read_session(std::path::Path::new("sessions/default.toml")).expect("a session");
+        let header = LogHeader::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes);
+        let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header).expect("a recording");
+        fs::remove_dir_all(lab.at(root)).expect("removed");
+        // Nothing can be saved where it was.
+        lab.put(root, "");
+        let told = log.check(false).expect_err("it is gone").to_string();
+        let (_, saved) = told.split_once("is in ").expect("where it was saved");
+        let to = lab.temporary.join(format!("tomcom-rescued-{}", root.len())).join("2026-03-14-P01-1");
+        fs::create_dir_all(to.parent().expect("a folder")).expect("made");
+        fs::rename(saved, &to).expect("moved");
+        fs::remove_dir(std::path::Path::new(saved).parent().expect("a folder")).expect("nothing else is in it");
+        to
+    };
+    let (own, other) = (rescue("gone"), rescue("../of-another-study"));
+    let without_a_note = lab.temporary.join("tomcom-rescued-1/2026-03-14-P01-1");
+    fs::create_dir_all(&without_a_note).expect("made");
+    fs::copy(own.join("events.jsonl"), without_a_note.join("events.jsonl")).expect("copied");
+    let both = [lab.at("seed1-P01-1"), lab.at("seed1-P02-1")];
+    let streams = [("tomcom-a-1.rrd", &both[..]), ("tomcom-b-1.rrd", &both[1..])].map(|(name, recordings)| {
+        let stream = lab.temporary.join(name);
+        let mut arguments: Vec<String> = recordings.iter().map(|recording| recording.display().to_string()).collect();
+        arguments.extend([format!("--save={}", stream.display())]);
+        ended(
+            lab.run(&[&["review"], &arguments.iter().map(String::as_str).collect::<Vec<&str>>()[..]].concat()),
+            0,
+            &[],
+        );
+        stream
+    });
+    ended(lab.forget(&["P01"]), 2, &[&own.display().to_string()]);
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
+    assert!(!own.exists() && !own.parent().expect("a folder").exists(), "with the folder that was made for it");
+    assert!(other.exists() && without_a_note.exists(), "P01 of another study is another person");
+    assert!(
+        !streams[0].exists() && streams[1].exists(),
+        "a stream goes if it shows one of the participant's recordings"
+    );
+    let temporary = lab.temporary.to_str().expect("UTF-8");
+    assert_eq!(lab.run(&["forget", "P01", "--yes", "--in", temporary]).0, Some(0), "whoever means those says so");
+    assert!(!other.exists() && !without_a_note.exists());
 }

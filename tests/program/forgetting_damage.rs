@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::forgetting::RecordingsFolder;
+use crate::forgetting::{RecordingsFolder, ended};
 
 #[test]
 fn bytes_that_are_no_utf_8_stay_as_they_are() {
@@ -13,8 +13,7 @@ fn bytes_that_are_no_utf_8_stay_as_they_are() {
     let latin: Vec<u8> = text.bytes().map(|byte| if byte == b'?' { 0xfc } else { byte }).collect();
     assert_eq!(latin.iter().filter(|&&byte| byte == 0xfc).count(), 4, "{text}");
     lab.put("study/trials.csv", &latin);
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     let kept: Vec<&[u8]> =
         latin.split_inclusive(|&byte| byte == b'\n').filter(|line| !line.starts_with(b"seed1-P01")).collect();
     assert_eq!(fs::read(lab.at("study/trials.csv")).expect("the table"), kept.concat());
@@ -34,12 +33,10 @@ fn a_damaged_table_stays_and_is_told_until_it_is_mended() {
         let text = lab.text("study/trials.csv");
         assert_ne!(damage(&text), text, "{name}");
         lab.put("study/trials.csv", damage(&text));
-        let (code, told) = lab.forget(&["P01", "--yes"]);
-        assert!(code == Some(1) && told.contains("study/trials.csv: ") && told.contains(" damaged"), "{name}: {told}");
+        let told = ended(lab.forget(&["P01", "--yes"]), 1, &["study/trials.csv: ", " damaged"]);
         assert_eq!(lab.text("study/trials.csv"), damage(&text), "{name}");
         assert!(!lab.at("seed1-P01-1").exists() && !lab.at("seed1-P01-2").exists(), "{told}");
-        let (code, told) = lab.forget(&["P01", "--yes"]);
-        assert!(code == Some(1) && told.contains("study/trials.csv: "), "{name}: it is told again: {told}");
+        ended(lab.forget(&["P01", "--yes"]), 1, &["study/trials.csv: "]);
         lab.put("study/trials.csv", &text);
         assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0), "mended, it is changed");
         assert!(lab.files().values().all(|bytes| !String::from_utf8_lossy(bytes).contains("P01")));
@@ -52,12 +49,11 @@ fn the_table_of_trials_tells_whose_the_recordings_are_until_all_tables_beside_it
     lab.study();
     let actions = lab.text("study/actions.csv");
     lab.put("study/actions.csv", actions.replacen("seed1-P02-1,", "", 1));
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(code == Some(1) && told.contains("actions.csv: line ") && told.contains("trials.csv: rows are"), "{told}");
+    ended(lab.forget(&["P01", "--yes"]), 1, &["actions.csv: line ", "trials.csv: rows are"]);
     // No recording says any more whose the rows are.
     assert!(!lab.at("seed1-P01-1").exists() && lab.text("study/trials.csv").contains(",P01,"));
     lab.put("study/actions.csv", &actions);
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(lab.files().values().all(|bytes| !String::from_utf8_lossy(bytes).contains("P01")));
 }
 
@@ -67,7 +63,7 @@ fn what_a_kill_in_the_middle_leaves_is_gone_on_with() {
     lab.study();
     let (rows, trials) = (lab.text("study/participants.csv"), lab.text("study/trials.csv"));
     let log = lab.at("seed1-P01-2/events.jsonl");
-    assert_eq!(lab.forget(&["P01", "--yes"]).0, Some(0));
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     let done = lab.files();
     // Some tables are changed, with a new one beside its old one, and of a recording only the settings are left.
     for settings_alone in [true, false] {
@@ -81,8 +77,7 @@ fn what_a_kill_in_the_middle_leaves_is_gone_on_with() {
             fs::remove_file(lab.at("seed1-P01-2/session.toml")).expect("deleted");
         }
         assert!(lab.text("study/trials.csv") == trials && lab.text("study/participants.csv") == rows);
-        let (code, told) = lab.forget(&["P01", "--yes"]);
-        assert_eq!(code, Some(0), "{told}");
+        ended(lab.forget(&["P01", "--yes"]), 0, &[]);
         fs::remove_file(lab.at("study/trials.csv.tomcom-a1B2c3.new")).expect("a table without the participant");
         let after: Vec<String> = lab.files().into_keys().collect();
         assert_eq!(after, done.keys().cloned().collect::<Vec<String>>());
@@ -100,31 +95,22 @@ fn a_header_says_whose_a_recording_is_and_else_the_settings() {
     };
     fs::remove_file(lab.at("seed1-P01-1/session.toml")).expect("removed");
     damage("seed1-P01-2");
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "either is enough: {told}");
+    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
     assert!(!lab.at("seed1-P01-1").exists() && !lab.at("seed1-P01-2").exists());
     damage("seed1-P02-1");
     lab.put("seed1-P02-1/session.toml", "[participant\n");
     lab.put("other/events.jsonl", "{\"event\":\"of another program\"}\n");
     let before = lab.files();
-    let (code, told) = lab.forget(&["P02", "--yes"]);
-    assert!(code == Some(1) && told.contains("seed1-P02-1: a recording that does not say whose it is"), "{told}");
+    let told = ended(lab.forget(&["P02", "--yes"]), 1, &["seed1-P02-1: a recording that does not say whose it is"]);
     assert!(!lab.at("seed1-P02-2").exists() && !told.contains("other: "), "{told}");
     for (path, bytes) in before.iter().filter(|(path, _)| !path.starts_with("seed1-P02-2")) {
         assert_eq!(lab.files().get(path), Some(bytes), "{path}");
     }
-    let (code, told) = lab.forget(&["P02", "--yes"]);
-    assert!(
-        code == Some(1)
-            && told.contains("no files of participant P02 that can be deleted")
-            && told.contains("seed1-P02-1: "),
-        "{told}"
-    );
+    ended(lab.forget(&["P02", "--yes"]), 1, &["no files of participant P02 that can be deleted", "seed1-P02-1: "]);
     // An empty log, as a power cut leaves it.
     lab.put("seed1-P02-1/events.jsonl", "");
     fs::remove_file(lab.at("seed1-P02-1/session.toml")).expect("removed");
-    let (code, told) = lab.forget(&["P02", "--yes"]);
-    assert!(code == Some(1) && told.contains("seed1-P02-1: "), "{told}");
+    ended(lab.forget(&["P02", "--yes"]), 1, &["seed1-P02-1: "]);
 }
 
 #[test]
@@ -136,8 +122,7 @@ fn a_link_leads_nowhere_and_a_pipe_is_not_waited_for() {
     fs::create_dir(pipe.parent().expect("a folder")).expect("made");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     assert!(made.is_ok_and(|made| made.success()));
-    let (code, told) = lab.forget(&["P01", "--yes"]);
-    assert!(code == Some(1) && told.contains("seed1-P01-1/linked: "), "{told}");
+    let told = ended(lab.forget(&["P01", "--yes"]), 1, &["seed1-P01-1/linked: "]);
     assert!(lab.at("seed1-P02-1/events.jsonl").exists() && pipe.exists());
     assert!(!lab.at("seed1-P01-1/events.jsonl").exists() && !lab.at("seed1-P01-2").exists(), "{told}");
 }

@@ -16,7 +16,7 @@ use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Event, LogHeader, TrialPhase};
 
-use crate::forgetting::RecordingsFolder;
+use crate::forgetting::{RecordingsFolder, ended};
 
 /// Words that stand in no other file.
 const WORDS: &str = "zweiundvierzig violette Teekannen";
@@ -138,8 +138,7 @@ fn answers_reach_the_tables_with_their_scores_and_are_forgotten_with_the_partici
     assert!(!report.contains(WORDS), "words stand in the table only");
     assert!(with_words(&folder.root, WORDS).len() >= 2, "in the log and in the table");
 
-    let (code, told) = folder.forget(&["P01", "--yes"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(folder.forget(&["P01", "--yes"]), 0, &[]);
     for folder in [&folder.root, &folder.temporary] {
         assert_eq!(with_words(folder, WORDS), Vec::<PathBuf>::new());
     }

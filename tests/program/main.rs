@@ -8,7 +8,6 @@ mod escapes;
 mod exports;
 mod forgetting;
 mod forgetting_damage;
-mod forgetting_others;
 mod forgotten_answers;
 mod overwriting;
 #[cfg(unix)]

@@ -8,7 +8,7 @@ use tomcom::edge::files::read_session;
 use tomcom_session::LogHeader;
 use tomcom_session::log::LogWriter;
 
-use crate::forgetting::RecordingsFolder;
+use crate::forgetting::{RecordingsFolder, ended};
 use crate::program::TOMCOM;
 
 /// The header of a trial of the default session.
@@ -34,28 +34,25 @@ fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
     ];
     for (arguments, file) in commands {
         lab.put(file, "of somebody else\n");
-        let (code, told) = lab.run(arguments);
-        assert!(
-            code == Some(1) && told.contains(file) && told.contains("a file is there that is not"),
-            "{arguments:?}: {told}"
-        );
+        ended(lab.run(arguments), 1, &[file, "a file is there that is not"]);
         assert_eq!(lab.text(file), "of somebody else\n", "{arguments:?}");
         fs::remove_file(lab.at(file)).expect("removed");
         if file != "results/participants.csv" {
-            for time in ["for the first time", "again"] {
-                let (code, told) = lab.run(arguments);
-                assert_eq!(code, Some(0), "{arguments:?} {time}: {told}");
+            for _ in ["for the first time", "again"] {
+                ended(lab.run(arguments), 0, &[]);
             }
         }
     }
     lab.put("results/.rows/notes.txt", "of somebody else\n");
-    assert_eq!(lab.run(commands[3].0).0, Some(1));
+    ended(lab.run(commands[3].0), 1, &[]);
     assert_eq!(lab.text("results/.rows/notes.txt"), "of somebody else\n");
     lab.put("trials/seed1-S001/session.toml", "# of somebody else\n");
     let out = format!("{root}/trials");
-    let (code, told) =
-        lab.run(&["simulate", "sessions/default.toml", "--arm", "timed", "--trials", "1", "--out", &out]);
-    assert!(code == Some(1) && told.contains("a session.toml that tomcom did not write"), "{told}");
+    ended(
+        lab.run(&["simulate", "sessions/default.toml", "--arm", "timed", "--trials", "1", "--out", &out]),
+        1,
+        &["a session.toml that tomcom did not write"],
+    );
     assert_eq!(lab.text("trials/seed1-S001/session.toml"), "# of somebody else\n");
 }
 
@@ -65,13 +62,11 @@ fn a_stream_that_is_saved_elsewhere_overwrites_nothing_whatever_its_name_is() {
     let recording = lab.at("seed1-P01-1").display().to_string();
     lab.put("elsewhere/recording.rrd", "of somebody else\n");
     let save = format!("--save={}", lab.at("elsewhere/recording.rrd").display());
-    let (code, told) = lab.run(&["review", &recording, &save]);
-    assert!(code == Some(1) && told.contains("a file is there that is not a stream"), "{told}");
+    ended(lab.run(&["review", &recording, &save]), 1, &["a file is there that is not a stream"]);
     assert_eq!(lab.text("elsewhere/recording.rrd"), "of somebody else\n");
     // Beside its log a damaged stream is made anew.
     lab.put("seed1-P01-1/recording.rrd", "damaged\n");
-    let (code, told) = lab.run(&["review", &recording, "--save"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.run(&["review", &recording, "--save"]), 0, &[]);
     assert!(fs::read(lab.at("seed1-P01-1/recording.rrd")).expect("a stream").len() > 1000);
 }
 
@@ -94,7 +89,7 @@ fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
     let recording = lab.at("seed1-P01-1").display().to_string();
     let path = |name: &str| lab.at(name).display().to_string();
     let fit = ["fit", &recording, "--parameters", "tau", "--tries", "10", "--out", &path("fitted.toml")];
-    assert_eq!(lab.run(&fit).0, Some(0));
+    ended(lab.run(&fit), 0, &[]);
     let before = lab.files();
     assert!(before["fitted.toml"].len() > 512);
     run_on_a_full_disk(&fit);
@@ -103,8 +98,7 @@ fn a_full_disk_destroys_no_earlier_results_and_leaves_no_half_file() {
     let told = run_on_a_full_disk(&freeze);
     assert!(told.contains("frozen: cannot be written"), "{told}");
     assert!(lab.files() == before, "no half of a frozen plan is left");
-    let (code, told) = lab.run(&freeze);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.run(&freeze), 0, &[]);
 }
 
 #[cfg(unix)]
@@ -114,11 +108,9 @@ fn results_go_where_a_link_leads_and_into_a_pipe() {
     let recording = lab.at("seed1-P01-1").display().to_string();
     lab.put("codes.csv", "");
     std::os::unix::fs::symlink("codes.csv", lab.at("link.csv")).expect("a link");
-    let (code, told) = lab.run(&["codes", &recording, "--export", &lab.at("link.csv").display().to_string()]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.run(&["codes", &recording, "--export", &lab.at("link.csv").display().to_string()]), 0, &[]);
     assert!(lab.at("link.csv").is_symlink() && lab.text("codes.csv").starts_with("recording,rater,press"));
-    let (code, told) = lab.run(&["codes", &recording, "--export", "/dev/stdout"]);
-    assert!(code == Some(0) && told.contains("recording,rater,press,cause,aspect"), "{told}");
+    ended(lab.run(&["codes", &recording, "--export", "/dev/stdout"]), 0, &["recording,rater,press,cause,aspect"]);
 }
 
 #[test]
@@ -171,15 +163,13 @@ fn no_file_of_a_recording_goes_where_a_link_leads() {
     for name in ["events.jsonl.new", "session.toml.new", "recording.rrd.new", "recording.rrd.toml", "recording.rrd"] {
         plant("trials/seed1-S001", name);
     }
-    let (code, told) = lab.run(&simulate);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.run(&simulate), 0, &[]);
     let made = out.join("seed1-S001");
     for name in ["events.jsonl", "session.toml", "recording.rrd", "recording.rrd.toml"] {
         assert!(made.join(name).symlink_metadata().is_ok_and(|data| data.is_file()), "{name} is a file");
     }
     plant("trials/seed1-S001", "recording.mcap.new");
-    let (code, told) = lab.run(&["export", made.to_str().expect("UTF-8"), "--mcap"]);
-    assert_eq!(code, Some(0), "{told}");
+    ended(lab.run(&["export", made.to_str().expect("UTF-8"), "--mcap"]), 0, &[]);
     assert_eq!(lab.text("victim"), "of somebody else");
 }
 

@@ -1,7 +1,7 @@
 //! Recordings survive: the real program is killed, its disk fills up, its folder vanishes, its clock stands still, and what
 //! was acknowledged is there and goes on.
 //!
-//! `TOMCOM_KILLS=200 cargo test --test program survival` kills that often, and demands times that only an idle machine
+//! `TOMCOM_KILLS=200 cargo test --release --test program survival` kills that often, and demands times that only an idle machine
 //! keeps: nothing older than 100 ms is lost, and the wizard is told within a second.
 
 use std::fs;

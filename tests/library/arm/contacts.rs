@@ -1,17 +1,17 @@
 //! Hands that are put into the arm's way: every contact is told, and stops the arm where it must.
 
 use nalgebra::{Point3, Vector3};
-use rand::RngExt;
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::bodies::HandPose;
 use tomcom_arm::worker::PressFailure;
-use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::rng::Stream;
 use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{ArmPhase, JOINTS, JointAngles};
 
 use super::{AT_REST, STILL_RAD, any_button, at, until_report};
+use crate::support::*;
 
 /// What came of hands that were put into the arm's way. A contact is any force between arm and human. Every contact is told,
 /// with its force; one above the threshold of the arm's mode stops it in the same cycle, and below that the arm was slow

@@ -1,26 +1,23 @@
 //! The arm in the physics: it presses every button, stops for people, and what it does when something is wrong.
 //!
-//! The full experiments (`cargo test --test library arm:: -- --ignored --nocapture`) do what the short ones do, more often.
+//! The full experiments (`cargo test --release --test library arm:: -- --ignored --nocapture`) do what the short ones do, more often.
 
 mod contacts;
-mod hand;
 mod presses;
 mod reach;
 mod sessions;
-mod stops;
 
-use std::path::Path;
 use std::sync::LazyLock;
 
-use rand::RngExt;
 use tomcom::edge::files::read_kitchen;
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::bodies::HandPose;
 use tomcom_arm::worker::PressFailure;
 use tomcom_core::base::rng::Stream;
-use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
 use tomcom_core::robot::ArmPhase;
+
+use crate::support::*;
 
 static SUSHI: LazyLock<Kitchen> =
     LazyLock::new(|| read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);

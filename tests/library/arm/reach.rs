@@ -1,24 +1,19 @@
 //! The motion of the arm to its buttons, and its inverse kinematics.
 
-use std::path::Path;
-
-use rand::RngExt;
 use tomcom::edge::files::read_kitchen;
 use tomcom_arm::inverse::{twist, wrapped};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::reach::{ArmSurroundings, Obstruction};
 use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
 use tomcom_arm::trajectory::JointMotion;
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, ButtonId};
 use tomcom_core::robot::JointAngles;
 
 use super::SUSHI;
+use crate::support::*;
 
 /// Where the tip of the arm is at this time, in metres.
 fn tip_m(arm: &SerialArm, motion: &JointMotion, now_s: f64) -> [f64; 3] {
-    let places = arm.forward(&motion.at(SessionTime::from_secs_f64(now_s)));
+    let places = arm.forward(&motion.at(at(now_s)));
     places.last().expect("links").translation.vector.into()
 }
 
@@ -33,7 +28,6 @@ fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
         let mut now_s = 1.0;
         for (index, button) in kitchen.buttons[Agent::Robot.index()].iter().enumerate() {
             let (from, until_s) = (tip_m(&arm, &motion, now_s), now_s + 2.4);
-            let at = SessionTime::from_secs_f64;
             motion.set_out(at(now_s), ButtonId(index as u8), at(until_s));
             let [x, y, z] = tip_m(&arm, &motion, until_s);
             let away_m = (x - button.at_m[0]).hypot(y - button.at_m[1]).hypot(z - top_m);
@@ -48,7 +42,7 @@ fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
             motion.go_up(at(until_s));
             now_s = until_s;
         }
-        motion.go_up(SessionTime::from_secs_f64(now_s));
+        motion.go_up(at(now_s));
         let [.., z] = tip_m(&arm, &motion, now_s + 1.0);
         assert!(z > top_m + 0.07, "it goes up after the last press");
     }
@@ -58,7 +52,6 @@ fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
 fn an_arm_that_stands_stays_where_it_is() {
     let arm = SerialArm::ur5();
     let mut motion = JointMotion::new(&SUSHI, &arm);
-    let at = SessionTime::from_secs_f64;
     motion.set_out(at(1.0), ButtonId(3), at(3.0));
     let there = motion.at(at(1.7));
     assert_ne!(there, motion.at(at(1.0)));

@@ -1,29 +1,18 @@
 //! Sessions with the arm: what their events say of it, and how it stops and gives up presses there.
 
-use std::path::Path;
-use std::sync::Arc;
-
 use nalgebra::Point3;
-use tomcom::edge::files::read_session;
 use tomcom_arm::controller::ArmController;
 use tomcom_arm::reach::Capsule;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{ArmPhase, ArmSample, JOINTS};
-use tomcom_session::Event;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 use super::{STILL_RAD, SUSHI};
+use crate::support::*;
 
 /// A session at the keyboard, in which nobody presses anything by himself, in this kitchen.
 fn session(kitchen: Kitchen) -> SessionEngine {
-    let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+    let mut spec = session_file("default").spec;
     assert_eq!(spec.robot.arm, ArmKind::Physics);
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
     spec.assistant.shadow = ShadowMode::Off;
@@ -33,7 +22,7 @@ fn session(kitchen: Kitchen) -> SessionEngine {
 
 /// Lets the session go on until such an event, or for so long; everything that happened.
 fn until(engine: &mut SessionEngine, at_most_s: f64, is_it: impl Fn(&Event) -> bool) -> Vec<Event> {
-    let end = engine.session().time + SessionTime::from_secs_f64(at_most_s);
+    let end = engine.session().time + at(at_most_s);
     let mut seen = Vec::new();
     while engine.next_due().is_some_and(|due| due <= end) {
         let events = engine.fire().into_iter().map(|stamped| stamped.event);

@@ -1,22 +1,18 @@
 //! Raters' codes: agreement, the file beside the log, export and import.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use miette::Diagnostic;
 use tomcom_core::measures::raters::RaterChoice;
 use tomcom_core::measures::raters::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use tomcom_core::measures::raters::{RaterConsensus, unsettled};
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::RecordingError;
 use tomcom_session::log::rater_codes::{read_all, write};
-use tomcom_session::log::{LOG_NAME, RecordingLock, consensus_file};
+use tomcom_session::log::{RecordingError, RecordingLock, consensus_file};
 use tomcom_study::code_exchange::{self, export};
 use tomcom_study::codes::{CodedRecording, InterRaterSummary, describe};
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::pass::reading::{self, AnalysisScope};
 
 use super::{folder, paper, run};
+use crate::support::*;
 
 /// The errors of one recording, coded by two people: so many pairs of what the one and the other say.
 fn coded(pairs: &[(&str, &str, u64)]) -> AgreementTable {

@@ -1,12 +1,7 @@
 //! Parts of a job array, and folders that were begun before.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::LOG_NAME;
-
 use super::{folder, paper, run};
+use crate::support::*;
 
 /// Every file below a folder, with what is in it, by its path there.
 fn all_files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {

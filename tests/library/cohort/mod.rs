@@ -3,20 +3,10 @@
 
 mod codes;
 mod job_array;
-mod learning;
 mod pool;
-mod twins;
 mod wizard;
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_session::TimestampedEvent;
-use tomcom_session::files::SessionSetup;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::LogReader;
+use crate::support::*;
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cohort").join(name);
@@ -26,7 +16,7 @@ fn folder(name: &str) -> PathBuf {
 
 /// The paper's plan with short trials.
 fn paper(presses: u32) -> SessionSetup {
-    let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
+    let mut files = session_file("paper");
     files.spec.trial.presses = presses;
     files
 }

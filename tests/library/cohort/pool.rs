@@ -1,14 +1,15 @@
-//! Pools of simulated participants: their trials are those of the plan, twins are unassisted, and shards make the whole.
+//! Simulated participants: pools of them, twins of trials without the signals, and what one trial teaches for the next.
 
-use std::path::Path;
-
-use tomcom_session::files::SessionSetup;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::study_arm::StudyArm;
+use tomcom_people::participant::SimulatedParticipant;
+use tomcom_people::participant::population::{Experience, Population};
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::reading::{self, AnalysisScope};
 use tomcom_study::pool::{PoolRequest, simulate};
 use tomcom_study::pool::{PoolTrialPair, SimulationPool};
+use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::{folder, paper, run};
+use crate::support::*;
 
 /// Participants of the pools in these tests, and presses of a trial.
 const PERSONS: u32 = 4;
@@ -50,14 +51,6 @@ fn a_pool_has_the_trials_of_the_plan_and_their_unassisted_twins() {
 }
 
 #[test]
-fn the_shards_of_a_pool_are_the_whole() {
-    let files = paper(30);
-    let whole = pool(&files, SimulationShard::WHOLE, [true, true]);
-    let parts = (1..=3).map(|number| pool(&files, SimulationShard { number, of: 3 }, [true, true])).collect();
-    assert_eq!(SimulationPool::joined(parts).expect("the whole"), whole);
-}
-
-#[test]
 fn what_cannot_be_simulated_is_told_beforehand() {
     let refused = |files: SessionSetup| {
         let request =
@@ -73,4 +66,77 @@ fn what_cannot_be_simulated_is_told_beforehand() {
     let mut without = paper(30);
     without.spec.plan = None;
     assert!(refused(without).contains("a session without a plan"));
+}
+
+fn analysed(recording: &Path) -> TrialStatistics {
+    let scope = AnalysisScope { concepts: true, events: false };
+    let (_, analysis) =
+        reading::read(recording, "one", scope, None, &mut KeptCost::default()).expect("readable").expect("no practice");
+    analysis.trial
+}
+
+/// A proposal of DEV is useful if the twin errs in its next presses, by a slip, too.
+#[test]
+fn proposals_of_simulated_trials_are_judged_by_the_next_presses() {
+    let mut files = session_file("default");
+    files.spec.trial.condition = Condition::Assistant;
+    (files.spec.trial.presses, files.spec.seed) = (200, 9702);
+    (files.spec.assistant.concept, files.spec.assistant.proposed_presses) = (ConceptName::Dev, 2);
+    files.spec.robot.arm = ArmKind::Timed;
+    let figures = run(&files, 3, SimulationShard::WHOLE, &folder("twins-dev"));
+    let trials: Vec<TrialStatistics> =
+        figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
+    let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(of).sum::<u64>();
+    let (signals, contents) = (sum(|trial| trial.signals), sum(|trial| trial.signal_contents));
+    let useful = sum(|trial| trial.useful_signals.expect("it comes out the same again"));
+    assert!(0 < useful && useful < signals, "{useful} of {signals} useful");
+    assert!(signals < contents && contents <= 2 * signals, "{signals} proposals of {contents} presses");
+    assert!(trials.iter().all(|trial| (trial.acting.concept, trial.acting.parameter) == ("dev", Some(2.0))));
+}
+
+/// ToM sends many signals: some of them prevent errors, others are about beliefs that do no harm.
+#[test]
+fn signals_of_simulated_trials_are_useful_or_useless_and_those_of_trials_that_come_out_otherwise_unknown() {
+    let mut files = session_file("default");
+    files.spec.trial.condition = Condition::Assistant;
+    files.spec.trial.presses = 200;
+    files.spec.assistant.concept = ConceptName::Tom;
+    files.spec.robot.arm = ArmKind::Timed;
+    files.spec.seed = 21;
+    let figures = run(&files, 3, SimulationShard::WHOLE, &folder("twins"));
+    let trials: Vec<TrialStatistics> =
+        figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
+    let useful: u64 = trials.iter().map(|trial| trial.useful_signals.expect("it comes out the same again")).sum();
+    let signals: u64 = trials.iter().map(|trial| trial.signals).sum();
+    assert_eq!(signals, figures.signals);
+    assert!(0 < useful && useful < signals, "{useful} of {signals} useful");
+
+    // Another participant presses otherwise, as after a change of the program.
+    let recording = Path::new(&figures.recordings[0]);
+    let log = recording.join(LOG_NAME);
+    let text = fs::read_to_string(&log).expect("a log");
+    fs::write(&log, text.replacen("\"seed\":21", "\"seed\":22", 1)).expect("written");
+    assert_eq!(analysed(recording).useful_signals, None);
+}
+
+#[test]
+fn trials_teach_recipes_and_presses_where_the_population_learns() {
+    let kitchen: Arc<Kitchen> = Arc::new(paper(1).kitchen.kitchen);
+    let known = |population: &Population, trials: u32| {
+        let experience = Experience { trials, presses: 200.0 * f64::from(trials) };
+        let one = SimulatedParticipant::new(kitchen.clone(), population, 7, 3, 11, experience);
+        let empty = kitchen.empty_state();
+        let dishes = (0..kitchen.dishes.len()).map(|index| kitchen.aspect_of_dish(DishId(index as u8)));
+        let sum: f64 = dishes.map(|dish: AspectId| one.beliefs().p_truth(&kitchen, empty, dish)).sum();
+        (sum, one.person().clone())
+    };
+    let afresh = Population::default();
+    assert_eq!(known(&afresh, 0), known(&afresh, 1), "by default a trial teaches nothing for the next one");
+    let learns = Population { recipes_gained: 2.0, ..afresh };
+    let ((first, before), (second, after)) = (known(&learns, 0), known(&learns, 1));
+    assert!(second > first, "{second} after {first}");
+    let odds = |p: f64| p / (1.0 - p);
+    assert!((odds(after.learned) / odds(before.learned) - 2.0).abs() < 1e-9);
+    assert_eq!(after.slip, before.slip, "it is the same person");
+    assert!(kitchen.buttons[Agent::Human.index()].len() > 1);
 }

@@ -1,23 +1,12 @@
 //! Scripted wizards: what they send, what they say, and that both come out the same again.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{HighlightSet, Sender};
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{DishId, LocationId};
+use tomcom_core::communication::HighlightSet;
 use tomcom_people::wizard::{OfferReading, WizardKind, WizardSpec};
 use tomcom_people::wizard::{ScriptedWizard, WizardAction};
 use tomcom_session::admit::hygiene;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, Session, TimestampedEvent};
 
 use super::{events, folder, paper, run};
+use crate::support::*;
 
 #[test]
 fn a_scripted_wizard_signals_in_its_trials_and_comes_out_the_same_again() {
@@ -76,7 +65,7 @@ fn a_wizard_tells_what_was_not_looked_at_and_nothing_that_was() {
         ..WizardSpec::default()
     };
     let mut cost = CostToGo::new(kitchen.clone());
-    let second = |s: f64| SessionTime::from_secs_f64(s);
+    let second = |s: f64| at(s);
     let empty = kitchen.empty_state();
     // The robot puts the rice of an order into the pot: who does not see that fetches rice, too.
     let place = |name: &str| kitchen.location_named(name).expect("a place of the kitchen");
@@ -144,7 +133,7 @@ fn actions(wizard: &mut ScriptedWizard) -> Vec<(f64, WizardAction)> {
 
 #[test]
 fn an_offer_is_taken_after_the_time_of_reading_or_left() {
-    let second = SessionTime::from_secs_f64;
+    let second = at;
     let takes = |takes, reads_s| OfferReading { takes, reads_s };
     let mut wizard = reader(takes(1.0, 2.0), 5.0);
     wizard.on_offer(second(10.0), 7);
@@ -172,7 +161,7 @@ fn an_offer_is_taken_after_the_time_of_reading_or_left() {
 /// The plan of arms with a scripted wizard: the same script with and without advice.
 #[test]
 fn a_scripted_wizard_takes_offers_in_the_arm_with_advice_alone() {
-    let mut files = read_session(Path::new("sessions/arms.toml")).expect("the plan of arms");
+    let mut files = session_file("arms");
     files.spec.wizard.kind = WizardKind::Scripted;
     (files.spec.seed, files.spec.trial.presses) = (9701, 160);
     (files.spec.assistant.rollout.rollouts, files.spec.human.inference.beliefs) = (64, 128);

@@ -1,22 +1,26 @@
-//! The recommendation panel, and the key that accepts a recommendation.
+//! What the wizard is told by the assistant: the recommendation and its key, beliefs, the comparison of wizard and assistants, the training.
 
 use crossterm::event::KeyCode;
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
+use tomcom::console::console_model::Dialog;
+use tomcom::console::console_model::NoticeLevel;
+use tomcom::console::console_model::Playback;
+use tomcom::console::console_model::SenderComparisonView;
+use tomcom::console::console_model::{TrainingFeedback, TrainingPanel};
 use tomcom::console::panels::Panel;
-use tomcom::console::view;
+use tomcom::console::panels::screen;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_session::event::{Event, SignalEndReason};
-use tomcom_session::settings::{Condition, ParticipantKind, WizardVisibility};
+use tomcom_core::measures::matching::CommunicationEvent;
+use tomcom_session::history::belief_track;
+use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::history::comparison::{
+    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
+};
 
-use super::{SIZES, Stage, input, type_in};
-use crate::check_snapshot;
+use super::{SIZES, Stage, input, panels, type_in};
+use crate::support::*;
 
 /// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
 fn advised(best: bool) -> Stage {
@@ -47,11 +51,11 @@ fn advised(best: bool) -> Stage {
         instead: None,
     };
     let best = best.then(|| recipe("order_1"));
-    let for_ns = SessionTime::from_secs_f64(21.9);
+    let for_ns = at(21.9);
     let advice = Recommendation { options, best, reason: Some(reason), ..Recommendation::silent(17, for_ns) };
     stage.at(21.9, Event::Advised(advice));
     stage.offer(22.4);
-    stage.model.now = SessionTime::from_secs_f64(22.6);
+    stage.model.now = at(22.6);
     stage
 }
 
@@ -63,11 +67,10 @@ fn advice_is_ranked_with_its_errors_against_the_cost_of_a_signal() {
 
 /// The texts that are inverse in the colour of signals.
 fn inverse_signals(stage: &Stage, size: (u16, u16)) -> Vec<String> {
-    let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
-    terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
+    let drawn = stage.drawn(size);
     let colour = Theme::colour(TerminalBackground::Dark, TextRole::Signal).map(Color::Indexed);
     let is_loud = |cell: &Cell| cell.modifier.contains(Modifier::REVERSED) && Some(cell.fg) == colour;
-    let cells = &terminal.backend().buffer().content;
+    let cells = &drawn.buffer().content;
     let runs = cells.chunk_by(|a, b| is_loud(a) == is_loud(b)).filter(|run| is_loud(&run[0]));
     runs.map(|run| run.iter().map(Cell::symbol).collect::<String>().trim().to_string()).collect()
 }
@@ -88,18 +91,6 @@ fn the_offer_alone_is_inverse_in_the_colour_of_signals() {
 }
 
 #[test]
-fn an_offer_says_what_is_believed_what_is_true_and_what_it_saves() {
-    for size in SIZES {
-        let screen = advised(true).screen(size);
-        for words in
-            ["thinks salmon nigiri, is tuna nigiri", "83 % for 0:0", "next error: take salmon", "saves ≈ 4 presses"]
-        {
-            assert!(screen.contains(words), "{words} is missing at {size:?}:\n{screen}");
-        }
-    }
-}
-
-#[test]
 fn a_belief_has_one_certainty_on_the_screen() {
     for (held, p, words) in [
         ("shrimp nigiri", 0.44, "may think shrimp nigiri, is tuna nigiri · 44 % for 0:0"),
@@ -111,6 +102,7 @@ fn a_belief_has_one_certainty_on_the_screen() {
             let screen = stage.screen(size);
             assert!(screen.contains(words), "{words} at {size:?}:\n{screen}");
             assert!(!screen.contains("83 %"), "what the assistant thought then is no second certainty:\n{screen}");
+            assert!(screen.contains("next error: take salmon") && screen.contains("saves ≈ 4 presses"), "{screen}");
         }
     }
 }
@@ -142,19 +134,6 @@ fn of_an_unsure_belief_the_likeliest_wrong_value_is_named() {
             assert!(is_named || (alone.is_some() && size.0 == 80), "{list} at {size:?}:\n{screen}");
         }
     }
-}
-
-/// Where a belief's words need more than one line, they have a second one: nothing is cut on a large screen.
-#[test]
-fn a_belief_is_told_in_full_on_a_large_screen() {
-    let screen = advised(true).screen((168, 60));
-    let lines: Vec<&str> = screen.lines().collect();
-    let at = lines.iter().position(|line| line.contains("  recipe of order 1  ")).expect("a belief in two lines");
-    assert!(lines[at].contains("83 %"), "{screen}");
-    assert!(lines[at + 1].contains("  thinks salmon nigiri, is tuna nigiri "), "{screen}");
-    assert!(screen.contains(" order 2: thinks none, is crab maki"), "a short one needs one line:\n{screen}");
-    let screen = advised(true).screen((200, 60));
-    assert!(screen.contains(" recipe of order 1: thinks salmon nigiri, is tuna nigiri "), "{screen}");
 }
 
 /// The lines of the offer, as far as they say something.
@@ -235,10 +214,9 @@ fn the_offers_line_says_that_no_signal_is_worth_its_cost() {
         let screen = stage.screen(size);
         let offer = screen.lines().skip(1).take(lines.len()).map(|line| line.trim_matches('"').trim());
         assert_eq!(offer.collect::<Vec<_>>(), lines, "{size:?}");
-        let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
-        terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
+        let drawn = stage.drawn(size);
         let grey = Theme::colour(TerminalBackground::Dark, TextRole::Quiet).map(Color::Indexed);
-        let row = &terminal.backend().buffer().content[usize::from(size.0)..2 * usize::from(size.0)];
+        let row = &drawn.buffer().content[usize::from(size.0)..2 * usize::from(size.0)];
         assert!(row.iter().filter(|cell| cell.symbol() != " ").all(|cell| Some(cell.fg) == grey), "quietly");
     }
 }
@@ -247,7 +225,7 @@ fn the_offers_line_says_that_no_signal_is_worth_its_cost() {
 fn enter_accepts_what_is_recommended_and_says_so() {
     let mut seen = advised(true);
     // Signals keep apart.
-    seen.model.now = SessionTime::from_secs_f64(30.0);
+    seen.model.now = at(30.0);
     let accepted = input(seen.key(KeyCode::Enter));
     let offer = seen.session.offers.open().map(|offer| offer.seq);
     let Some(Event::SignalShown { by: Sender::Wizard, signal, offer: taken }) = accepted else {
@@ -268,10 +246,10 @@ fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
     let offer = stage.session.offers.open().map(|offer| offer.seq);
     stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal: sent, offer });
     stage.offer(22.6);
-    stage.model.now = SessionTime::from_secs_f64(23.2);
+    stage.model.now = at(23.2);
     assert_eq!(input(stage.key(KeyCode::Enter)), None);
     // The answer to what was asked before comes late, and does not know of it.
-    let late = |at| Recommendation { for_ns: SessionTime::from_secs_f64(at), ..advice.clone() };
+    let late = |seconds| Recommendation { for_ns: at(seconds), ..advice.clone() };
     stage.at(23.7, Event::Advised(late(22.5)));
     stage.offer(23.7);
     assert_eq!(input(stage.key(KeyCode::Enter)), None);
@@ -316,7 +294,7 @@ fn the_timeline_shows_offers_from_their_opening_to_their_close() {
     stage.offer(27.0);
     assert!(row(&stage).contains("──────✓"), "taken: {}", row(&stage));
     stage.session.spec.console.visibility = WizardVisibility::Belief;
-    assert!(!stage.screen((200, 60)).contains(" offers "));
+    stage.hides((200, 60), &[" offers "]);
 }
 
 #[test]
@@ -338,4 +316,243 @@ fn the_age_of_a_change_stands_above_what_is_thought_of_the_place() {
         let (age, thought) = (row_of("◂0s"), row_of("thinks:"));
         assert!(age.is_some() && thought.is_some() && age < thought, "{below:?} in\n{screen}");
     }
+}
+
+#[test]
+fn one_belief_is_looked_at_over_time_and_then_the_next() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let all = panels(&stage);
+    let aspects = stage.session.kitchen.aspects.len();
+    let mut seen = Vec::new();
+    for _ in 0..3 {
+        stage.control('b');
+        let focus = stage.model.belief_focus.expect("a belief is shown");
+        seen.push(stage.session.kitchen.aspects[focus.index()].name.clone());
+        assert_eq!(panels(&stage), ["belief", "recommendation"], "the belief alone, with the offer's line");
+        stage.wait(1.0);
+    }
+    assert_eq!(seen, ["order_2", "recipe of tuna nigiri", "robot_hand"], "the longest first");
+    stage.key(KeyCode::Esc);
+    assert_eq!((panels(&stage), stage.model.belief_focus), (all, None), "esc leaves it");
+    for _ in 0..3 {
+        stage.wait(1.0);
+        stage.control('b');
+    }
+    stage.shows_everywhere(&["robot hand: thinks raw tuna 52 %, is cut tuna", "probability of the truth"]);
+    check_snapshot("console", "belief_over_time_120x40", stage.screen((120, 40)));
+    for _ in 0..aspects - 2 {
+        stage.wait(1.0);
+        stage.control('b');
+    }
+    assert_eq!(stage.model.belief_focus, None, "after the last one none");
+}
+
+#[test]
+fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = WizardVisibility::Belief;
+    let screen = stage.shows((120, 40), &["13 other beliefs are right", "order 2: probability of crab maki"]);
+    assert!(!screen.contains("Signals by benefit"), "{screen}");
+}
+
+/// The chart is on the trial's clock: in a pause and after the trial nothing moves, and a long pause removes nothing.
+#[test]
+fn the_chart_of_a_belief_stands_while_the_trial_does() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('b');
+    // As a running session does: gaze goes on in a pause and after the trial, and old estimates are forgotten.
+    let wait = |stage: &mut Stage, seconds: u32| {
+        for _ in 0..5 * seconds {
+            let now = stage.model.now.as_secs_f64() + 0.2;
+            stage.look(now, 0.4, 0.35);
+            stage.estimate(&[], true);
+            stage.model.belief.forget(&stage.session, stage.model.now, belief_track::SHOWN_S);
+        }
+    };
+    let charts = |stage: &Stage| {
+        SIZES.map(|size| {
+            let screen = stage.screen(size);
+            let lines: Vec<&str> = screen.lines().skip_while(|line| !line.contains("Beliefs")).collect();
+            lines[..lines.len() - 2].join("\n")
+        })
+    };
+    stage.at(23.0, Event::TrialPaused);
+    let paused = charts(&stage);
+    wait(&mut stage, 300);
+    assert_eq!(charts(&stage), paused, "in a pause");
+    let moments = stage.model.belief.until(stage.model.now).len();
+    assert!(moments < 20, "estimates that are the same are kept once: {moments}");
+    stage.at(324.0, Event::TrialResumed);
+    assert_eq!(charts(&stage), paused, "it goes on where it stood");
+    wait(&mut stage, 10);
+    assert_ne!(charts(&stage), paused, "in the running trial it moves");
+    stage.at(335.0, Event::TrialEnded { reason: TrialEndReason::Time });
+    let over = charts(&stage);
+    wait(&mut stage, 120);
+    assert_eq!(charts(&stage), over, "after the trial");
+}
+
+/// A long session needs no more memory than a short one, and still knows since when what is believed wrong.
+#[test]
+fn the_belief_forgets_what_no_panel_shows() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    stage.estimate(&[("cooking_pot", "rice raw", 0.9)], false);
+    let aspect = stage.session.kitchen.location_named("cooking_pot").expect("a pot").index();
+    for second in 2..3600 {
+        stage.model.now = at(f64::from(second));
+        let p = if second % 2 == 0 { 0.8 } else { 0.9 };
+        stage.estimate(&[("cooking_pot", "rice raw", p)], false);
+        stage.model.belief.forget(&stage.session, stage.model.now, belief_track::SHOWN_S);
+        let moments = stage.model.belief.until(stage.model.now);
+        assert!(moments.len() <= 200, "{} moments", moments.len());
+        assert!(second < 70 || moments[0].time.as_secs_f64() <= f64::from(second) - belief_track::SHOWN_S);
+        assert_eq!(belief_track::wrong_since(moments, aspect), Some(at(1.0)));
+    }
+    stage.model.now = at(3700.0);
+    stage.estimate(&[("cooking_pot", "empty", 0.9)], true);
+    assert_eq!(belief_track::wrong_since(stage.model.belief.until(stage.model.now), aspect), None);
+}
+
+/// The sushi kitchen, compared: the wizard with so many assistants.
+fn compared(assistants: usize) -> Stage {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys = stage.model.keys.clone().with_comparison();
+    let kitchen = stage.session.kitchen.clone();
+    let recipe = |order: &str| CommunicationContent::Signal(Signal::ShowRecipe(order.to_string()));
+    let highlight = |place: &str| CommunicationContent::Signal(Signal::Highlight(place.to_string()));
+    let held = BeliefSnapshot::new(&kitchen, stage.session.state, &stage.belief, stage.model.now, false).held;
+    let said = |press: u32, seconds: f64, what: CommunicationContent| {
+        let best = if let CommunicationContent::Signal(signal) = &what { Some(signal.clone()) } else { None };
+        let option = |signal: &Signal| SignalOption {
+            signal: signal.clone(),
+            benefit: 4.2,
+            standard_error: 0.2,
+            net: 2.7,
+            rollouts: 256,
+        };
+        let options = best.iter().map(option).collect();
+        let advice = Recommendation { options, best, ..Recommendation::silent(7, stage.model.now) };
+        let (state, screen) = (stage.session.state, Some(screen(&stage.session, &stage.model)));
+        let known = CommunicationContext { seq: 7, state, held: held.clone(), advice: vec![advice; 3], screen };
+        let clock = at(seconds - 3.0);
+        let said = CommunicationEvent { press, clock, content: what.content(&kitchen) };
+        Communication { said, time: at(seconds), what, known: Some(Arc::new(known)) }
+    };
+    let lane = |name: &str, concept, spoken| SenderCommunications { name: name.to_string(), concept, spoken };
+    let sent = vec![said(5, 12.0, highlight("cutting_board")), said(9, 21.8, recipe("order_1"))];
+    let planned = vec![
+        said(2, 8.2, highlight("cooking_pot")),
+        said(5, 10.6, highlight("cutting_board")),
+        said(9, 21.1, recipe("order_1")),
+    ];
+    let proposed = CommunicationContent::Proposal(vec!["take_nori".to_string(), "assembly_board".to_string()]);
+    let mut lanes = vec![
+        lane("wizard", None, sent),
+        lane("tom-com", Some(ConceptName::TomCom), planned),
+        lane("tom", Some(ConceptName::Tom), vec![said(4, 9.3, recipe("order_1")), said(9, 22.1, recipe("order_1"))]),
+        lane("dev", Some(ConceptName::Dev), vec![said(6, 15.0, proposed)]),
+    ];
+    lanes.truncate(assistants + 1);
+    let mut comparison = SenderComparisonView::default();
+    comparison.show(SenderComparison::new(lanes, 3, 10, false));
+    stage.model.comparison = Some(comparison);
+    stage
+}
+
+#[test]
+fn wizard_and_assistant_stand_side_by_side_at_every_size() {
+    let figures = ["recall 1.00", "precision 0.67, F1 0.80, kappa 0.77, lead +1.0 s"];
+    let mut plain = compared(3);
+    plain.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Dark };
+    for size in SIZES {
+        let one = compared(1);
+        one.shows(size, &figures);
+        // The lead of the assistant is a line between two signals.
+        one.shows(size, &["1/1  0:05  only tom-com: highlight cooking pot", "p c", "╭─╯"]);
+        compared(3).shows(size, &figures);
+        compared(3).shows(size, &["5/5  0:12  dev, not wizard: press take nori, then assembly board", "◆"]);
+        compared(3).shows(size, &["wizard", "tom-com", "tom ", "dev"]);
+        assert!(plain.screen(size).is_ascii(), "{}", plain.screen(size));
+    }
+    check_snapshot("console", "compared_all_120x40", compared(3).screen((120, 40)));
+    let mut alone = compared(3);
+    alone.model.alone = Some(Panel::Comparison);
+    alone.shows((80, 24), &["recall", "kappa", "lead", "1/"]);
+}
+
+#[test]
+fn a_difference_is_chosen_and_opened_by_keys_and_the_screen_says_what_was_seen() {
+    let mut stage = compared(1);
+    let panels = screen(&stage.session, &stage.model).panels;
+    assert!(panels.iter().any(|panel| panel == "comparison"), "{panels:?}");
+    assert_eq!(
+        stage.model.comparison.as_ref().and_then(|one| one.seen.as_ref()).map(|one| one.differences.len()),
+        Some(1)
+    );
+    let mut stage_of_all = compared(3);
+    for (stage, words) in
+        [(&mut stage, "0:05  only tom-com: highlight cooking pot"), (&mut stage_of_all, "dev, not wizard")]
+    {
+        assert!(stage.screen((120, 40)).contains(words), "{}", stage.screen((120, 40)));
+        stage.control('o');
+        assert_eq!(screen(&stage.session, &stage.model).dialog.as_deref(), Some("difference"));
+        let opened = stage.screen((120, 40));
+        for told in [
+            "What wizard and assistant knew",
+            "true contents of the kitchen:",
+            "panels on the wizard's screen: kitchen",
+        ] {
+            assert!(opened.contains(told), "{told} in\n{opened}");
+        }
+    }
+    check_snapshot("console", "compared_opened_120x40", stage.screen((120, 40)));
+    // The one before, without closing; then any key closes.
+    stage_of_all.control('t');
+    assert!(matches!(stage_of_all.model.dialog, Some(Dialog::Difference(_))));
+    stage_of_all.hides((120, 40), &["dev, not wizard: press take nori, then assembly board\npress"]);
+    stage_of_all.key(KeyCode::Char('x'));
+    assert_eq!(stage_of_all.model.dialog, None);
+    // Without a comparison the keys have no meaning.
+    let mut alone = Stage::sushi(ParticipantKind::Simulated);
+    alone.control('o');
+    assert_eq!(alone.model.dialog, None);
+}
+
+#[test]
+fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = WizardVisibility::State;
+    stage.model.playback = Some(Playback::new("seed1-S001".to_string()));
+    let task = ["Press . to start.", "A hit is the first signal about a false belief that leads to an error."];
+    let lesson = TrainingPanel {
+        task: task.map(str::to_string).to_vec(),
+        score: "0 hit".to_string(),
+        ..TrainingPanel::default()
+    };
+    stage.model.lesson = Some(lesson.clone());
+    stage.shows((120, 40), &["A hit is the first signal"]);
+    let said = |seconds: f64, level: NoticeLevel, text: &str| {
+        let clock = at(seconds);
+        TrainingFeedback { clock, level, text: text.to_string() }
+    };
+    let long = "missed, with 2 errors: recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri; right would have been: recipe of order 1";
+    let feedback = vec![
+        said(4.0, NoticeLevel::Done, "highlight plate: a signal already told this"),
+        said(9.0, NoticeLevel::Refused, long),
+        said(12.0, NoticeLevel::Done, "recipe of order 1: hit: the belief has been false for 3.1 s"),
+    ];
+    stage.model.lesson = Some(TrainingPanel { feedback, begun: true, ..lesson });
+    stage.shows_everywhere(&["0:12 recipe of order 1: hit:", "0:09 missed, with 2 errors"]);
+    check_snapshot("console", "training_120x40", stage.screen((120, 40)));
+    stage.control('b');
+    assert!(stage.notice().contains("not shown in this session"), "{}", stage.notice());
+    stage.model.dialog = Some(Dialog::Report(vec!["1 of 2 hit".to_string(), "    missed; ".to_string() + long]));
+    let report = ["The training is over", "1 of 2 hit", "would have been: recipe of order 1", "this report is saved"];
+    stage.shows((120, 40), &report);
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('q'));
+    assert!(stage.model.dialog.is_some(), "a signal that came too late closes nothing");
+    stage.key(KeyCode::Enter);
+    assert_eq!(stage.model.dialog, None);
 }

@@ -1,19 +1,19 @@
-//! Clicks: on signals and the offer, on hints, rows, beliefs and the timeline. A click does what a key does.
+//! The mouse and pasted text: clicks do what keys do, the pointer is a place on the display, a paste is text and no keys.
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::console_model::{Playback, ReplayAction};
-use tomcom::console::lists::{Picker, PickerKind};
-use tomcom::console::mouse;
+use tomcom::console::kitchen_map::KitchenMap;
+use tomcom::console::kitchen_map::KitchenMapElement;
+use tomcom::console::lists::Picker;
+use tomcom::console::lists::PickerKind;
 use tomcom::console::view::click_targets;
-use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Signal;
+use tomcom::console::view::regions::PanelAreas;
+use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, mouse, update};
 use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
-use tomcom_session::Event;
-use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
-use super::{SIZES, Stage, input};
+use super::{SIZES, Stage, input, panels};
+use crate::support::*;
 
 impl Stage {
     /// Clicks on the first cell of a text on the screen.
@@ -50,7 +50,7 @@ fn a_click_on_a_signal_asks_once_and_enter_or_a_second_click_sends_it() {
         stage.wait(0.0);
         assert_eq!(stage.click("[a]"), None);
         assert!(stage.asks_to_send(), "{size:?}");
-        assert!(stage.screen(size).contains("Send highlight assembly board? enter"), "{}", stage.screen(size));
+        stage.shows(size, &["Send highlight assembly board? enter"]);
         stage.wait(0.1);
         assert_eq!(stage.click("[a]"), None, "a double click confirms nothing");
         stage.wait(1.0);
@@ -74,7 +74,7 @@ fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
         ] {
             let mut stage = Stage::sushi(ParticipantKind::Simulated);
             stage.wait(0.0);
-            let ahead = |stage: &mut Stage| stage.model.clock = stage.model.now + SessionTime::from_secs_f64(ahead_s);
+            let ahead = |stage: &mut Stage| stage.model.clock = stage.model.now + at(ahead_s);
             ahead(&mut stage);
             stage.click("[a]");
             assert!(stage.asks_to_send(), "clock ahead by {ahead_s} s");
@@ -187,7 +187,7 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.keys =
         KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let length = SessionTime::from_secs_f64(40.0);
+    let length = at(40.0);
     stage.model.playback = Some(Playback { length, event: 10, events: 90, ..Playback::new("S001".to_string()) });
     for size in SIZES {
         stage.model.size = size;
@@ -209,4 +209,129 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
         let [then, now] = [right - 10, right].map(|column| seek(column, row - 2));
         assert!((now - then - 5.0).abs() < 0.6 && (now - 22.6).abs() < 0.6, "{then} {now}");
     }
+}
+
+#[test]
+fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
+    for name in ["sushi", "burger"] {
+        let kitchen = kitchen(name);
+        for size in SIZES {
+            let panel = PanelAreas::new(size, WizardVisibility::Recommendation, None).kitchen_inside();
+            let plan = KitchenMap::new(&kitchen, panel, size.0 == 120);
+            assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
+            for spot in &plan.spots {
+                let area = match spot.thing {
+                    KitchenMapElement::Location(id) => kitchen.location(id).display,
+                    KitchenMapElement::Storage(index) => kitchen.storages[index].display,
+                };
+                assert_eq!(panel.union(spot.cells), panel, "{name} {size:?}: inside of the panel");
+                for (x, y) in [(spot.cells.x, spot.cells.y), (spot.cells.right() - 1, spot.cells.bottom() - 1)] {
+                    let point = plan.display_point(x, y);
+                    let distance_m = area.distance_m(point, kitchen.display_m);
+                    assert_eq!(distance_m, 0.0, "{name} {size:?} {:?} {point:?} {area:?}", spot.thing);
+                    assert_eq!(plan.cell(point), Some((x, y)), "{name} {size:?}");
+                }
+            }
+            for (index, spot) in plan.spots.iter().enumerate() {
+                let others = plan.spots[index + 1..].iter();
+                assert!(others.clone().all(|other| !spot.cells.intersects(other.cells)), "{name} {size:?}: apart");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_click_beside_the_keys_explains_a_place_or_shows_a_panel_and_the_wheel_goes_back_in_time() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let regions = PanelAreas::new((120, 40), WizardVisibility::Recommendation, None);
+    let plan = KitchenMap::new(&stage.session.kitchen, regions.kitchen_inside(), false);
+    for spot in &plan.spots {
+        let KitchenMapElement::Location(location) = spot.thing else { continue };
+        let click = ConsoleMessage::Click(spot.cells.x + 1, spot.cells.bottom() - 1);
+        assert_eq!(update(&mut stage.model, &stage.session, click), None);
+        let label = stage.session.kitchen.location(location).label();
+        assert!(stage.notice().contains(&label), "{label}: {}", stage.notice());
+    }
+    let all = panels(&stage);
+    let (column, row) = (regions.belief.x + 1, regions.belief.y);
+    for expected in [["belief", "recommendation"].map(str::to_string).to_vec(), all] {
+        assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Click(column, row)), None);
+        assert_eq!(panels(&stage), expected);
+    }
+    let (column, row) = (regions.timeline.x + 1, regions.timeline.y);
+    for (steps, back_s) in [(1, 5), (-3, 0)] {
+        assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Wheel(column, row, steps)), None);
+        assert_eq!(stage.model.timeline_back_s, back_s, "back, and not into the future");
+    }
+}
+
+impl Stage {
+    pub fn paste(&mut self, text: Option<&str>) -> Option<ConsoleCommand> {
+        update(&mut self.model, &self.session, ConsoleMessage::Paste(text.map(str::to_string)))
+    }
+}
+
+const REFUSED: &str = "pasted text is not taken for keys";
+
+#[test]
+fn pasted_text_sends_nothing_and_stops_nothing_outside_of_a_field() {
+    for participant in [ParticipantKind::Simulated, ParticipantKind::Keyboard] {
+        let mut stage = Stage::sushi(participant);
+        for (text, told) in [(Some("please call me"), REFUSED), (Some(" "), REFUSED), (None, "a paste did not end")] {
+            assert_eq!(stage.paste(text), None);
+            assert!(stage.notice().contains(told), "{text:?}: {}", stage.notice());
+        }
+        // Nor does it answer a question.
+        stage.wait(1.0);
+        assert_eq!(stage.control('c'), None);
+        assert_eq!(stage.model.dialog, Some(Dialog::Quit));
+        assert_eq!(stage.paste(Some("y")), None);
+        assert_eq!(stage.model.dialog, Some(Dialog::Quit), "the question stays open");
+    }
+}
+
+#[test]
+fn pasted_text_moves_no_replay() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.replays(Playback::new("2026-03-14-P01-1".to_string()));
+    assert_eq!(stage.paste(Some("seven mbwq")), None);
+    assert!(stage.notice().contains(REFUSED), "{}", stage.notice());
+}
+
+#[test]
+fn in_a_note_a_paste_is_text_also_while_the_trial_runs_on() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(23.0, Event::TrialPaused);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('0')), None);
+    stage.at(24.0, Event::TrialResumed);
+    assert_eq!(stage.paste(Some("please call me\r\nat once\n")), None, "the robot goes on");
+    assert_eq!(stage.key(KeyCode::Char('!')), None);
+    let Some(Dialog::Note(note)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
+    assert_eq!(note.text(), "please call me at once!");
+    // The space bar itself does stop it.
+    assert_eq!(stage.key(KeyCode::Char(' ')), Some(ConsoleCommand::Input(Event::RobotStopped)));
+    // What does not fit is refused as a whole.
+    assert_eq!(stage.paste(Some(&"x".repeat(478))), None);
+    assert_eq!(stage.notice(), "nothing pasted: the text has 478 characters, the field has room for 477");
+    assert_eq!(stage.paste(Some(&"x".repeat(477))), None);
+    let Some(Dialog::Note(note)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
+    assert_eq!(note.text().len(), 500);
+}
+
+#[test]
+fn a_paste_filters_a_list_and_chooses_nothing() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.wait(1.0);
+    assert_eq!(stage.control('k'), None);
+    assert_eq!(stage.paste(Some("stop the robot\n")), None);
+    let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
+    assert_eq!(cursor.filter, "stoptherobot");
+    assert_eq!(stage.key(KeyCode::Esc), None);
+    assert_eq!(stage.key(KeyCode::Esc), None);
+    stage.wait(1.0);
+    assert_eq!(stage.control('x'), None);
+    assert_eq!(stage.paste(Some("tech")), None);
+    let Some(Dialog::Pick(picker)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
+    assert_eq!(picker.cursor.filter, "tech");
 }

@@ -5,14 +5,12 @@ use tomcom::console::coding::{CodingRaters, RaterSession};
 use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::key_action::{KeyAction, RaterAction};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
 use tomcom_session::TimelineEvent;
 use tomcom_session::error_list::ListedError;
-use tomcom_session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage};
-use crate::check_snapshot;
+use crate::support::*;
 
 fn codes(of: &[(u64, ErrorCauseCode)]) -> RaterCodes {
     RaterCodes(of.iter().cloned().collect())
@@ -76,10 +74,7 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
     for _ in 0..5 {
         stage.wait(1.0);
         stage.key(KeyCode::Tab);
-        let screen = stage.screen((80, 24));
-        for key in ["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"] {
-            assert!(screen.contains(key), "{key}\n{screen}");
-        }
+        stage.shows((80, 24), &["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"]);
     }
     let tells = |action: &KeyAction| *action == KeyAction::Belief || matches!(action, KeyAction::Differ(_));
     assert!(stage.model.keys.bindings.iter().all(|line| !tells(&line.action)));
@@ -89,43 +84,13 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
 #[test]
 fn leaving_asks_nothing_while_all_codes_are_saved_and_the_hint_says_so() {
     let mut stage = rater(RaterCodes::default());
-    for size in SIZES {
-        assert!(stage.screen(size).contains("^c quit (saved)"), "{}", stage.screen(size));
-    }
+    stage.shows_everywhere(&["^c quit (saved)"]);
     if let Some(coding) = &mut stage.model.coding {
         coding.is_saved = false;
     }
     let screen = stage.screen((80, 24));
     assert!(screen.contains("^c quit") && !screen.contains("saved"), "{screen}");
     assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "what is not saved is saved on leaving");
-}
-
-#[test]
-fn codes_are_undone_and_redone_step_by_step() {
-    let mut stage = rater(codes(&[(0, ErrorCauseCode::Slip)]));
-    let press = 200;
-    assert_eq!(stage.key(KeyCode::Char('2')), Some(ConsoleCommand::Code { press }));
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('c')), Some(ConsoleCommand::Code { press }));
-    assert_eq!(coding(&stage).progress(), "2/12 errors coded, 1 since opening");
-    assert_eq!(coding(&stage).codes.0[&press], belief());
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('u')), Some(ConsoleCommand::Code { press }));
-    assert_eq!(coding(&stage).codes.0[&press], ErrorCauseCode::Race);
-    stage.wait(1.0);
-    stage.key(KeyCode::Char('u'));
-    assert!(!coding(&stage).codes.0.contains_key(&press));
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('u')), None);
-    assert!(stage.notice().contains("no code was changed since"), "what was there at the opening stays");
-    for _ in 0..2 {
-        stage.wait(1.0);
-        stage.control('y');
-    }
-    assert_eq!(coding(&stage).codes.0[&press], belief());
-    stage.wait(1.0);
-    stage.key(KeyCode::Delete);
-    assert_eq!(coding(&stage).progress(), "1/12 errors coded");
 }
 
 #[test]
@@ -163,28 +128,12 @@ fn a_click_on_the_codebook_gives_the_code() {
 }
 
 #[test]
-fn two_raters_settle_with_both_codes_in_view() {
-    let all: Vec<u64> = (0..12).map(|index| 100 * index).collect();
-    let one = RaterCodes(all.iter().map(|press| (*press, ErrorCauseCode::Slip)).collect());
-    let other = RaterCodes(all.iter().skip(1).map(|press| (*press, belief())).collect());
-    let party = CodingRaters::Pair { consensus: RaterConsensus::new("R1", "R2"), own: [one, other] };
-    let mut stage = rated(party, codes(&[(0, ErrorCauseCode::Slip)]));
-    stage.key(KeyCode::Char('4'));
-    assert_eq!(coding(&stage).progress(), "2/12 errors settled, 1 since opening");
-    for size in SIZES {
-        stage.shows(size, &["R1: slip", "R2: wrong about cutting board", "2/12 errors settled, 1 since opening"]);
-    }
-}
-
-#[test]
 fn the_last_code_says_what_comes_next() {
     let all = RaterCodes((0..12).map(|index| (100 * index, ErrorCauseCode::Slip)).collect());
     let mut stage = rater(all);
-    for size in SIZES {
-        assert!(stage.screen(size).contains("every error is coded; next:"), "{}", stage.screen(size));
-    }
+    stage.shows_everywhere(&["every error is coded; next:"]);
     if let Some(coding) = &mut stage.model.coding {
         coding.finished.push("R0".to_string());
     }
-    assert!(stage.screen((120, 40)).contains("--settle R0 R1"), "{}", stage.screen((120, 40)));
+    stage.shows((120, 40), &["--settle R0 R1"]);
 }

@@ -1,47 +1,16 @@
-//! Keys: what they send, how often, and that none has two meanings.
+//! Keys: what they send, how often, which are hinted at, whose they are, and what they do to kitchen and robot.
 
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::console::console_model::Dialog;
-use tomcom::console::key_action::{KeyErrorSource, KeyLayer};
-use tomcom::console::lists::{Picker, PickerKind};
+use tomcom::console::console_model::Playback;
+use tomcom::console::key_action::KeyLayer;
+use tomcom::console::lists::Picker;
+use tomcom::console::lists::PickerKind;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom_core::communication::Sender;
-use tomcom_core::kitchen::{Agent, Kitchen, LocationKind};
-use tomcom_session::SessionSpec;
-use tomcom_session::event::{Event, SignalEndReason, TrialEndReason};
-use tomcom_session::settings::ParticipantKind;
+use tomcom_session::event::WizardScreenContent;
 
-use super::{SIZES, Stage, input};
-use crate::kitchen;
-
-#[test]
-fn each_signal_has_a_key_that_sends_it_once() {
-    for name in ["sushi", "burger"] {
-        let mut stage = Stage::new(name, ParticipantKind::Simulated);
-        let kitchen = stage.session.kitchen.clone();
-        stage.at(1.0, Event::TrialStarted);
-        for &order in &kitchen.orders {
-            let order = kitchen.location(order).name.clone();
-            stage.at(1.0, Event::OrderShown { order, dish: kitchen.dishes[0].name.clone() });
-        }
-        let mut sent = Vec::new();
-        for location in &kitchen.locations {
-            stage.wait(5.0);
-            let key = location.signal_key.expect("every location of the shipped kitchens has a key");
-            let Some(Event::SignalShown { signal, .. }) = input(stage.key(KeyCode::Char(key))) else {
-                assert_eq!(location.kind, LocationKind::Hand(Agent::Human), "{}: {}", location.name, stage.notice());
-                continue;
-            };
-            assert_eq!(signal.target(), Some(location.name.as_str()));
-            sent.push(signal);
-            for _ in 0..40 {
-                stage.wait(0.03);
-                assert_eq!(stage.key(KeyCode::Char(key)), None, "a held key repeats");
-            }
-        }
-        assert_eq!(sent.len(), kitchen.locations.len() - 1);
-    }
-}
+use super::{SIZES, Stage, input, type_in};
+use crate::support::*;
 
 #[test]
 fn a_terminal_that_reports_repeats_lets_the_same_key_be_pressed_twice() {
@@ -88,7 +57,7 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
             assert!(stage.screen(size).contains(says), "the dialog leaves the line free: {}", stage.screen(size));
         }
     }
-    assert!(stage.screen((80, 24)).contains("y or ^c yes"), "{}", stage.screen((80, 24)));
+    stage.shows((80, 24), &["y or ^c yes"]);
     assert_eq!(stage.key(KeyCode::Enter), None, "any other key is no");
     assert_eq!(stage.model.dialog, None);
     for (key, title, done) in [
@@ -110,19 +79,6 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
     stage.control('c');
     stage.wait(1.0);
     assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "after the trial it does");
-}
-
-#[test]
-fn a_signal_is_not_sent_again_while_it_is_shown() {
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.at(1.0, Event::TrialStarted);
-    let signal = input(stage.key(KeyCode::Char('a'))).expect("sent");
-    stage.at(1.1, signal.clone());
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('a')), None);
-    assert!(stage.notice().contains("shown already"), "{}", stage.notice());
-    stage.at(3.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
-    assert_eq!(input(stage.key(KeyCode::Char('a'))), Some(signal));
 }
 
 #[test]
@@ -154,15 +110,6 @@ fn whoever_wants_to_quit_is_asked_in_whatever_list_they_are() {
 }
 
 #[test]
-fn a_layout_cannot_take_a_key_twice() {
-    let mut kitchen = Kitchen::clone(&kitchen("sushi"));
-    let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
-    kitchen.locations[0].signal_key = Some('3');
-    let clash = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect_err("3 is a marker");
-    assert_eq!(clash.place, KeyErrorSource::Layout(KeyLayer::Wizard, '3'));
-}
-
-#[test]
 fn a_held_key_that_toggles_counts_once_also_where_no_release_is_reported() {
     for (key, control, event) in
         [('.', false, Event::TrialStarted), ('p', true, Event::RobotHeld { by: Sender::Wizard })]
@@ -180,4 +127,219 @@ fn a_held_key_that_toggles_counts_once_also_where_no_release_is_reported() {
         stage.wait(0.8);
         assert!(press(&mut stage).is_some(), "{}", stage.notice());
     }
+}
+
+/// The last line of the screen.
+fn hints(stage: &Stage) -> String {
+    stage.screen((200, 60)).lines().last().unwrap_or_default().trim_matches('"').trim_end().to_string()
+}
+
+fn check(stage: &Stage, shown: &[&str], hidden: &[&str]) {
+    let line = hints(stage);
+    for text in shown {
+        assert!(line.contains(text), "{text:?} is possible: {line}");
+    }
+    for text in hidden {
+        assert!(!line.contains(text), "{text:?} is not possible: {line}");
+    }
+}
+
+#[test]
+fn a_live_session_shows_the_keys_that_do_something_now() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.size = (200, 60);
+    check(&stage, &["STOP ROBOT", ". pause", "take back", "^e end", "^k find", "1-5 note"], &["resume", "send offer"]);
+    stage.at(23.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
+    check(&stage, &[], &["take back"]);
+    stage.at(23.1, Event::RobotStopped);
+    check(&stage, &["^r resume robot"], &["STOP ROBOT"]);
+    stage.at(23.2, Event::TrialPaused);
+    check(&stage, &[". resume"], &["pause", "send offer"]);
+}
+
+#[test]
+fn a_typed_note_is_hinted_in_a_pause_where_it_is_possible() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.hides((80, 24), &["0 type note"]);
+    stage.at(23.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
+    stage.at(23.2, Event::TrialPaused);
+    for size in super::SIZES {
+        stage.shows(size, &["1-5 note", "0 type note", "? help", "^c quit"]);
+    }
+}
+
+#[test]
+fn over_a_dialog_only_what_passes_it_is_shown() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.size = (200, 60);
+    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Place)));
+    assert_eq!(hints(&stage), "  space STOP ROBOT  ^c quit");
+    stage.model.dialog = Some(Dialog::EndTrial);
+    assert_eq!(hints(&stage), "  space STOP ROBOT");
+    stage.at(23.0, Event::RobotStopped);
+    assert_eq!(hints(&stage), "");
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.model.size = (200, 60);
+    stage.at(0.1, Event::RobotStopped);
+    stage.key(KeyCode::Char('.'));
+    assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
+    check(&stage, &["^r resume robot"], &["STOP ROBOT", "start"]);
+}
+
+#[test]
+fn a_replay_shows_no_way_beyond_its_ends() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.size = (200, 60);
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
+    let replay = |event, speed| Playback { event, events: 90, speed, ..Playback::new("S001".to_string()) };
+    stage.model.playback = Some(replay(10, 2));
+    check(&stage, &[". play", "left/right step", "pgup/pgdn 10 s", "+/- speed"], &["pause", "STOP ROBOT"]);
+    stage.model.playback = Some(Playback { playing: true, ..replay(0, 0) });
+    check(&stage, &[". pause", "  right step", "  pgdn 10 s", "  + speed"], &["left", "pgup"]);
+    stage.model.playback = Some(replay(90, 7));
+    check(&stage, &["  left step", "  - speed"], &["right", "pgdn", "e error"]);
+}
+
+fn seen(stage: &Stage) -> WizardScreenContent {
+    tomcom::console::panels::screen(&stage.session, &stage.model)
+}
+
+#[test]
+fn the_participant_at_the_keyboard_sees_no_estimate() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    assert_eq!(seen(&stage).visibility, WizardVisibility::Recommendation);
+    assert_eq!(stage.control('b'), None);
+    assert!(stage.screen((120, 40)).contains("probability of"), "the wizard looks at one belief");
+    assert_eq!(stage.key(KeyCode::Tab), None);
+    for size in SIZES {
+        stage.model.size = size;
+        let screen = stage.screen(size);
+        assert!(screen.contains("KEYS: PARTICIPANT"), "{screen}");
+        for words in ["thinks", "Beliefs", "beliefs", "Signals by benefit", "No false beliefs"] {
+            assert!(!screen.contains(words), "{words} is shown at {size:?}:\n{screen}");
+        }
+        let seen = seen(&stage);
+        assert_eq!(seen.visibility, WizardVisibility::State, "and the record says so");
+        assert!(seen.panels.iter().all(|panel| panel != "belief" && panel != "recommendation"), "{seen:?}");
+    }
+    stage.wait(1.0);
+    assert_eq!(stage.control('b'), None);
+    assert_eq!(stage.notice(), "beliefs are not shown in this session");
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Tab), None);
+    assert!(stage.screen((120, 40)).contains("thinks salmon nigiri"), "the wizard's keys bring it back");
+}
+
+#[test]
+fn a_pause_shows_the_recipes_to_who_plays_the_participant() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    assert_eq!(stage.key(KeyCode::Tab), None);
+    for size in SIZES {
+        assert!(!stage.screen(size).contains("tuna maki"), "they have to be remembered while it runs");
+    }
+    stage.at(23.0, Event::TrialPaused);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        for dish in &stage.session.kitchen.dishes {
+            assert!(screen.contains(&dish.name), "{}:\n{screen}", dish.name);
+        }
+        assert!(screen.contains("shaped rice + nori + cut tuna") && screen.contains(". resume"), "{screen}");
+    }
+    check_snapshot("console", "recipes_120x40", stage.screen((120, 40)));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('.')), Some(ConsoleCommand::Input(Event::TrialResumed)));
+    assert_eq!(stage.key(KeyCode::Tab), None);
+    assert!(!stage.screen((120, 40)).contains("the recipes"), "the wizard sees the kitchen in a pause");
+}
+
+#[test]
+fn signals_are_judged_at_the_end_where_the_wizard_may_know() {
+    let end = |participant, visibility| {
+        let mut stage = Stage::sushi(participant);
+        stage.session.spec.console.visibility = visibility;
+        stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+        stage.screen((80, 24))
+    };
+    let judged = "2 about a false belief, 0 late, 0 needless";
+    let known = end(ParticipantKind::Simulated, WizardVisibility::State);
+    assert!(known.contains("2 by the wizard, 1 taken back") && known.contains(judged), "{known}");
+    assert!(!known.contains("estimated"), "{known}");
+    let estimated = end(ParticipantKind::Display, WizardVisibility::Belief);
+    assert!(estimated.contains(&format!("estimated    {judged}")), "{estimated}");
+    let blind = end(ParticipantKind::Display, WizardVisibility::State);
+    assert!(blind.contains("2 by the wizard") && !blind.contains("needless"), "{blind}");
+}
+
+#[test]
+fn the_kitchen_is_corrected_from_two_lists() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('u');
+    stage.shows_everywhere(&[
+        "Correct the kitchen: which place?",
+        "8 of 8",
+        "» human hand",
+        "robot hand",
+        "raw salmon",
+    ]);
+    check_snapshot("console", "correct_80x24", stage.screen((80, 24)));
+    type_in(&mut stage, "pot");
+    stage.wait(0.05);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    let contents = ["What is really at cooking pot?", "14 of 14", "» raw rice", "cut crab", "enter choose"];
+    stage.shows((80, 24), &contents);
+    for _ in 0..20 {
+        stage.wait(0.03);
+        assert_eq!(stage.key(KeyCode::Enter), None, "a held enter answers one question");
+    }
+    type_in(&mut stage, "cookedri");
+    stage.wait(0.05);
+    let corrected = Event::KitchenCorrected { location: "cooking_pot".to_string(), content: "rice cooked".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(corrected.clone()), "{}", stage.notice());
+    assert_eq!(stage.model.dialog, None);
+    stage.at(23.0, corrected);
+    stage.shows((120, 40), &["cooked rice"]);
+    // Esc goes back a step, then leaves; what nothing is called leads nowhere.
+    stage.wait(1.0);
+    stage.control('u');
+    type_in(&mut stage, "zzz");
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    for left in [3, 2, 1] {
+        assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(list)) if list.cursor.filter.len() == left));
+        stage.key(KeyCode::Backspace);
+    }
+    stage.key(KeyCode::Down);
+    stage.wait(1.0);
+    stage.key(KeyCode::Enter);
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, Some(Dialog::Pick(Picker::new(PickerKind::Place))));
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn the_robot_is_held_skipped_and_driven_by_keys() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let by = Sender::Wizard;
+    assert_eq!(input(stage.control('p')), Some(Event::RobotHeld { by }));
+    stage.at(22.7, Event::RobotHeld { by });
+    stage.shows((80, 24), &["ROBOT HELD", "‖"]);
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("HELD") && screen.contains("^p releases the robot"), "{screen}");
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));
+    assert_eq!(stage.control('d'), None);
+    let list = stage.shows((120, 40), &["The robot's next press", "15 of 15", "» assembly board"]);
+    for (button, is_idle) in [("take tuna", true), ("plate  ", false), ("serve 2", true)] {
+        let row = list.lines().find(|line| line.contains(&format!("│   {button}"))).expect(button);
+        assert_eq!(row.contains("press has no effect now"), is_idle, "{row}");
+    }
+    type_in(&mut stage, "counter");
+    let driven = Event::RobotDriven { by, button: "counter".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(driven));
+    stage.wait(1.0);
+    assert_eq!(input(stage.control('p')), Some(Event::RobotReleased { by }));
+    stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    assert_eq!(stage.control('d'), None);
+    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
 }

@@ -1,47 +1,29 @@
 //! The console: what is drawn at three sizes, what the keys do, and where the pointer is on the display.
 
 mod advice;
-mod belief;
-mod calibration;
 mod clicks;
 mod coding;
-mod colours;
-mod comparison;
-mod hands;
-mod hints;
 mod keys;
-mod layers;
 mod notices;
 mod palette;
-mod pasting;
-mod pointer;
-mod probes;
-mod recording_picker;
 mod screens;
 mod sheets;
-mod training;
 mod trial;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use tomcom::console::console_model::Playback;
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::panels::screen;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::PriorModel;
-use tomcom_session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom_session::history::belief_track::BeliefSnapshot;
-use tomcom_session::settings::{GazeSource, ParticipantKind};
-use tomcom_session::{Session, SessionSpec, apply, offers};
+use tomcom_session::{apply, offers};
 
-use crate::kitchen;
+use crate::support::*;
 
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
@@ -55,15 +37,13 @@ struct Stage {
 
 impl Stage {
     fn new(kitchen_name: &str, participant: ParticipantKind) -> Stage {
-        let mut spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+        let mut spec = default_settings();
         spec.participant.kind = participant;
         if participant == ParticipantKind::Keyboard {
             spec.participant.gaze = GazeSource::Mouse;
         }
         let kitchen = kitchen(kitchen_name);
-        let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");
-        let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-        let mut model = ConsoleModel::new(keys, theme, (120, 40));
+        let mut model = console_model(&kitchen, &spec, (120, 40));
         model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
         let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());
@@ -72,7 +52,7 @@ impl Stage {
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
-        self.model.now = SessionTime::from_secs_f64(seconds);
+        self.model.now = at(seconds);
         self.model.clock = self.model.now;
         let stamped = TimestampedEvent { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
@@ -82,7 +62,7 @@ impl Stage {
 
     /// Opens or closes the offer that is due, as a running session does.
     fn offer(&mut self, seconds: f64) {
-        while let Some(event) = offers::due(&self.session, SessionTime::from_secs_f64(seconds)) {
+        while let Some(event) = offers::due(&self.session, at(seconds)) {
             self.at(seconds, event);
         }
     }
@@ -154,7 +134,7 @@ impl Stage {
             ],
             false,
         );
-        let until_ns = SessionTime::from_secs_f64(24.0);
+        let until_ns = at(24.0);
         stage.at(21.2, Event::RobotIntends { button: "counter".to_string(), until_ns, initiative: false });
         for step in 0..12 {
             stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
@@ -164,15 +144,19 @@ impl Stage {
             21.8,
             Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()), offer: None },
         );
-        stage.model.errors = [15.0, 21.0].map(SessionTime::from_secs_f64).to_vec();
-        stage.model.now = SessionTime::from_secs_f64(22.6);
+        stage.model.errors = [15.0, 21.0].map(at).to_vec();
+        stage.model.now = at(22.6);
         stage
     }
 
-    fn screen(&self, size: (u16, u16)) -> String {
+    fn drawn(&self, size: (u16, u16)) -> TestBackend {
         let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
         terminal.draw(|frame| view(&self.session, &self.model, frame)).expect("drawn");
-        terminal.backend().to_string()
+        terminal.backend().clone()
+    }
+
+    fn screen(&self, size: (u16, u16)) -> String {
+        self.drawn(size).to_string()
     }
 
     /// The screen, which has to say all of this.
@@ -182,6 +166,28 @@ impl Stage {
             assert!(screen.contains(words), "{words:?} at {size:?} in\n{screen}");
         }
         screen
+    }
+
+    /// The screens of all sizes, which have to say all of this.
+    fn shows_everywhere(&self, words: &[&str]) {
+        for size in SIZES {
+            self.shows(size, words);
+        }
+    }
+
+    /// The screen must not say any of this.
+    fn hides(&self, size: (u16, u16), words: &[&str]) {
+        let screen = self.screen(size);
+        for words in words {
+            assert!(!screen.contains(words), "{words:?} at {size:?} in\n{screen}");
+        }
+    }
+
+    /// From now on a replay, with its keys.
+    fn replays(&mut self, playback: Playback) {
+        let keys = KeyBindings::replay(&self.session.kitchen, &KeyFileBindings::default());
+        self.model.keys = keys.expect("the keys are free");
+        self.model.playback = Some(playback);
     }
 
     fn key(&mut self, code: KeyCode) -> Option<ConsoleCommand> {
@@ -202,7 +208,7 @@ impl Stage {
     }
 
     fn wait(&mut self, seconds: f64) {
-        self.model.now = self.model.now + SessionTime::from_secs_f64(seconds);
+        self.model.now = self.model.now + at(seconds);
         self.model.clock = self.model.now;
     }
 

@@ -6,24 +6,22 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::GazePairing;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::SafetyMode;
 use tomcom_session::TimelineEvent;
-use tomcom_session::event::{Event, TrialEndReason};
 use tomcom_session::preflight_checks::PreflightVerdict;
-use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom_session::tracker::TrackerEvent;
 
 use super::{SIZES, Stage, input, type_in};
+use crate::support::*;
 
 #[test]
 fn ages_stand_still_in_a_pause_and_after_the_end() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.at(1.0, Event::TrialStarted);
-    let shown = SessionTime::from_secs_f64(2.0);
+    let shown = at(2.0);
     stage.at(2.0, Event::OrderShown { order: "order_1".to_string(), dish: "tuna nigiri".to_string() });
     stage.at(5.0, Event::TrialPaused);
-    let age_s = |stage: &Stage, now_s: f64| stage.session.age(shown, SessionTime::from_secs_f64(now_s)).as_secs_f64();
+    let age_s = |stage: &Stage, now_s: f64| stage.session.age(shown, at(now_s)).as_secs_f64();
     assert_eq!(age_s(&stage, 100.0), 3.0);
     stage.at(105.0, Event::TrialResumed);
     assert_eq!(age_s(&stage, 106.0), 4.0);
@@ -46,8 +44,7 @@ fn the_rate_of_the_gaze_begins_anew_after_a_gap() {
         assert!((hz - 120.0).abs() < 1.0, "{hz} Hz");
         stage.wait(1.5);
         assert_eq!(stage.session.gaze_hz(stage.model.now), None);
-        let screen = stage.screen((120, 40));
-        assert!(screen.contains("NO GAZE") && screen.contains("no samples arrive now"), "{screen}");
+        stage.shows((120, 40), &["NO GAZE", "no samples arrive now"]);
     }
 }
 
@@ -58,10 +55,7 @@ fn a_lost_keyboard_is_an_alarm_and_an_event() {
     assert_eq!(focus(true), None, "it has it already");
     assert_eq!(focus(false), Some(Event::FocusLost));
     assert_eq!(focus(false), None);
-    for size in SIZES {
-        let screen = stage.screen(size);
-        assert!(screen.contains("NO KEYBOARD") && screen.contains("KEYBOARD FOCUS LOST"), "{screen}");
-    }
+    stage.shows_everywhere(&["NO KEYBOARD", "KEYBOARD FOCUS LOST"]);
     assert_eq!(
         input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(true))),
         Some(Event::FocusRegained)
@@ -92,8 +86,8 @@ fn the_notes_are_those_of_the_session() {
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('2')), None);
     stage.key(KeyCode::Char('?'));
-    let screen = stage.screen((120, 40));
-    assert!(screen.contains("asked for help") && !screen.contains("wrong recipe"), "{screen}");
+    stage.shows((120, 40), &["asked for help"]);
+    stage.hides((120, 40), &["wrong recipe"]);
 }
 
 #[test]
@@ -155,7 +149,7 @@ fn the_space_bar_stops_the_robot_where_a_trial_goes_on_while_a_note_is_typed() {
     stage.key(KeyCode::Char('0'));
     type_in(&mut stage, "late");
     stage.at(25.0, Event::TrialResumed);
-    assert!(stage.screen((80, 24)).contains("space STOP ROBOT"), "{}", stage.screen((80, 24)));
+    stage.shows((80, 24), &["space STOP ROBOT"]);
     assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "late".to_string() }));
 }
@@ -220,7 +214,7 @@ fn streams_that_are_sent_and_the_stream_of_gaze_are_checked() {
     let told = |text: &str| text.to_string();
     let missing = told("no stream \"glasses\" is in the Lab Streaming Layer");
     assert_eq!(found(&stage, "eye tracker"), (PreflightVerdict::Failed, missing));
-    assert!(stage.screen((120, 40)).contains("NO TRACKER"));
+    stage.shows((120, 40), &["NO TRACKER"]);
     let reason = "the stream glasses has no channel \"x\"; it has no labels";
     stage.at(1.0, Event::Tracker(TrackerEvent::Lost { reason: told(reason) }));
     assert_eq!(found(&stage, "eye tracker"), (PreflightVerdict::Failed, told(reason)));
@@ -241,15 +235,9 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
     let stopped = Event::RobotSafety { mode: SafetyMode::ProtectiveStop, force_n: Some(126.0), joint: None };
     stage.at(30.0, stopped);
     stage.at(60.0, Event::RobotTouched { force_n: 20.0 });
-    for size in SIZES {
-        let screen = stage.screen(size);
-        assert!(
-            screen.contains("Arm stopped: protective stop: contact with a person, 126 N; ^r resumes the arm"),
-            "{screen}"
-        );
-    }
+    stage.shows_everywhere(&["Arm stopped: protective stop: contact with a person, 126 N; ^r resumes the arm"]);
     stage.at(61.0, Event::RobotResumed);
-    assert!(!stage.screen((120, 40)).contains("Arm stopped"));
+    stage.hides((120, 40), &["Arm stopped"]);
 }
 
 /// Head line, robot panel and manual have one name for each safety mode.
@@ -294,12 +282,7 @@ fn the_summary_counts_the_stops_of_an_arm_that_can_touch() {
     }
     stage.at(40.0, Event::RobotStopped);
     stage.at(50.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
-    for size in SIZES {
-        let screen = stage.screen(size);
-        for words in ["2 protective stops, 1 emergency stop ", " 1 fault "] {
-            assert!(screen.contains(words), "{words} at {size:?}:\n{screen}");
-        }
-    }
+    stage.shows_everywhere(&["2 protective stops, 1 emergency stop ", " 1 fault "]);
     stage.session.spec.robot.arm = ArmKind::Timed;
     assert!(!stage.screen((80, 24)).contains("protective"), "the timed arm cannot touch anybody");
 }
@@ -327,6 +310,6 @@ fn how_a_tracker_pairs_is_shown_until_its_gaze_arrives() {
         stage.look(1.0 + 0.01 * f64::from(step), 0.5, 0.5);
     }
     assert_eq!((check(&stage), is_shown(&stage)), (None, [false; 3]), "gaze arrives");
-    stage.model.now = SessionTime::from_secs_f64(20.0);
+    stage.model.now = at(20.0);
     assert_eq!((check(&stage), is_shown(&stage)), (Some(found.to_string()), [true; 3]), "the tracker is gone");
 }

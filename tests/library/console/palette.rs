@@ -1,17 +1,20 @@
-//! The palette: every action with a key is found by typing and done as by its key; only signals it does not send.
+//! Lists that typing filters: the palette of all actions, and recordings.
 
-use crossterm::event::{KeyCode, KeyEventKind};
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use tomcom::console::lists::ListCursor;
 use tomcom::console::lists::actions;
+use tomcom::console::lists::{RecordingPicker, RecordingReply};
+use tomcom::console::view::recordings_page::draw_recordings;
+use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
-use tomcom_session::event::{Event, SignalEndReason};
-use tomcom_session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input, type_in};
-use crate::check_snapshot;
+use crate::support::*;
 
 #[test]
 fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
@@ -19,10 +22,7 @@ fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
     stage.control('k');
     for size in SIZES {
         stage.model.size = size;
-        let screen = stage.screen(size);
-        for text in ["RUNNING", "STOP ROBOT", "type to filter (no spaces)", "space stops the robot"] {
-            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
-        }
+        stage.shows(size, &["RUNNING", "STOP ROBOT", "type to filter (no spaces)", "space stops the robot"]);
     }
     stage.model.size = (80, 24);
     check_snapshot("console", "palette_80x24", stage.screen((80, 24)));
@@ -136,9 +136,7 @@ fn space_stops_the_robot_in_the_palette_and_esc_goes_back() {
 #[test]
 fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    stage.model.playback = Some(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    stage.replays(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
     stage.control('k');
     assert_eq!(stage.key(KeyCode::Char(' ')), None);
     type_in(&mut stage, "faster");
@@ -169,4 +167,56 @@ fn a_key_file_that_has_the_palettes_key_for_something_else_is_still_read() {
     stage.model.dialog = None;
     stage.key(KeyCode::Char(':'));
     assert!(matches!(stage.model.dialog, Some(Dialog::Palette(_))));
+}
+
+fn picker() -> RecordingPicker {
+    let row = |code: &str, condition: &str, state: &str, name: &str| {
+        [code, condition, "2026-03-14 10:22", "15:00", state, name].map(str::to_string).to_vec()
+    };
+    let headings = ["code", "condition", "date", "length", "state", "recording"].map(str::to_string).to_vec();
+    let rows = vec![
+        row("P07", "unassisted", "whole", "2026-03-14-P07-1"),
+        row("P07", "wizard", "cut", "2026-03-14-P07-2"),
+        row("P08", "wizard", "excluded", "2026-03-15-P08-1"),
+    ];
+    RecordingPicker::new("Which recording of sessions?".to_string(), headings, rows)
+}
+
+fn press(picker: &mut RecordingPicker, code: KeyCode) -> Option<RecordingReply> {
+    picker.key(&KeyEvent::new(code, KeyModifiers::NONE))
+}
+
+/// The list as it is drawn at 80x24.
+fn screen(picker: &RecordingPicker) -> String {
+    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("a test terminal");
+    terminal.draw(|frame| draw_recordings(picker, theme, frame)).expect("drawn");
+    terminal.backend().to_string()
+}
+
+#[test]
+fn columns_that_tell_recordings_apart_stay_where_not_all_fit() {
+    for code in ["P07", "GROUP-B-P0007"] {
+        let mut picker = picker();
+        picker.rows = (1..=3)
+            .map(|trial| {
+                let name = format!("2026-03-14-{code}-{trial}");
+                [code, "wizard with advice", "2026-03-14 10:22", "15:00", "unreadable", &name]
+                    .map(str::to_string)
+                    .to_vec()
+            })
+            .collect();
+        let screen = screen(&picker);
+        assert!(!screen.contains("length") && screen.contains("wizard with advice"), "{screen}");
+        for trial in 1..=3 {
+            assert!(screen.contains(&format!("{code}-{trial} ")), "trial {trial} in\n{screen}");
+        }
+    }
+}
+
+#[test]
+fn the_list_is_a_table_with_its_filter_above() {
+    let mut picker = picker();
+    press(&mut picker, KeyCode::Char('w'));
+    check_snapshot("console", "recordings_80x24", screen(&picker));
 }

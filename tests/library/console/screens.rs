@@ -1,6 +1,10 @@
-//! Whole screens at each size: everything that a wizard has to recognise at a glance.
+//! Whole screens at each size: what a wizard has to recognise at a glance, with colours and without.
 
 use crossterm::event::KeyCode;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Cell;
+use ratatui::style::{Color, Modifier};
 use tomcom::console::console_model::NoticeLevel;
 use tomcom::console::console_model::Playback;
 use tomcom::console::console_model::{Dialog, RecordingStatus};
@@ -8,17 +12,11 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::panels::Panel;
 use tomcom::console::panels::screen;
 use tomcom::console::text_columns::squeeze;
-use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::Agent;
-use tomcom_session::event::{Event, TrialEndReason};
-use tomcom_session::settings::{ParticipantKind, WizardVisibility};
+use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
+use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update, view};
 
 use super::{SIZES, Stage, panels};
-use crate::check_snapshot;
+use crate::support::*;
 
 #[test]
 fn a_running_session_at_the_least_size() {
@@ -38,24 +36,6 @@ fn the_participants_keys_stand_at_their_places() {
 }
 
 #[test]
-fn keys_of_places_look_like_keys_and_names_are_whole_at_the_least_size() {
-    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    let places: [&[&str]; 2] = [
-        &["[r]robot hand", "[a]assembly board", "[c]cutting board", "[m] rolling mat"],
-        &["[a]assembly board", "[f]cutting board", "[b] rolling mat", "[e] rice"],
-    ];
-    for names in places {
-        for size in [(80, 24), (120, 40)] {
-            let screen = stage.screen(size);
-            for name in names {
-                assert!(screen.contains(name), "{name} in\n{screen}");
-            }
-        }
-        stage.key(KeyCode::Tab);
-    }
-}
-
-#[test]
 fn text_that_is_cut_ends_with_an_ellipsis() {
     let shown = [(18, "cooked rice + nori"), (17, "cooked rice +nori"), (15, "cooked rice +n…"), (3, "co…")];
     for (columns, words) in shown {
@@ -68,7 +48,7 @@ fn a_replay_has_one_clock() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.keys =
         KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let trial_length = SessionTime::from_secs_f64(90.0);
+    let trial_length = at(90.0);
     let playback = Playback { trial_length, event: 40, events: 90, ..Playback::new("P01-1".to_string()) };
     stage.model.playback = Some(playback);
     for size in SIZES {
@@ -78,7 +58,7 @@ fn a_replay_has_one_clock() {
     }
     let ready = Stage::new("sushi", ParticipantKind::Simulated);
     stage.session = ready.session;
-    assert!(stage.screen((80, 24)).contains("before the trial, 0:00 of 1:30"), "{}", stage.screen((80, 24)));
+    stage.shows((80, 24), &["before the trial, 0:00 of 1:30"]);
 }
 
 #[test]
@@ -115,17 +95,17 @@ fn a_row_of_the_events_says_what_a_press_took_put_or_made() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.press(22.7, Agent::Human, "counter");
     stage.model.alone = Some(Panel::Events);
-    let screen = stage.screen((120, 40));
-    for row in [
-        "human     take rice ",
-        "human     cooking pot: puts raw rice",
-        "human     cook: makes cooked rice",
-        "human     cooking pot: takes cooked rice",
-        "human     assembly board: stacks cooked rice",
-        "robot     cut: makes cut tuna",
-    ] {
-        assert!(screen.contains(row), "{row:?} in\n{screen}");
-    }
+    stage.shows(
+        (120, 40),
+        &[
+            "human     take rice ",
+            "human     cooking pot: puts raw rice",
+            "human     cook: makes cooked rice",
+            "human     cooking pot: takes cooked rice",
+            "human     assembly board: stacks cooked rice",
+            "robot     cut: makes cut tuna",
+        ],
+    );
 }
 
 #[test]
@@ -248,20 +228,23 @@ fn a_stopped_robot_is_seen_at_every_size_with_room_for_the_words() {
 fn a_question_is_seen_in_the_smallest_window() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.control('c');
-    let screen = stage.screen((50, 12));
-    assert!(screen.contains("Quit tomcom? y or the same key again: yes"), "{screen}");
+    stage.shows((50, 12), &["Quit tomcom? y or the same key again: yes"]);
 }
 
 #[test]
 fn notes_of_one_moment_stand_beside_each_other_in_the_timeline() {
+    let row = |stage: &Stage, size: (u16, u16)| {
+        let screen = stage.screen(size);
+        let row = screen.lines().find(|line| line.contains(if size.0 == 80 { " events " } else { " notes " }));
+        row.unwrap_or_else(|| panic!("no row at {size:?}:\n{screen}")).to_string()
+    };
+    let before = Stage::sushi(ParticipantKind::Simulated);
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     for note in ["wrong recipe", "overlooked a change", "slip"] {
         stage.at(22.6, Event::Marker { note: note.to_string() });
     }
     for size in SIZES {
-        let screen = stage.screen(size);
-        let row = screen.lines().find(|line| line.contains(if size.0 == 80 { " events " } else { " notes " }));
-        assert!(row.is_some_and(|row| row.contains("123")), "{size:?}:\n{screen}");
+        assert!(!row(&before, size).contains("123") && row(&stage, size).contains("123"), "{}", row(&stage, size));
     }
 }
 
@@ -271,9 +254,9 @@ fn the_screen_stands_while_the_trial_stands() {
     stage.at(22.6, Event::TrialPaused);
     let below_head = |stage: &Stage, size| stage.screen(size).lines().skip(1).map(str::to_string).collect::<Vec<_>>();
     for size in SIZES {
-        stage.model.now = SessionTime::from_secs_f64(30.0);
+        stage.model.now = at(30.0);
         let early = below_head(&stage, size);
-        stage.model.now = SessionTime::from_secs_f64(330.0);
+        stage.model.now = at(330.0);
         assert_eq!(below_head(&stage, size), early);
     }
     let events = stage.screen((200, 60));
@@ -284,18 +267,16 @@ fn the_screen_stands_while_the_trial_stands() {
 fn a_card_tells_how_to_start_and_another_what_came_of_the_trial() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.wait(1.0);
-    for size in SIZES {
-        let screen = stage.screen(size);
-        assert!(screen.contains("Ready to start") && screen.contains(". start the trial"), "{screen}");
-    }
+    stage.shows_everywhere(&["Ready to start", ". start the trial"]);
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
-    for size in SIZES {
-        let screen = stage.screen(size);
-        for words in ["0 served", "9 by the human", "2 in 9 presses of the human (22 %)", "2 by the wizard", "0:27"] {
-            assert!(screen.contains(words), "{words} is missing:\n{screen}");
-        }
-    }
+    stage.shows_everywhere(&[
+        "0 served",
+        "9 by the human",
+        "2 in 9 presses of the human (22 %)",
+        "2 by the wizard",
+        "0:27",
+    ]);
     check_snapshot("console", "over_120x40", stage.screen((120, 40)));
 }
 
@@ -307,12 +288,7 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     stage.model.playback = Some(playback);
-    for size in SIZES {
-        let screen = stage.screen(size);
-        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x", " recording "] {
-            assert!(screen.contains(words), "{words} is missing:\n{screen}");
-        }
-    }
+    stage.shows_everywhere(&["q quit", "? help", "left/right step", "0 served", "play 1x", " recording "]);
 }
 
 #[test]
@@ -366,4 +342,78 @@ fn what_the_wizard_sees_is_told_by_size_visibility_and_dialog() {
     let seen = screen(&stage.session, &stage.model);
     assert!(!seen.panels.iter().any(|panel| panel == "belief" || panel == "recommendation"), "{seen:?}");
     assert_eq!((seen.visibility, seen.dialog.as_deref()), (WizardVisibility::State, Some("correct_place")));
+}
+
+/// What the cells look like, a line for each row, a letter for each style: without colour nothing may rest on colour.
+#[test]
+fn without_colour_every_meaning_has_a_sign_or_a_weight() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.theme = Theme { colour: false, unicode: true, ground: TerminalBackground::Dark };
+    for (columns, rows) in SIZES {
+        let mut terminal = Terminal::new(TestBackend::new(columns, rows)).expect("a test terminal");
+        terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
+        let buffer = terminal.backend().buffer();
+        assert!(buffer.content.iter().all(|cell| cell.fg == Color::Reset && cell.bg == Color::Reset));
+        let weights = |cell: &Cell| match cell.modifier {
+            m if m.contains(Modifier::REVERSED) => '#',
+            m if m.contains(Modifier::BOLD) => '*',
+            m if m.contains(Modifier::DIM) => '-',
+            _ if cell.symbol() == " " => ' ',
+            _ => '.',
+        };
+        let lines: Vec<String> =
+            buffer.content.chunks(usize::from(columns)).map(|row| row.iter().map(weights).collect()).collect();
+        if (columns, rows) == SIZES[0] {
+            check_snapshot("console", "no_color_80x24", lines.join("\n"));
+        }
+    }
+}
+
+/// The relative luminance of a colour (WCAG 2.1).
+fn luminance(rgb: [u8; 3]) -> f64 {
+    let linear = rgb.map(|value| match f64::from(value) / 255.0 {
+        low if low <= 0.04045 => low / 12.92,
+        high => ((high + 0.055) / 1.055).powf(2.4),
+    });
+    0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+}
+
+/// The contrast ratio of two colours, 1 to 21 (WCAG 2.1).
+fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+/// A colour of the cube or the greys of xterm's 256, which are the same in every terminal.
+fn xterm(index: u8) -> [u8; 3] {
+    match index {
+        0..=15 => panic!("{index} is one of the colours that everybody sets otherwise"),
+        16..=231 => [36, 6, 1].map(|step| [0, 95, 135, 175, 215, 255][usize::from((index - 16) / step % 6)]),
+        grey => [8 + 10 * (grey - 232); 3],
+    }
+}
+
+#[test]
+fn colours_keep_their_contrast_on_dark_and_light_terminals() {
+    use TextRole::{Alarm, FalseBelief, Gaze, Human, Quiet, Robot, Signal};
+    // Black, and the backgrounds of VS Code, One Dark and Solarized; white, and those of Solarized and GitHub's code.
+    let dark = [[0, 0, 0], [0x1e, 0x1e, 0x1e], [0x28, 0x2c, 0x34], [0x00, 0x2b, 0x36]];
+    let light = [[255, 255, 255], [0xfd, 0xf6, 0xe3], [0xf6, 0xf8, 0xfa]];
+    for (ground, backgrounds) in [(TerminalBackground::Dark, &dark[..]), (TerminalBackground::Light, &light[..])] {
+        let colour = |role| xterm(Theme::colour(ground, role).expect("a colour of its own"));
+        for background in backgrounds {
+            for role in [Quiet, Human, Robot, Signal, Gaze, Alarm, FalseBelief] {
+                let ratio = contrast(colour(role), *background);
+                assert!(ratio >= 4.5, "{role:?} on {background:02x?}: {ratio:.2}");
+            }
+            let ratio = contrast(colour(TextRole::Frame), *background);
+            assert!(
+                (1.5..4.5).contains(&ratio),
+                "lines are there, and quieter than text, on {background:02x?}: {ratio:.2}"
+            );
+        }
+        for other in [Quiet, Human, Robot, Signal, Gaze, Alarm] {
+            assert_ne!(colour(other), colour(FalseBelief), "one colour is that of false beliefs alone");
+        }
+    }
 }

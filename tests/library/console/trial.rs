@@ -1,46 +1,18 @@
-//! A trial at the console: started, paused, aborted, excluded, and the checks before it.
+//! A trial at the console: the checks before it, started, paused, aborted, excluded; and the check of the gaze.
 
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::Dialog;
+use tomcom::console::gaze_check::AccuracyCheckAction;
 use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
-use tomcom_core::gaze::GazeSample;
+use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
-use tomcom_session::TrialPhase;
-use tomcom_session::event::Event;
+use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::preflight_checks::PreflightVerdict;
-use tomcom_session::settings::{GazeSource, ParticipantKind};
 
 use super::{SIZES, Stage, input, type_in};
-use crate::check_snapshot;
-
-#[test]
-fn the_trial_is_started_paused_and_ended_by_keys() {
-    let mut stage = Stage::new("burger", ParticipantKind::Simulated);
-    assert_eq!(input(stage.key(KeyCode::Char('a'))), None, "no signal before the trial");
-    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
-    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialStarted));
-    stage.at(1.0, Event::TrialStarted);
-    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialPaused));
-    stage.at(2.0, Event::TrialPaused);
-    assert_eq!(stage.session.phase, TrialPhase::Paused);
-    assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialResumed));
-    stage.at(3.0, Event::TrialResumed);
-    assert_eq!(input(stage.key(KeyCode::Char('3'))), Some(Event::Marker { note: "slip".to_string() }));
-    assert_eq!(stage.control('e'), None);
-    assert_eq!(stage.model.dialog, Some(Dialog::EndTrial));
-    stage.wait(1.0);
-    assert!(matches!(input(stage.key(KeyCode::Char('y'))), Some(Event::TrialEnded { .. })));
-    assert_eq!(stage.control('c'), None);
-    assert_eq!(stage.model.dialog, Some(Dialog::Quit));
-    assert_eq!(stage.key(KeyCode::Char('n')), None);
-    assert_eq!(stage.model.dialog, None);
-    stage.wait(1.0);
-    stage.control('c');
-    stage.wait(1.0);
-    assert_eq!(stage.key(KeyCode::Char('y')), Some(ConsoleCommand::Quit));
-}
+use crate::support::*;
 
 #[test]
 fn recorded_gaze_is_told_before_the_trial_with_what_is_odd_in_it() {
@@ -99,7 +71,7 @@ fn a_trial_is_excluded_and_included_by_one_key() {
     let excluded = Event::TrialExcluded { reason: "interrupted".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(excluded.clone()));
     stage.at(23.0, excluded);
-    assert!(stage.screen((120, 40)).contains("EXCLUDED"));
+    stage.shows((120, 40), &["EXCLUDED"]);
     stage.wait(1.0);
     assert_eq!(input(stage.control('l')), Some(Event::TrialIncluded));
 }
@@ -128,11 +100,13 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     stage.model.free_bytes = Some(100 << 20);
     assert_eq!(stage.key(KeyCode::Char('.')), None);
     assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
-    for size in SIZES {
-        let found = ["FAILED   gaze ", "start the program that sends gaze to port 50021", "FAILED   robot "];
-        stage.shows(size, &found);
-        stage.shows(size, &["warning  free space   104 MB free on the disk", "o start the trial anyway"]);
-    }
+    stage.shows_everywhere(&[
+        "FAILED   gaze ",
+        "start the program that sends gaze to port 50021",
+        "FAILED   robot ",
+        "warning  free space   104 MB free on the disk",
+        "o start the trial anyway",
+    ]);
     check_snapshot("console", "preflight_80x24", stage.screen((80, 24)));
     // The key that opened the list does not start the trial, held or pressed again.
     for gap_s in [0.5, 0.03, 1.0] {
@@ -157,7 +131,7 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     }
     stage.wait(0.01);
     stage.model.dialog = Some(Dialog::Preflight);
-    assert!(stage.screen((80, 24)).contains("usable, confidence 0.97"), "{}", stage.screen((80, 24)));
+    stage.shows((80, 24), &["usable, confidence 0.97"]);
     assert!(matches!(
         stage.key(KeyCode::Char('.')),
         Some(ConsoleCommand::Start(Event::Preflight { overridden: false, .. }))
@@ -175,4 +149,74 @@ fn an_upright_page_has_no_gaze_and_the_checks_say_so() {
     assert!(mouse.remedy.is_some_and(|remedy| remedy.contains("turn the screen")), "on an upright page");
     assert_eq!(check(true, GazeSource::None).verdict, PreflightVerdict::Ok);
     assert_eq!(check(false, GazeSource::Mouse).verdict, PreflightVerdict::Ok);
+}
+
+#[test]
+fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    let begun = input(stage.control('v')).expect("a check begins");
+    assert_eq!(begun, Event::Calibration(GazeCheckEvent::begin()));
+    stage.at(1.0, begun);
+    stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 1 }));
+    stage.shows_everywhere(&["+ look here: target 2 of 5"]);
+    let target = |samples, accuracy_deg| TargetAccuracy { samples, accuracy_deg };
+    let found = GazeAccuracy {
+        accuracy_deg: 2.31,
+        corrected_deg: 0.42,
+        precision_deg: 0.19,
+        offset: [0.02, -0.01],
+        targets: vec![target(130, Some(2.1)), target(2, None), target(131, Some(2.6))],
+    };
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: Some(found) }));
+    stage.shows_everywhere(&[
+        "2.31 deg, 8.1 cm on the display: usable",
+        "0.42 deg, 1.5 cm without the offset: good",
+        "2.1, no gaze, 2.6 deg, centre target first",
+    ]);
+    check_snapshot("console", "calibration_80x24", stage.screen((80, 24)));
+    stage.wait(1.0);
+    // Letters choose, and only enter takes the gaze.
+    for (letter, marked) in
+        [('u', "enter    u  accept the gaze without"), ('o', "enter    o  accept the gaze with its")]
+    {
+        assert_eq!(stage.key(KeyCode::Char(letter)), None);
+        assert!(stage.screen((80, 24)).contains(marked), "{}", stage.screen((80, 24)));
+    }
+    let accepted = input(stage.key(KeyCode::Enter));
+    assert_eq!(accepted, Some(Event::Calibration(GazeCheckEvent::Accepted { corrected: true })));
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn enter_takes_the_better_gaze_and_none_that_is_too_far_off() {
+    let best = |accuracy_deg, corrected_deg| {
+        let found =
+            GazeAccuracy { accuracy_deg, corrected_deg, precision_deg: 0.2, offset: [0.0, 0.0], targets: Vec::new() };
+        AccuracyCheckAction::for_result(Some(&found))
+    };
+    assert_eq!(best(2.0, 0.5), AccuracyCheckAction::Corrected);
+    assert_eq!(best(1.0, 1.4), AccuracyCheckAction::AsItIs);
+    assert_eq!(best(8.5, 9.7), AccuracyCheckAction::Repeat);
+    assert_eq!(AccuracyCheckAction::for_result(None), AccuracyCheckAction::Repeat);
+}
+
+#[test]
+fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
+    let mut stage = Stage::new("burger", ParticipantKind::Simulated);
+    let begun = input(stage.control('v')).expect("a check begins");
+    stage.at(1.0, begun);
+    stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 4 }));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: None }));
+    stage.shows((120, 40), &["too few usable gaze samples"]);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('o')), None);
+    for key in [KeyCode::Char('r'), KeyCode::Enter] {
+        assert_eq!(input(stage.key(key)), Some(Event::Calibration(GazeCheckEvent::begin())));
+        assert_eq!(stage.model.dialog, Some(Dialog::Calibration));
+    }
+    let left = input(stage.key(KeyCode::Esc));
+    assert_eq!(left, Some(Event::Calibration(GazeCheckEvent::Dismissed)));
+    assert_eq!(stage.model.dialog, None);
 }

@@ -1,18 +1,14 @@
 //! The check of the gaze with targets in a session.
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure};
 use tomcom_session::admit::is_external;
-use tomcom_session::engine::SessionEngine;
 use tomcom_session::gaze_check::{GazeCheckEvent, RunningGazeCheck};
-use tomcom_session::{Event, TimestampedEvent};
 
 use super::engine;
+use crate::support::*;
 
 /// Checks the calibration as the live session does, from `from_s` on; all events of the check.
 fn check_calibration(engine: &mut SessionEngine, from_s: f64, accept: GazeCheckEvent) -> Vec<TimestampedEvent> {
-    let at = SessionTime::from_secs_f64;
     let mut events = Vec::new();
     let mut input = |engine: &mut SessionEngine, time, event| {
         let outcome = engine.input(time, event);
@@ -37,7 +33,6 @@ fn simulated_gaze_is_checked_by_targets_corrected_and_comes_out_the_same_again()
     let events = check_calibration(&mut checked, 2.0, GazeCheckEvent::Accepted { corrected: true });
     let calibrated = checked.session().calibrated.clone().expect("accepted");
     let found = &calibrated.found;
-    println!("{found:?}");
     assert!(found.targets.iter().all(|target| (100..=140).contains(&target.samples)), "{found:?}");
     // The simulated tracker has an offset of about a degree, and tremor of 4 mm around it, 2 m away.
     assert!(found.corrected_deg < found.accuracy_deg && found.accuracy_deg < 3.0, "{found:?}");
@@ -64,7 +59,7 @@ fn a_check_changes_nothing_in_the_trial_but_the_offset_of_the_gaze() {
         if checks {
             check_calibration(&mut engine, 0.0, GazeCheckEvent::Dismissed);
         }
-        let start = SessionTime::from_secs_f64(60.0);
+        let start = at(60.0);
         let mut events = engine.input(start, Event::TrialStarted).events;
         while let Some(due) = engine.next_due() {
             assert!(due >= start);

@@ -3,17 +3,16 @@
 use std::time::{Duration, Instant};
 
 use rmpv::Value;
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_devices::pupil::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
 use tomcom_devices::pupil::message::{self, CaptureNotification, PupilBlink};
 use tomcom_devices::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom_devices::pupil::{CaptureConfiguration, follow};
-use tomcom_session::settings::GazeSource;
+use tomcom_session::preflight_checks;
 use tomcom_session::tracker::TrackerEvent;
-use tomcom_session::{Event, preflight_checks};
 
 use super::engine;
+use crate::support::*;
 
 /// Published by Pupil's own detectors: see tests/pupil/README.md.
 const MESSAGES: &[u8] = include_bytes!("../../pupil/online_detectors.msgpack");

@@ -1,19 +1,10 @@
 //! Drop-outs of the tracker in whole simulated sessions: in them the estimate is worse than with full gaze and hardly worse than without
 //! any, and it does not jump where they begin or end.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{AspectId, AspectKind, Kitchen, State};
 use tomcom_core::mind::filter::BeliefFilter;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::files::SessionSetup;
-use tomcom_session::settings::{ArmKind, Condition, GazeSource};
 use tomcom_session::tracker::GazeGapSpec;
-use tomcom_session::{Event, SessionSpec, TimestampedEvent, TrialPhase};
+
+use crate::support::*;
 
 /// Seed and number of the sessions.
 const SEED: u64 = 61;
@@ -127,12 +118,12 @@ fn largest_change(before: &[f64], after: &[f64]) -> f64 {
 }
 
 fn later(time: SessionTime, seconds: f64) -> SessionTime {
-    time + SessionTime::from_secs_f64(seconds)
+    time + at(seconds)
 }
 
 #[test]
 fn the_estimate_does_not_jump_where_a_drop_out_begins_or_ends() {
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let files = session_file("default");
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
     let (human, looking) = (&files.spec.human, &files.spec.human.looking);
     // What plausible looks, and what a look that rests on a place, may at most tell within a time.
@@ -158,7 +149,7 @@ fn the_estimate_does_not_jump_where_a_drop_out_begins_or_ends() {
                     ends += 1;
                     // The first sample stands for the time of one sample before it.
                     let sample_s = human.perception.max_sample_s;
-                    let before = known(filter, &kitchen, state, first - SessionTime::from_secs_f64(sample_s));
+                    let before = known(filter, &kitchen, state, first - at(sample_s));
                     let after = known(&engine.follower().filter, &kitchen, state, first);
                     for (index, (before, after)) in before.iter().zip(&after).enumerate() {
                         // The area around the fixation may reach places beside the one that is looked at.
@@ -179,7 +170,7 @@ fn the_estimate_does_not_jump_where_a_drop_out_begins_or_ends() {
 
 #[test]
 fn in_drop_outs_the_estimate_is_worse_than_with_full_gaze_and_hardly_worse_than_with_none() {
-    let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let files = session_file("default");
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
     let mut sums = [0.0; 3];
     let (mut gone, mut all) = (0, 0);
@@ -196,9 +187,6 @@ fn in_drop_outs_the_estimate_is_worse_than_with_full_gaze_and_hardly_worse_than_
     let share = f64::from(gone) / all as f64;
     assert!((0.3..0.7).contains(&share), "gaze is gone at {share} of the presses");
     let [full, gaps, none] = sums.map(|sum| sum / f64::from(gone));
-    println!(
-        "mean squared error in drop-outs: {full:.4} with full gaze, {gaps:.4} with drop-outs, {none:.4} without gaze"
-    );
     // What was seen before a drop-out is of no use in it with the model `plain`: these people differ from it.
     assert!(
         full < 0.8 * gaps && gaps < 1.1 * none,

@@ -1,11 +1,12 @@
 //! Intervals of a fit hold the truth as often as they say, and a fit is quick, on a likelihood like the program's whose truth and
 //! exact value are known: people with beliefs about three facts choose among eight buttons, and beliefs are averaged over particles.
 
-use rand::RngExt;
-use tomcom_core::base::rng::{Stream, stream};
+use tomcom_core::base::rng::Stream;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_study::analysis::fitting::ascent::BoundReached;
 use tomcom_study::analysis::fitting::ascent::{LikelihoodMaximum, VariableEstimate, ascend};
+
+use crate::support::*;
 
 const BUTTONS: usize = 8;
 /// Combinations of three facts that are known or not.

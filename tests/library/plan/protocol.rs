@@ -1,26 +1,12 @@
 //! What happens around a trial: steps, items, and recordings that are cut or left.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome, WantedRecording};
-use tomcom_session::protocol::ProtocolEvent;
-use tomcom_session::study_arm::StudyArm;
-use tomcom_session::verify::verify;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, LogHeader, TrialPhase};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, update};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome};
 use tomcom_study::files::recordings;
 
 use super::{files, folder, study};
+use crate::support::*;
 
 /// A recording of the plan, driven as a wizard would, without a console.
 struct Run {
@@ -48,7 +34,7 @@ impl Run {
     /// The reason why an input is refused, if it is.
     fn input(&mut self, event: Event) -> Option<String> {
         self.now_s += 0.5;
-        let outcome = self.engine.input(SessionTime::from_secs_f64(self.now_s), event);
+        let outcome = self.engine.input(at(self.now_s), event);
         outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
         outcome.refused
     }
@@ -190,13 +176,10 @@ fn hasty_answers_are_all_taken() {
     run.next_phase();
     run.trial();
     run.next_phase();
-    let keys =
-        KeyBindings::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyFileBindings::default());
-    let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut model = ConsoleModel::new(keys.expect("keys"), theme, (80, 24));
+    let mut model = console_model(&run.engine.session().kitchen, &run.engine.session().spec, (80, 24));
     let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
     for (index, item) in items.iter().enumerate() {
-        model.clock = SessionTime::from_secs_f64(5.0 + 0.3 * index as f64);
+        model.clock = at(5.0 + 0.3 * index as f64);
         let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Char('5'), KeyModifiers::NONE));
         let Some(ConsoleCommand::Input(event)) = update(&mut model, run.engine.session(), key) else {
             panic!("item {}: {:?}", item.id, model.notice)
@@ -205,7 +188,7 @@ fn hasty_answers_are_all_taken() {
         assert_eq!(run.input(event), None);
     }
     for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {
-        model.clock = SessionTime::from_secs_f64(model.clock.as_secs_f64() + gap_s);
+        model.clock = at(model.clock.as_secs_f64() + gap_s);
         let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
         let command = update(&mut model, run.engine.session(), key);
         assert_eq!(command.is_some(), counts, "after {gap_s} s: {command:?}");

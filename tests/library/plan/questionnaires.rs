@@ -1,21 +1,11 @@
 //! Questionnaires with items of every kind: what is an answer, what a log holds, and what the files of the program ask.
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::parse::parse;
-use tomcom_session::log::LogWriter;
-use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
-use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec};
 use tomcom_session::questionnaire::AnswerValue;
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader};
 
-use super::{files, folder};
+use super::files;
+use crate::support::*;
 
 fn shipped(name: &str) -> Questionnaire {
     let path = Path::new("sessions/questionnaires").join(name);
@@ -113,8 +103,6 @@ fn the_questionnaires_ask_the_same_in_both_languages() {
     }
 }
 
-/// A recording that begins with a questionnaire about the person: answers are events as they are given, sliders and choices of several
-/// stay until the next item is asked for, and all of it comes out the same again.
 #[test]
 fn the_person_is_asked_before_the_first_trial_and_only_then() {
     let mut files = files();
@@ -123,52 +111,12 @@ fn the_person_is_asked_before_the_first_trial_and_only_then() {
     plan.questionnaire.insert(0, spec("questionnaires/demographics.toml"));
     files.questionnaires.insert(0, shipped("demographics.toml"));
     let study = files.study().expect("a plan");
-    let settings = |slot| study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed: true });
     let asked = |slot| {
-        let (spec, _) = settings(slot);
+        let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed: true });
         let phases = spec.step.expect("a step").phases;
         let before = phases.iter().take_while(|phase| **phase != PhaseSpec::Trial).count();
         (phases.len(), before)
     };
     assert_eq!(asked(1), (3, 1), "before the first trial, and what is asked after it");
     assert_eq!(asked(2).1, 0, "not again before the second");
-
-    let (spec, trial) = settings(1);
-    let out = folder("person");
-    let header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
-    let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("the folder can be written");
-    let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
-    let mut now_s = 0.0;
-    let mut tell = |engine: &mut SessionEngine, event: ProtocolEvent| {
-        now_s += 0.5;
-        let outcome = engine.input(SessionTime::from_secs_f64(now_s), Event::Protocol(event));
-        outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
-        outcome.refused
-    };
-    let item = |engine: &SessionEngine| {
-        let (asked, protocol) = (engine.session().questionnaire(), engine.session().protocol.as_ref());
-        asked.zip(protocol).and_then(|(asked, protocol)| Some(asked.items.get(protocol.item)?.id.clone()))
-    };
-    tell(&mut engine, ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 1 });
-    let mut answer = |engine: &mut SessionEngine, id: &str, answer: AnswerValue| {
-        assert_eq!(item(engine).as_deref(), Some(id));
-        tell(engine, ProtocolEvent::ItemAnswered { item: id.to_string(), answer })
-    };
-    assert!(answer(&mut engine, "age", AnswerValue::Number(17)).is_some());
-    assert_eq!(answer(&mut engine, "age", AnswerValue::Number(31)), None);
-    assert_eq!(answer(&mut engine, "gender", text("prefer \"not\" to")), None);
-    assert_eq!(answer(&mut engine, "handedness", text("left")), None);
-    assert_eq!(answer(&mut engine, "vision_aids", options(&["glasses"])), None);
-    assert_eq!(
-        answer(&mut engine, "vision_aids", options(&["glasses", "lenses"])),
-        None,
-        "it stays: several can be chosen"
-    );
-    let next = engine.session().next_item().expect("one more");
-    assert_eq!(tell(&mut engine, next), None);
-    assert_eq!(item(&engine).as_deref(), Some("colour_vision"));
-    let recording = log.folder().to_path_buf();
-    let found = verify(&recording).expect("readable");
-    assert!(found.verified && found.cut, "{found:?}");
 }

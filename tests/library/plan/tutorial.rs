@@ -1,24 +1,13 @@
 //! The participant's tutorial: what its steps ask for, what the page is told meanwhile, and that it is no part of the trial.
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
-use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::run::leaving::TutorialProgress;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_devices::sight::{DisplayStage, ShownContent, sight};
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
-use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom_session::settings::ParticipantKind;
+use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
+use tomcom_session::protocol::StudyPhase;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader, Session};
 
 use super::{files, folder, study};
+use crate::support::*;
 
 const BY_PARTICIPANT: TutorialPageTurner = TutorialPageTurner::Participant;
 
@@ -50,7 +39,7 @@ impl Lesson {
 
     fn input(&mut self, event: Event) -> Option<String> {
         self.now_s += 0.5;
-        let outcome = self.engine.input(SessionTime::from_secs_f64(self.now_s), event);
+        let outcome = self.engine.input(at(self.now_s), event);
         outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
         outcome.refused
     }
@@ -231,17 +220,22 @@ fn a_plan_has_the_tutorial_once_and_on_the_display_only() {
 }
 
 #[test]
-fn german_and_english_ask_for_the_same() {
-    let english = files().tutorial.expect("a tutorial");
-    let text = fs::read_to_string("sessions/tutorials/sushi.de.toml").expect("the file of the project");
-    let german: tomcom_session::plan::Tutorial = toml::from_str(&text).expect("a tutorial");
-    assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
-    german.check().and_then(|()| german.check_kitchen(&files().kitchen.kitchen)).expect("it fits the kitchen");
-    assert_eq!(english.steps.len(), german.steps.len());
-    for (one, other) in english.steps.iter().zip(&german.steps) {
-        assert_ne!(one.text, other.text, "{}", one.id);
-        assert_eq!((&one.id, one.kind, &one.presses, one.right), (&other.id, other.kind, &other.presses, other.right));
-        assert_eq!((&one.point_at, &one.dish, one.seconds), (&other.point_at, &other.dish, other.seconds));
+fn german_and_english_ask_for_the_same_and_fit_their_kitchen() {
+    for layout in ["sushi", "burger"] {
+        let [english, german] = ["toml", "de.toml"].map(|ending| {
+            let text = fs::read_to_string(format!("sessions/tutorials/{layout}.{ending}")).expect("the project's file");
+            let tutorial: Tutorial = toml::from_str(&text).expect("a tutorial");
+            tutorial.check().and_then(|()| tutorial.check_kitchen(&kitchen(layout))).expect("it fits the kitchen");
+            tutorial
+        });
+        assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
+        assert_eq!(english.steps.len(), german.steps.len());
+        for (one, other) in english.steps.iter().zip(&german.steps) {
+            assert_ne!(one.text, other.text, "{}", one.id);
+            let asked = |step: &TutorialStep| (step.id.clone(), step.kind, step.presses.clone(), step.right);
+            assert_eq!(asked(one), asked(other), "{layout}");
+            assert_eq!((&one.point_at, &one.dish, one.seconds), (&other.point_at, &other.dish, other.seconds));
+        }
     }
 }
 
@@ -310,19 +304,4 @@ fn the_time_of_recipe_cards_continues_when_they_are_shown_again() {
     let log = lesson.log.folder().join(LOG_NAME);
     lesson.log.flush().expect("the log can be written");
     assert!(verify(&log).expect("a recording").verified);
-}
-
-#[test]
-fn the_tutorials_of_the_other_kitchen_fit_it() {
-    let kitchen = read_kitchen(Path::new("layouts/burger.toml")).expect("a kitchen").kitchen;
-    let [english, german] = ["burger.toml", "burger.de.toml"].map(|name| {
-        let text = fs::read_to_string(Path::new("sessions/tutorials").join(name)).expect("the file of the project");
-        let tutorial: Tutorial = toml::from_str(&text).expect("a tutorial");
-        tutorial.check().and_then(|()| tutorial.check_kitchen(&kitchen)).expect("it fits the kitchen");
-        tutorial
-    });
-    assert_eq!(english.steps.len(), german.steps.len());
-    for (one, other) in english.steps.iter().zip(&german.steps) {
-        assert_eq!((&one.id, one.kind, &one.presses, one.right), (&other.id, other.kind, &other.presses, other.right));
-    }
 }

@@ -1,18 +1,19 @@
 //! Numbers in settings files: each has a range, extremes beyond it are refused where the file is read, and with those within
 //! it a session runs and writes a log that its own reader accepts.
 
-mod files;
-mod recorded;
 mod simulated;
-
-use std::fs;
-use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::read_kitchen;
 use tomcom_core::base::number_range::{NumberRange, numbers};
-use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::files::LAYOUT_RANGES;
+use tomcom_core::mind::choice::ChoiceModel;
+use tomcom_core::mind::choice::ChoiceParameters;
+use tomcom_core::robot::ArmSample;
+use tomcom_session::files::read_human_model;
+use tomcom_session::log::SimulatedLogState;
 use tomcom_session::ranges;
+
+use crate::support::*;
 
 /// A session file that has every setting with a range.
 const SETTINGS: &str = r#"
@@ -86,11 +87,6 @@ fn every_setting() -> toml::Table {
     // Those are written to recordings; a file may leave them out.
     plan.retain(|_, value| value.as_array().is_none_or(|texts| !texts.is_empty()));
     all
-}
-
-/// The default kitchen.
-fn kitchen() -> Kitchen {
-    read_kitchen(Path::new("layouts/sushi.toml")).expect("the default kitchen").kitchen
 }
 
 /// A questionnaire with an item of every kind.
@@ -250,15 +246,6 @@ fn every_number_of_every_settings_file_has_a_range() {
     }
 }
 
-#[test]
-fn ranges_are_finite_and_have_words() {
-    for range in ranges::of_sessions().iter().chain(&ranges::OF_QUESTIONNAIRES).chain(&LAYOUT_RANGES) {
-        assert!(range.least.is_finite() && range.most.is_finite() && range.least < range.most, "{range:?}");
-        assert!(!range.holds(f64::NAN) && !range.holds(f64::INFINITY), "{range:?}");
-        assert!(!range.reason.is_empty(), "{range:?}");
-    }
-}
-
 /// `docs/settings.md` has the table; where it does not, the test prints it.
 #[test]
 fn the_documentation_has_every_range() {
@@ -281,4 +268,193 @@ fn the_documentation_has_every_range() {
         }
     }
     assert!(missing.is_empty(), "docs/settings.md should have\n\n{}", missing.join("\n"));
+}
+
+/// Settings that other rules bound beside their range: together with others, or as multiples of others.
+const RULED: [&str; 16] = [
+    "human.perception.look_alike",
+    "human.perception.anything",
+    "participant.population.signal_after_s",
+    "participant.population.reads_signal_s",
+    "tracker.corners",
+    "tracker.gaps.shortest_s",
+    "tracker.gaps.longest_s",
+    "probes.per_trial",
+    "probes.least_inclusion",
+    "plan.block",
+    "plan.questionnaire.after",
+    "plan.participants",
+    "item.min",
+    "item.max",
+    "item.step",
+    "*.display.w",
+];
+
+/// Reads a file with every extreme of this number, and says of which ones it was taken.
+fn check_extremes(range: &NumberRange, table: &toml::Table, file: &Path, read: impl Fn() -> Result<(), String>) {
+    for value in extremes(range) {
+        let mut changed = table.clone();
+        set(&mut changed, range.path, value.clone());
+        fs::write(file, toml::to_string(&changed).expect("TOML")).expect("a file can be written");
+        let (taken, is_inside) = (read(), range.holds(as_number(&value)));
+        match &taken {
+            Ok(()) => assert!(is_inside, "{} = {value} was taken, out of {range}", range.path),
+            Err(told) if is_inside => assert!(is_ruled(range.path), "{} = {value} was refused: {told}", range.path),
+            Err(told) => {
+                let key = range.path.rsplit('.').next().expect("a name");
+                let is_type = told.contains("found a number") || told.contains("invalid") || told.contains("wanted");
+                let names_it = told.contains(key) || is_type;
+                assert!(names_it, "{} = {value} was refused without its name: {told}", range.path);
+            }
+        }
+    }
+}
+
+fn is_ruled(path: &str) -> bool {
+    RULED.contains(&path)
+}
+
+fn told<T>(read: tomcom_session::files::file_error::FileResult<T>) -> Result<(), String> {
+    read.map(drop).map_err(|error| format!("{:?}", miette::Report::new(error)))
+}
+
+#[test]
+fn a_session_file_with_an_extreme_number_is_refused() {
+    let folder = folder("session");
+    let file = folder.join("sessions/extreme.toml");
+    for range in ranges::of_sessions() {
+        check_extremes(&range, &every_setting(), &file, || told(read_session(&file)));
+    }
+    fs::remove_dir_all(folder).expect("the folder can be removed");
+}
+
+#[test]
+fn a_file_with_an_extreme_parameter_of_the_human_model_is_refused() {
+    let folder = folder("human");
+    let file = folder.join("sessions/human.toml");
+    let human = every_setting()["human"].as_table().expect("a table").clone();
+    for range in ranges::of_sessions() {
+        let Some(path) = range.path.strip_prefix("human.") else { continue };
+        // Below its path in this file, which has no table around it.
+        let inside = NumberRange { path, ..range };
+        for value in extremes(&inside) {
+            let mut changed = human.clone();
+            set(&mut changed, path, value.clone());
+            fs::write(&file, toml::to_string(&changed).expect("TOML")).expect("a file can be written");
+            let (taken, is_inside) = (told(read_human_model(&file)), range.holds(as_number(&value)));
+            assert!(taken.is_ok() == is_inside || (is_inside && is_ruled(range.path)), "{path} = {value}: {taken:?}");
+        }
+    }
+    fs::remove_dir_all(folder).expect("the folder can be removed");
+}
+
+#[test]
+fn a_questionnaire_with_an_extreme_number_is_refused() {
+    let folder = folder("questionnaire");
+    let file = folder.join("sessions/questionnaires/extreme.toml");
+    let session = folder.join("sessions/asks.toml");
+    let mut asks = every_setting();
+    let asked = "questionnaires/extreme.toml";
+    set(&mut asks, "plan.questionnaire.file", toml::Value::String(asked.to_string()));
+    fs::write(&session, toml::to_string(&asks).expect("TOML")).expect("a file can be written");
+    for range in ranges::OF_QUESTIONNAIRES {
+        check_extremes(&range, &questionnaire(), &file, || told(read_session(&session)));
+    }
+    fs::remove_dir_all(folder).expect("the folder can be removed");
+}
+
+/// Whatever a layout's numbers are, reading it ends in a kitchen or in a message; and beyond a range never in a kitchen.
+#[test]
+fn a_layout_with_an_extreme_number_is_refused() {
+    let folder = folder("layout");
+    let file = folder.join("layouts/extreme.toml");
+    let layout: toml::Table = fs::read_to_string("layouts/sushi.toml").expect("a layout").parse().expect("TOML");
+    for range in LAYOUT_RANGES {
+        // In each kind of table that has such a number.
+        let kinds = ["order.serve", "hand.trash", "place.button", "process.button", "storage.button", "order", "hand"];
+        let kinds = kinds.into_iter().chain(["place", "storage"]);
+        let names: Vec<String> = match range.path.strip_prefix("*.") {
+            None => vec![range.path.to_string()],
+            Some(rest) => kinds
+                .filter(|kind| kind.contains('.') == rest.starts_with("*."))
+                .map(|kind| format!("{kind}.{}", rest.trim_start_matches("*.")))
+                .collect(),
+        };
+        let mut tried = 0;
+        for path in names.iter().filter(|path| has(&layout, path)) {
+            tried += 1;
+            for value in extremes(&range) {
+                let mut changed = layout.clone();
+                set(&mut changed, path, value.clone());
+                fs::write(&file, toml::to_string(&changed).expect("TOML")).expect("a file can be written");
+                let taken = told(read_kitchen(&file));
+                let is_inside = range.holds(as_number(&value));
+                assert!(is_inside || taken.is_err(), "{path} = {value} was taken, out of {range}");
+            }
+        }
+        assert!(tried > 0, "no number with the path {}", range.path);
+    }
+    fs::remove_dir_all(folder).expect("the folder can be removed");
+}
+
+/// A log with another text in its header.
+fn with_header(folder: &Path, wanted: &str, text: &str) -> PathBuf {
+    let log = fs::read_to_string("tests/golden/format-3-hand.jsonl").expect("a golden log");
+    assert!(log.contains(wanted), "the header has {wanted}");
+    let path = folder.join(LOG_NAME);
+    fs::write(&path, log.replacen(wanted, text, 1)).expect("a file can be written");
+    path
+}
+
+#[test]
+fn a_header_has_the_numbers_that_files_may_have() {
+    let folder = folder("headers");
+    let read = |wanted: &str, text: &str| LogReader::open(&with_header(&folder, wanted, text));
+    read("\"seconds\":", "\"seconds\":").expect("as it was");
+    for (wanted, text, found) in [
+        ("\"cost_of_communication\":1.5", "\"cost_of_communication\":1e308", "cost_of_communication = "),
+        ("\"tau\":4.0", "\"tau\":0.00001", "tau = 0.00001"),
+        ("\"tau\":4.0", "\"tau\":0.0", "tau = 0"),
+        ("\"beliefs\":16", "\"beliefs\":0", "beliefs = 0"),
+        ("\"shown_s\":4.0", "\"shown_s\":5000.0", "shown_s = 5000"),
+        ("\"shown_s\":4.0", "\"shown_s\":-4.0", "shown_s = -4"),
+        ("served_shown_s = 2.0", "served_shown_s = 9e9", "served_shown_s = 9000000000"),
+        ("\"cost_of_communication\":1.5", "\"cost_of_communication\":1e999", "number out of range"),
+        ("x = 0.26,", "x = inf,", "inf"),
+    ] {
+        let error = format!("{:?}", read(wanted, text).expect_err(text));
+        assert!(error.contains(found), "{text}: {error}");
+    }
+    fs::remove_dir_all(folder).expect("the folder can be removed");
+}
+
+/// A caller of the library may have a tau that no file may have: what the planner tabulates is bounded all the same.
+#[test]
+fn the_weights_of_a_tau_near_0_take_no_more_memory_than_those_of_others() {
+    let kitchen = kitchen("sushi");
+    for tau in [1e-5, f64::MIN_POSITIVE] {
+        let model = ChoiceModel::up_to_draws(&kitchen, &ChoiceParameters { tau, ..ChoiceParameters::default() }, 32);
+        assert!(model.tabulated() <= 33 * 33 * 256, "{tau}: {} weights", model.tabulated());
+    }
+}
+
+#[test]
+fn a_number_that_is_not_finite_comes_into_no_log() {
+    let folder = folder("finite");
+    let header = LogReader::open(Path::new("tests/golden/format-3-hand.jsonl")).expect("a golden log").header;
+    let recording = folder.join("recording");
+    let begun = SimulatedLogState::open(&recording, &header).expect("a recording can be begun");
+    let SimulatedLogState::Begun { mut log, .. } = begun else { panic!("there is no recording yet") };
+    let stamped = |seq, event| TimestampedEvent { seq, time: SessionTime::ZERO, event };
+    for force_n in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let moment = ArmSample { force_n, ..ArmSample::default() };
+        let refused = log.append(&stamped(0, Event::RobotMoves(moment))).expect_err("no log can hold it");
+        assert!(refused.to_string().contains("not finite"), "{refused}");
+    }
+    log.append(&stamped(0, Event::SessionEnded)).expect("the log goes on");
+    log.flush().expect("the log can be written");
+    let mut read = LogReader::open(&recording).expect("the log can be read");
+    assert_eq!(read.next_line().expect("a line").expect("an event").stamped, stamped(0, Event::SessionEnded));
+    assert!(read.next_line().expect("no more").is_none());
+    fs::remove_dir_all(folder).expect("the folder can be removed");
 }

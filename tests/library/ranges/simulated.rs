@@ -1,23 +1,14 @@
 //! Sessions with every number at the ends of its range: they run to their end, with a bounded number of samples, and their logs
 //! can be read.
 
-use std::fs;
-use std::path::Path;
-
-use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::base::number_range::NumberRange;
-use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::files::LAYOUT_RANGES;
 use tomcom_people::wizard::WizardKind;
 use tomcom_session::apply::apply;
-use tomcom_session::files::SessionSetup;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::LogReader;
-use tomcom_session::settings::{ArmKind, Condition, SessionSpec};
-use tomcom_session::{Event, ranges};
+use tomcom_session::ranges;
 
 use super::{every_setting, folder, set};
+use crate::support::*;
 
 /// Each trial ends after so many presses and seconds.
 const PRESSES: u32 = 16;

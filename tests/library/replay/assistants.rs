@@ -1,38 +1,17 @@
 //! What assistants advise and send comes out the same again, beside the wizard too.
 
-use std::fs;
-use std::path::PathBuf;
-use std::sync::Arc;
-
-use rand::RngExt;
 use tomcom::run::comparison_thread::ComparisonThreadHandle;
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, LocationId};
 use tomcom_core::measures::matching::ComparedContent;
 use tomcom_core::mind::model::PAPER_2021;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::advisor::Advisor;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::files::SessionSetup;
 use tomcom_session::headless;
-use tomcom_session::headless::SimulationShard;
 use tomcom_session::history::comparison::CommunicationContext;
-use tomcom_session::log::{LOG_NAME, LogReader};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom_session::verify::verify;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent};
 
-use super::{SESSIONS, folder, same, session, simulated};
+use super::{SESSIONS, folder, session, simulated};
+use crate::support::*;
 
 /// Simulates trials of `seconds` in which the assistant acts, quickly, with these further settings; returns the folder.
 fn with_assistant(name: &str, out: &str, (trials, seconds): (u64, f64), further: impl Fn(&mut SessionSpec)) -> PathBuf {
@@ -42,8 +21,7 @@ fn with_assistant(name: &str, out: &str, (trials, seconds): (u64, f64), further:
     (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
     further(&mut files.spec);
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, trials, &out);
     out
 }
 
@@ -55,28 +33,14 @@ fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
 }
 
 #[test]
-fn what_the_assistant_does_comes_out_the_same_again() {
-    for name in SESSIONS {
-        let [a, b] = ["assisted", "assisted-again"].map(|out| assisted(name, out, ConceptName::TomCom));
-        let mut signals = 0;
-        for trial in ["seed1-S001", "seed1-S002"] {
-            let [log, other] = [&a, &b].map(|out| out.join(trial).join(LOG_NAME));
-            same(&log, &other);
-            let found = verify(&log).expect("a recording");
-            assert!(found.verified, "{name}: {:?}", found.difference);
-            let text = fs::read_to_string(&log).expect("a recording");
-            signals += text.lines().filter(|line| line.contains(r#""signal_shown","by":"assistant""#)).count();
-        }
-        assert!(signals > 0, "{name}: the assistant said nothing");
-    }
-}
-
-#[test]
 fn each_concept_acts_by_itself_and_comes_out_the_same_again() {
     for name in SESSIONS {
-        for (by, acts, proposes) in
-            [(ConceptName::Tom, true, false), (ConceptName::Dev, true, true), (ConceptName::None, false, false)]
-        {
+        for (by, acts, proposes) in [
+            (ConceptName::TomCom, true, false),
+            (ConceptName::Tom, true, false),
+            (ConceptName::Dev, true, true),
+            (ConceptName::None, false, false),
+        ] {
             let out = assisted(name, &format!("acts-{}-{name}", by.name()), by);
             let mut log = String::new();
             for trial in ["seed1-S001", "seed1-S002"] {
@@ -170,7 +134,6 @@ fn what_is_asked_in_silence_comes_out_the_same_again() {
                 asked.push(line.stamped.seq);
             }
         }
-        println!("{name}: silences, and advice after these: {counts:?}");
         assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
     }
 }
@@ -216,7 +179,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
     inputs.push((81.0, Event::SessionEnded));
     inputs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let take = |(time_s, event): (f64, Event)| {
-        let outcome = engine.input(SessionTime::from_secs_f64(time_s), event);
+        let outcome = engine.input(at(time_s), event);
         assert_eq!(outcome.refused, None);
         outcome.events
     };
@@ -230,8 +193,7 @@ fn advice_that_nobody_sees_changes_nothing_else() {
         let mut files = session("default.toml");
         (files.spec.robot.arm, files.spec.assistant.shadow) = (ArmKind::Timed, shadow);
         (files.spec.trial.condition, files.spec.trial.seconds) = (Condition::None, 60.0);
-        let kitchen = Arc::new(files.kitchen.kitchen);
-        let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 3, CostToGo::new(kitchen));
+        let mut engine = engine_of(files, 3);
         let (mut told, mut advised) = (Vec::new(), 0);
         let noted: Result<(), ()> = headless::run(&mut engine, |stamped| {
             match &stamped.event {
@@ -320,8 +282,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.concept = ConceptName::Tom;
     let out = folder("shadow");
-    simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, 1, &out);
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
     let request = SenderComparisonSettings { with: vec![ConceptName::Dev], window: 3 };
     let watcher = || SenderComparisonFollower::new(log.session(), CostToGo::new(log.kitchen.clone()), &request);

@@ -1,18 +1,10 @@
-//! The same seed gives the same recording, and a recording the same session.
+//! The same seed gives the same recording, and a recording the same session, from the golden recordings on.
 
-use std::fs;
-use std::path::PathBuf;
-
-use tomcom_core::kitchen::{AspectId, LocationId};
-use tomcom_session::TrialPhase;
+use tomcom::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use tomcom_session::header::VERSION;
-use tomcom_session::log::LOG_NAME;
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::ArmKind;
-use tomcom_session::verify::verify;
 
-use super::{SESSIONS, by_hand, same, simulated};
-use crate::check_snapshot;
+use super::{SESSIONS, by_hand, folder, same, simulated};
+use crate::support::*;
 
 #[test]
 fn the_same_seed_gives_the_same_recording_and_it_verifies() {
@@ -100,4 +92,67 @@ fn the_golden_recordings_replay_to_what_they_replayed_to() {
         let name = log.file_stem().expect("a name").to_string_lossy().into_owned();
         check_snapshot("replay", name, summary(&replay));
     }
+}
+
+/// Copies a log to the golden recordings.
+fn keep(log: &Path, name: &str) {
+    fs::copy(log, format!("tests/golden/format-{VERSION}-{name}.jsonl")).expect("a golden recording can be written");
+}
+
+/// Simulates a trial of a session file, changed by `change`, and keeps it.
+fn keep_simulated(name: &str, session: &str, change: fn(&mut SessionSpec)) {
+    let mut files = read_session(&Path::new("sessions").join(session)).expect("a session file");
+    (files.spec.trial.condition, files.spec.robot.arm) = (Condition::None, ArmKind::Timed);
+    change(&mut files.spec);
+    let made = simulate_into(files, 1, &folder(&format!("golden-{name}")));
+    keep(&made[0].join(LOG_NAME), name);
+}
+
+#[test]
+#[ignore = "writes tests/golden"]
+fn golden_recordings_are_written() {
+    let (log, _) = by_hand("default.toml", ArmKind::Timed, "golden-hand", 2);
+    keep(&log, "hand");
+    keep_simulated("simulated", "default.toml", |spec| {
+        (spec.seed, spec.trial.presses, spec.assistant.shadow) = (7, 8, ShadowMode::Off);
+    });
+    keep_simulated("offers", "default.toml", |spec| {
+        (spec.seed, spec.trial.presses, spec.participant.gaze) = (11, 36, GazeSource::None);
+    });
+    keep_simulated("probes", "probes.toml", |spec| {
+        (spec.seed, spec.trial.seconds, spec.participant.gaze) = (3, 75.0, GazeSource::None);
+        let probes = spec.probes.as_mut().expect("the session has probes");
+        (probes.per_trial, probes.apart_s) = (2, 20.0);
+    });
+}
+
+#[test]
+fn figures_are_found_again_by_the_log_and_not_after_it_was_changed() {
+    let out = simulated("default.toml", ArmKind::Timed, "list-cache", 1, 9817);
+    let recording = only_recording(&out);
+    let glance = ClosedLogHeader::read(&recording).expect("a closed log");
+    let header = LogReader::open(&recording).expect("a log").header;
+    assert_eq!((&glance.code, glance.condition), (&header.session.participant.code, header.session.trial.condition));
+    assert_eq!(glance.date, header.started);
+    let caches = out.join("caches");
+    let figures = CachedRecordingNumbers { arm: StudyArm::None, trial_s: 0.1 + 0.2, errors: 7 };
+    assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), None);
+    ListCache::in_folder(&caches).keep([(glance.digest.clone(), figures)]);
+    assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), Some(figures));
+    let file = caches.join("lists.jsonl");
+    let kept = fs::read_to_string(&file).expect("a file");
+    assert!(!kept.contains(&glance.code) && !kept.contains("seed"), "{kept}");
+    // Lines of others, or half a line, are passed over; without the file nothing is known.
+    fs::write(&file, format!("{{}}\nwhat\n{kept}{}", &kept[..20])).expect("written");
+    assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), Some(figures));
+    fs::remove_file(&file).expect("removed");
+    assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), None);
+    // Another byte at the end, and a log that is not closed.
+    let log = recording.join("events.jsonl");
+    let text = fs::read_to_string(&log).expect("a log");
+    let end = text.trim_end().rfind("\"t_ns\":").expect("a time") + 7;
+    fs::write(&log, format!("{}1{}", &text[..end], &text[end..])).expect("written");
+    assert_ne!(ClosedLogHeader::read(&recording).expect("still closed").digest, glance.digest);
+    fs::write(&log, &text[..text.len() - 1]).expect("written");
+    assert_eq!(ClosedLogHeader::read(&recording), None, "the last line has no end");
 }

@@ -2,34 +2,15 @@
 
 mod assistants;
 mod equality;
-mod golden;
-mod list_cache;
 mod offers;
 mod probes;
 mod reading;
 mod scenes;
 mod winding;
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use tomcom_core::communication::{HighlightSet, signals};
 
-use rand::RngExt;
-use tomcom::edge::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::{HighlightSet, Sender, signals};
-use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen};
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::{SignalEndReason, TrialEndReason};
-use tomcom_session::files::SessionSetup;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
-use tomcom_session::{Event, LogHeader};
+use crate::support::*;
 
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
@@ -43,12 +24,8 @@ fn session(name: &str) -> SessionSetup {
     files
 }
 
-/// An empty folder for the test of this name.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replay").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
+    empty_folder(format!("replay/{name}"))
 }
 
 fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> PathBuf {
@@ -57,8 +34,7 @@ fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> Pat
     files.spec.seed = seed;
     files.spec.trial.seconds = 120.0;
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
+    simulate_into(files, trials, &out);
     out
 }
 
@@ -122,7 +98,7 @@ fn by_hand(name: &str, arm: ArmKind, out: &str, seed: u64) -> (PathBuf, SessionE
     let mut now_s = 0.0;
     for (after_s, event) in inputs {
         now_s += after_s;
-        let outcome = engine.input(SessionTime::from_secs_f64(now_s), event);
+        let outcome = engine.input(at(now_s), event);
         outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
     }
     (log.folder().join(LOG_NAME), engine)

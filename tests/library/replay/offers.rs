@@ -1,25 +1,11 @@
 //! Recordings with offers: they verify, go on after a cut, and are measured.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferCloseReason;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader};
 use tomcom_study::analysis::offer_summary::TimedOffer;
 
 use super::{folder, session};
+use crate::support::*;
 
 /// Trials of an unassisted session with an assistant that advises unseen.
 fn shadowed(out: &str) -> Vec<PathBuf> {

@@ -1,28 +1,13 @@
 //! Recordings with freeze probes: they verify whole and cut, whatever is pressed in a probe, and go on in the probe in which they were cut.
 
 use std::collections::HashSet;
-use std::fs;
-use std::sync::Arc;
 
-use rand::RngExt;
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::files::SessionSetup;
-use tomcom_session::headless::SimulationShard;
-use tomcom_session::log::{LOG_NAME, LogWriter};
-use tomcom_session::probes::{ProbeEndReason, ProbeEvent};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
-use tomcom_session::verify::verify;
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, LogHeader};
+use tomcom_session::probes::ProbeEndReason;
+use tomcom_session::settings::ProbeSpec;
 
 use super::{anything, folder, session};
+use crate::support::*;
 
 /// Many probes in a short time.
 fn often() -> ProbeSpec {
@@ -35,10 +20,7 @@ fn a_simulated_recording_with_probes_verifies_whole_and_cut_at_each_kind_of_even
     (files.spec.trial.seconds, files.spec.robot.arm) = (90.0, ArmKind::Physics);
     files.spec.probes =
         Some(ProbeSpec { per_trial: 2, apart_s: 20.0, confidence: true, level_2: true, ..ProbeSpec::default() });
-    let out = folder("probes");
-    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() };
-    let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
-    let log = std::path::Path::new(&recording).join(LOG_NAME);
+    let log = simulate_into(files, 1, &folder("probes"))[0].join(LOG_NAME);
     let found = verify(&log).expect("a recording");
     assert!(found.verified && !found.cut, "{found:?}");
     let text = fs::read_to_string(&log).expect("a log");
@@ -67,9 +49,7 @@ fn a_changed_question_or_time_of_a_probe_does_not_verify() {
     let mut files = session("probes.toml");
     files.spec.trial.seconds = 90.0;
     files.spec.probes = Some(ProbeSpec { per_trial: 1, apart_s: 20.0, ..ProbeSpec::default() });
-    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: folder("probes-changed") };
-    let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
-    let log = std::path::Path::new(&recording).join(LOG_NAME);
+    let log = simulate_into(files, 1, &folder("probes-changed"))[0].join(LOG_NAME);
     let text = fs::read_to_string(&log).expect("a log");
     for (from, to) in [("\"inclusion\":0.", "\"inclusion\":0.9"), ("\"uses_estimate\":true", "\"uses_estimate\":false")]
     {
@@ -126,7 +106,7 @@ fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_sam
         let mut random = stream(seed, "hand at probes", 0);
         let mut now_s = 0.5;
         let mut give = |engine: &mut SessionEngine, now_s: f64, event: Event| {
-            let events = engine.input(SessionTime::from_secs_f64(now_s), event).events;
+            let events = engine.input(at(now_s), event).events;
             events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         };
         give(&mut engine, now_s, Event::TrialStarted);
@@ -170,10 +150,10 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
         let (question, answer) = (shown as u32 + 1, Some(asked.choices[0].clone()));
         let on = AnswerDevice::Display;
         let event = Event::Probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on });
-        (engine.session().time + SessionTime::from_secs_f64(after_s), event)
+        (engine.session().time + at(after_s), event)
     };
-    let (at, event) = answer(&engine, 2.0);
-    events.extend(engine.input(at, event).events);
+    let (time, event) = answer(&engine, 2.0);
+    events.extend(engine.input(time, event).events);
     events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
     let recording = log.folder().to_path_buf();
     drop(log);
@@ -184,11 +164,11 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
     let open = engine.session().probes.open.clone().expect("the probe is held");
     assert!(open.is_paused() && open.shown == Some(1) && open.answers[0].is_some(), "{open:?}");
     assert_eq!(engine.next_due(), None, "nothing is due until the participant is back");
-    let hour = SessionTime::from_secs_f64(3600.0);
+    let hour = at(3600.0);
     assert_eq!(engine.input(resumed.time + hour, Event::TrialResumed).refused, None);
     while engine.session().is_frozen() && asked(engine) {
-        let (at, event) = answer(engine, 1.0);
-        assert_eq!(engine.input(at, event).refused, None);
+        let (time, event) = answer(engine, 1.0);
+        assert_eq!(engine.input(time, event).refused, None);
     }
     let closed = engine.session().probes.open.as_ref().and_then(|open| open.closed).map(|(end, _)| end);
     assert_eq!(closed, Some(ProbeEndReason::Answered));

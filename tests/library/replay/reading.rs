@@ -1,21 +1,7 @@
 //! Recordings that are cut, still written, or broken.
 
-use std::fs;
-use std::path::Path;
-use std::sync::Arc;
-
-use rand::RngExt;
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::log::{LOG_NAME, LogReader, LogWriter};
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::ArmKind;
-use tomcom_session::verify::verify;
-use tomcom_session::{Event, LogHeader};
-
 use super::{by_hand, folder, session};
+use crate::support::*;
 
 /// The recording's text, changed, is refused with a message that names `line` and says all of `says`.
 fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> String) {
@@ -26,18 +12,6 @@ fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> Stri
     let place = format!("broken.jsonl:{line}:");
     for text in std::iter::once(place.as_str()).chain(says.iter().copied()) {
         assert!(told.contains(text), "{text:?} is not in\n{told}");
-    }
-}
-
-#[test]
-fn a_cut_recording_opens_says_so_and_verifies_up_to_its_cut() {
-    let (log, _) = by_hand("default.toml", ArmKind::Physics, "cut", 5);
-    let text = fs::read(&log).expect("a recording");
-    for cut in [text.len() - 1, text.len() - 30, text.len() / 2, text.len() * 3 / 4] {
-        let path = log.with_file_name("cut.jsonl");
-        fs::write(&path, &text[..cut]).expect("the folder can be written");
-        let found = verify(&path).expect("a cut recording");
-        assert!(found.verified && found.cut, "cut at {cut}: {found:?}");
     }
 }
 
@@ -59,21 +33,6 @@ fn empty_lines_at_the_end_of_a_recording_are_no_damage() {
             text.replacen("\n{\"seq\":1,", &format!("{empty}{{\"seq\":1,"), 1)
         });
     }
-}
-
-#[test]
-fn a_session_that_is_still_recorded_can_be_followed() {
-    let (log, engine) = by_hand("default.toml", ArmKind::Timed, "followed", 9);
-    let text = fs::read(&log).expect("a recording");
-    let growing = log.with_file_name("growing.jsonl");
-    fs::write(&growing, &text[..text.len() / 2]).expect("the folder can be written");
-    let mut replay = RecordingReplay::open(&growing).expect("the header is there");
-    replay.run().expect("the first half");
-    assert!(replay.log().is_cut());
-    fs::write(&growing, &text).expect("the folder can be written");
-    replay.run().expect("the second half");
-    assert!(!replay.log().is_cut());
-    assert_eq!(replay.session().timeline, engine.session().timeline);
 }
 
 #[test]
@@ -111,24 +70,4 @@ fn no_broken_byte_makes_the_reader_panic() {
         fs::write(&path, &broken).expect("the folder can be written");
         let _ = verify(&path).map_err(|error| format!("{:?}", miette::Report::new(error)));
     }
-}
-
-#[test]
-fn what_is_broken_is_named_with_its_line_and_what_would_be_right() {
-    let (log, _) = by_hand("default.toml", ArmKind::Timed, "broken", 8);
-    let line = |number: usize, from: &'static str, to: &'static str| {
-        move |text: &str| {
-            let lines = text.lines().enumerate();
-            let changed = lines.map(|(at, line)| if at + 1 == number { line.replace(from, to) } else { line.into() });
-            changed.collect::<Vec<String>>().join("\n") + "\n"
-        }
-    };
-    refused(&log, 1, &["format version 9", "format version 3"], line(1, "\"version\":3", "\"version\":9"));
-    refused(&log, 1, &["no header"], |text| text.split_once('\n').map_or(String::new(), |(_, rest)| rest.to_string()));
-    refused(&log, 1, &["press_s = -2.4", "from 0.05 to 60 s"], line(1, "\"press_s\":2.4", "\"press_s\":-2.4"));
-    refused(&log, 3, &["\"order_9\"", "a location of the layout"], line(3, "order_1", "order_9"));
-    refused(&log, 3, &["seq 7", "without gaps"], line(3, "\"seq\":1,", "\"seq\":7,"));
-    refused(&log, 3, &["order_hidden"], line(3, "order_shown", "order_hidden"));
-    refused(&log, 3, &["after 500000000", "never decrease"], line(3, "\"t_ns\":500000000", "\"t_ns\":4"));
-    refused(&log, 3, &["the trial was started already"], line(3, "order_shown", "trial_started"));
 }

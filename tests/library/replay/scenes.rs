@@ -1,21 +1,10 @@
 //! The scene that Rerun shows of a session.
 
-use std::fs;
-use std::path::Path;
-
-use tomcom::run::simulate::{SimulationRequest, simulate};
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
-use tomcom_core::kitchen::Agent;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom_session::headless::SimulationShard;
 use tomcom_session::history::wording;
-use tomcom_session::probes::ProbeEvent;
-use tomcom_session::replay::RecordingReplay;
-use tomcom_session::settings::ArmKind;
-use tomcom_session::{Event, TimestampedEvent};
 
 use super::{folder, session, simulated};
+use crate::support::*;
 
 /// Everything that a recording shows, and its events.
 fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<TimestampedEvent>) {
@@ -91,7 +80,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
 #[test]
 fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
     let out = simulated("default.toml", ArmKind::Physics, "scene", 1, 3);
-    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let recording = only_recording(&out);
     let (moments, events) = shown(&recording);
     let witnesses = events.iter().filter_map(|stamped| match &stamped.event {
         Event::BeliefEstimated(witness) => Some((stamped, witness)),
@@ -115,9 +104,8 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
 #[test]
 fn a_scene_shows_answers_of_probes_beside_the_estimate() {
     let (files, out) = (session("probes.toml"), folder("scene-probes"));
-    simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
-        .expect("the folder can be written");
-    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    simulate_into(files, 1, &out);
+    let recording = only_recording(&out);
     let (moments, events) = shown(&recording);
     let state = |moment: &SceneUpdate, lane: &str| -> Option<String> {
         moment.rows.iter().find(|row| row.entity == lane).map(|row| match &row.shown {

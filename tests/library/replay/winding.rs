@@ -1,24 +1,19 @@
 //! Replays that are moved in time: forward, back, and to landmarks.
 
 use std::cell::Cell;
-use std::fs;
-use std::path::Path;
 
-use rand::RngExt;
 use tomcom::run::seekable_replay::SeekableReplay;
-use tomcom_core::base::rng::stream;
-use tomcom_core::base::time::SessionTime;
+use tomcom_session::TimelineEvent;
 use tomcom_session::replay::ReplayLandmark;
-use tomcom_session::settings::ArmKind;
-use tomcom_session::{TimelineEvent, TrialPhase};
 
 use super::{SESSIONS, simulated};
+use crate::support::*;
 
 #[test]
 fn a_recording_can_be_wound_forward_and_back() {
     for name in SESSIONS {
         let out = simulated(name, ArmKind::Physics, &format!("film-{name}"), 1, 3);
-        let recording = fs::read_dir(&out).expect("the folder").next().expect("a recording").expect("readable").path();
+        let recording = only_recording(&out);
         let mut film = SeekableReplay::open(&recording).expect("it opens");
         let (length, events) = film.length();
         let mut straight = SeekableReplay::open(&recording).expect("it opens");
@@ -56,7 +51,7 @@ fn a_recording_can_be_wound_forward_and_back() {
 #[test]
 fn a_recording_that_is_read_bit_by_bit_is_the_same_as_one_that_is_read_at_once() {
     let out = simulated("default.toml", ArmKind::Timed, "bit-by-bit", 1, 9811);
-    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let recording = only_recording(&out);
     let mut whole = SeekableReplay::open(&recording).expect("a recording");
     let mut slow = SeekableReplay::begin(&recording).expect("a recording");
     assert!(whole.is_read() && !slow.is_read() && !slow.is_cut());
@@ -92,7 +87,7 @@ fn a_replay_knows_where_the_trial_begins_and_how_long_it_is() {
     assert!(!slow.is_read(), "the rest is read later");
     let start = slow.trial_start();
     slow.wind(start);
-    assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, SessionTime::from_secs_f64(0.5)));
+    assert_eq!((slow.session.phase, slow.time()), (TrialPhase::Running, at(0.5)));
     assert!(slow.trial_length() > SessionTime::ZERO);
     whole.wind(whole.length().1);
     assert_eq!(whole.trial_length(), whole.session.trial_clock(whole.time()));
@@ -134,7 +129,7 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
 #[test]
 fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 4);
-    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let recording = only_recording(&out);
     let mut film = SeekableReplay::open(&recording).expect("a recording");
     let mut errors = film.errors.clone();
     errors.dedup();

@@ -1,13 +1,12 @@
 //! Session files: their defaults, their keys, their presets.
 
-use std::path::Path;
-
 use tomcom::console::{KeyBindings, KeyFileBindings};
-use tomcom::edge::files::read_session;
-use tomcom_core::communication::{Signal, signals};
+use tomcom_core::communication::signals;
 use tomcom_core::mind::model::{PAPER_2021, PLAIN};
 use tomcom_session::files::parse::parse;
-use tomcom_session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
+use tomcom_session::settings::RobotSpec;
+
+use crate::support::*;
 
 #[test]
 fn every_session_file_loads_and_its_keys_are_unambiguous() {
@@ -50,7 +49,7 @@ fn a_session_names_a_model_and_sets_single_parameters_on_top_of_it() {
 
 #[test]
 fn signals_highlight_what_session_or_model_name() {
-    let setup = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let setup = session_file("default");
     let kitchen = setup.kitchen.kitchen;
     let highlighted = |spec: &SessionSpec| {
         let all = signals(&kitchen, spec.highlights(&kitchen)).into_iter();
@@ -79,7 +78,7 @@ fn signals_highlight_what_session_or_model_name() {
 #[test]
 fn presets_of_the_session_file_are_checked() {
     let wrong = |change: fn(&mut SessionSpec)| {
-        let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+        let mut spec = session_file("default").spec;
         change(&mut spec);
         spec.check().expect_err("a wrong setting").key().to_string()
     };

@@ -1,30 +1,17 @@
 //! What a running session does: the trial's clock, pauses, the robot, signals, and the judgement of presses.
 
-mod advice_moments;
+mod advice;
 mod files;
-mod judgement;
-mod offers;
-mod orders;
-mod probe_questions;
-mod probe_trials;
 mod probes;
-mod proposals;
 mod robot;
 mod trial;
 
-use std::path::Path;
-use std::sync::Arc;
+use tomcom_session::engine::InputResult;
 
-use tomcom::edge::files::read_session;
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen};
-use tomcom_session::Event;
-use tomcom_session::engine::{InputResult, SessionEngine};
-use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind, SessionSpec};
+use crate::support::*;
 
 fn kitchen() -> Arc<Kitchen> {
-    Arc::new(read_session(Path::new("sessions/default.toml")).expect("the default session").kitchen.kitchen)
+    Arc::new(session_file("default").kitchen.kitchen)
 }
 
 /// An engine of the default session with a person at the keyboard and a timed arm, and `change`d settings.
@@ -34,17 +21,13 @@ fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
 
 /// The same for another trial.
 fn engine_of_trial(trial: u64, change: impl Fn(&mut SessionSpec)) -> SessionEngine {
-    let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
+    let mut spec = session_file("default").spec;
     spec.participant.kind = ParticipantKind::Keyboard;
     spec.participant.gaze = GazeSource::None;
     spec.robot.arm = ArmKind::Timed;
     change(&mut spec);
     let kitchen = kitchen();
     SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen))
-}
-
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
 }
 
 fn press(button: &str) -> Event {

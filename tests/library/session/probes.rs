@@ -1,18 +1,12 @@
-//! Freeze probes by hand: when they begin, how they end, and what is refused.
+//! Freeze probes: when they begin and end, which questions they ask, and that they change nothing else.
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::gaze::GazeSample;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::probe_sampling::aspect;
-use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin};
-use tomcom_session::settings::{Condition, GazeSource, ProbeSpec, SessionSpec};
-use tomcom_session::wall_display::AnswerDevice;
-use tomcom_session::{Event, TimestampedEvent, TrialPhase};
+use tomcom_session::headless;
+use tomcom_session::probe_sampling::{aspect, questions};
+use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeOrigin};
+use tomcom_session::settings::ProbeSpec;
 
 use super::{at, check, engine, kitchen, press, refused};
+use crate::support::*;
 
 /// A session in which nothing is scheduled in the first minutes, so that the wizard asks for probes.
 pub fn on_request(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
@@ -276,4 +270,218 @@ fn looks_during_a_probe_are_no_evidence() {
     until(&mut engine, 60.0);
     check(&mut engine, &[(60.1, sample)]);
     assert_ne!(engine.belief(), &belief, "after the probe they are evidence");
+}
+
+/// A simulated trial with these probes, from its events.
+fn simulated(trial: u64, change: impl Fn(&mut SessionSpec)) -> (SessionEngine, Vec<TimestampedEvent>) {
+    let mut files = session_file("probes");
+    let inference = &mut files.spec.human.inference;
+    (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);
+    change(&mut files.spec);
+    let mut engine = engine_of(files, trial);
+    let mut events = Vec::new();
+    let kept: Result<(), ()> = headless::run(&mut engine, |stamped| {
+        events.push(stamped.clone());
+        Ok(())
+    });
+    kept.expect("events are kept");
+    (engine, events)
+}
+
+#[test]
+fn scheduled_probes_keep_their_distance_and_half_of_them_ignore_the_estimate() {
+    let mut blind = 0;
+    for trial in 0..4 {
+        let (engine, events) = simulated(trial, |_| ());
+        let schedule = &engine.session().probes.schedule;
+        assert_eq!(schedule.len(), 3);
+        let times: Vec<f64> = schedule.iter().map(|one| one.at.as_secs_f64()).collect();
+        assert!(times[0] >= 40.0 && times.windows(2).all(|pair| pair[1] - pair[0] >= 40.0), "{times:?}");
+        assert!(times[2] + 15.0 <= 240.0, "{times:?}");
+        blind += schedule.iter().filter(|one| !one.uses_estimate).count();
+        let begun: Vec<u32> = probes_of(&events)
+            .iter()
+            .filter_map(|(_, event)| match event {
+                ProbeEvent::Begun { probe, origin: ProbeOrigin::Schedule, .. } => Some(*probe),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(begun, [1, 2, 3], "trial {trial}");
+        assert_eq!(engine.session().probes.over.len(), 3);
+    }
+    assert!((4..=8).contains(&blind), "{blind} of 12");
+}
+
+/// The events without those of probes, at the times of the trial's clock, without numbers that probes shift.
+fn without_probes(events: &[TimestampedEvent]) -> Vec<(u64, Value)> {
+    let (mut stood, mut frozen, mut told) = (0, None, Vec::new());
+    for stamped in events {
+        let clock = frozen.unwrap_or(stamped.time.0) - stood;
+        match &stamped.event {
+            Event::Probe(ProbeEvent::Begun { .. }) => frozen = Some(stamped.time.0),
+            Event::Probe(ProbeEvent::Ended { .. }) => stood += stamped.time.0 - frozen.take().expect("it had begun"),
+            Event::Probe(_) => {}
+            Event::ParticipantBelieves(belief) if belief.cause == "asked by a probe" => {}
+            other => {
+                let mut value = serde_json::to_value(other).expect("JSON");
+                let fields = value.as_object_mut().expect("an object");
+                ["until_ns", "press", "for_seq", "for_ns", "offer"].iter().for_each(|name| {
+                    fields.remove(*name);
+                });
+                told.push((clock, value));
+            }
+        }
+    }
+    told
+}
+
+#[test]
+fn with_and_without_probes_a_trial_is_the_same_and_so_are_all_estimates() {
+    for (trial, condition) in [(0, Condition::None), (1, Condition::None), (2, Condition::Assistant)] {
+        let settings = |spec: &mut SessionSpec| {
+            spec.trial.condition = condition;
+            (spec.assistant.rollout.rollouts, spec.assistant.rollout.least_rollouts) = (16, 8);
+        };
+        let with = simulated(trial, settings);
+        let without = simulated(trial, |spec| {
+            settings(spec);
+            spec.probes = None;
+        });
+        assert!(probes_of(&with.1).len() > 10 && probes_of(&without.1).is_empty());
+        let [a, b] = [&with.1, &without.1].map(|events| without_probes(events));
+        for (index, (one, other)) in a.iter().zip(&b).enumerate() {
+            assert!(one == other, "trial {trial}, event {index}: {one:?} and {other:?}");
+        }
+        assert_eq!(a.len(), b.len());
+        assert!(a.iter().filter(|(_, event)| event["kind"] == "belief_estimated").count() > 50);
+        assert_eq!(with.0.belief(), without.0.belief(), "trial {trial}");
+        let verdicts = |engine: &SessionEngine| engine.judged().iter().map(|press| press.verdict).collect::<Vec<_>>();
+        assert_eq!(verdicts(&with.0), verdicts(&without.0));
+    }
+}
+
+#[test]
+fn a_simulated_participant_answers_what_it_believes() {
+    let mut compared = (0, 0);
+    for trial in 0..3 {
+        let (engine, events) = simulated(trial, |spec| {
+            let population = spec.participant.population.get_or_insert_default();
+            population.answers_wrong.median = 0.0;
+        });
+        let kitchen = &engine.session().kitchen;
+        let (mut believed, mut asked) = (None, Vec::new());
+        for stamped in &events {
+            match &stamped.event {
+                Event::ParticipantBelieves(belief) if belief.cause == "asked by a probe" => {
+                    believed = Some((stamped.time, belief))
+                }
+                Event::Probe(ProbeEvent::Begun { questions, .. }) => {
+                    assert_eq!(believed.map(|(time, _)| time), Some(stamped.time), "recorded at the same time");
+                    asked.clone_from(questions);
+                }
+                Event::Probe(ProbeEvent::Answered { question, answer, .. }) => {
+                    let (_, belief) = believed.expect("it is recorded before");
+                    let id = aspect(kitchen, &asked[*question as usize - 1].about).expect("an aspect");
+                    let held = &belief.aspects[id.index()];
+                    let most = held.values.values().copied().fold(0.0, f64::max);
+                    match answer {
+                        Some(answer) => assert_eq!((answer, most >= 0.5), (&held.believes, true)),
+                        None => assert!(most < 0.5, "{held:?}"),
+                    }
+                    compared.0 += 1;
+                    compared.1 += u32::from(held.p_truth < 0.5);
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(compared.0 >= 18 && compared.1 > 0, "{compared:?}");
+}
+
+#[test]
+fn one_further_question_can_be_about_what_happens_next() {
+    let (engine, _) = simulated(2, |spec| {
+        let probes = spec.probes.get_or_insert_default();
+        (probes.level_2, probes.confidence) = (true, true);
+    });
+    let kitchen = &engine.session().kitchen;
+    for over in &engine.session().probes.over {
+        let next: Vec<_> = over.questions.iter().filter(|one| aspect(kitchen, &one.about).is_none()).collect();
+        assert!(next.len() == 1 && next[0].inclusion >= 0.5 && next[0].choices.len() > 1, "{next:?}");
+        let sure = over.questions.iter().zip(&over.answers).all(|(question, answer)| {
+            let answer = answer.as_ref().expect("answered");
+            let is_asked = answer.answer.is_some() && aspect(kitchen, &question.about).is_some();
+            is_asked == answer.confidence.is_some()
+        });
+        assert!(sure, "{:?}", over.answers);
+    }
+}
+
+/// A session in the middle of a trial.
+fn midway() -> Session {
+    let kitchen = kitchen();
+    let mut spec = session_file("probes").spec;
+    spec.participant.kind = ParticipantKind::Simulated;
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+    let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
+    while engine.session().time < at(30.0) {
+        engine.fire();
+    }
+    engine.session().clone()
+}
+
+#[test]
+fn questions_come_as_often_as_their_recorded_probabilities_say() {
+    const DRAWS: u32 = 20_000;
+    let session = midway();
+    let spec = ProbeSpec::default();
+    let aspects = session.kitchen.aspects.len();
+    let is_wrong: Vec<bool> = (0..aspects).map(|index| index % 7 == 3).collect();
+    for is_wrong in [None, Some(&is_wrong[..])] {
+        // By number of questions and aspect: how often it was drawn, and with which probability.
+        let mut drawn: BTreeMap<(usize, AspectId), (u32, f64)> = BTreeMap::new();
+        let mut probes = [0_u32; 5];
+        let mut weights = 0.0;
+        for probe in 1..=DRAWS {
+            let asked = questions(&session, &spec, probe, is_wrong);
+            probes[asked.len()] += 1;
+            for question in &asked {
+                let id = aspect(&session.kitchen, &question.about).expect("an aspect");
+                let count = drawn.entry((asked.len(), id)).or_default();
+                *count = (count.0 + 1, question.inclusion);
+                weights += 1.0 / question.inclusion;
+            }
+        }
+        assert_eq!(probes[..2], [0, 0]);
+        let per_aspect = (2..=4).map(|number| drawn.keys().filter(|(of, _)| *of == number).count());
+        assert!(per_aspect.into_iter().all(|count| count == aspects), "every aspect comes up");
+        for ((number, id), (count, inclusion)) in drawn {
+            let n = f64::from(probes[number]);
+            let deviation = (inclusion * (1.0 - inclusion) / n).sqrt();
+            let share = f64::from(count) / n;
+            assert!((share - inclusion).abs() < 4.5 * deviation + 1e-6, "{number} {id:?}: {share} of {inclusion}");
+            assert!(inclusion >= 0.05 - 1e-9, "{number} {id:?}: {inclusion}");
+            if is_wrong.is_none() {
+                assert!((inclusion - number as f64 / aspects as f64).abs() < 1e-6, "blind probes are uniform");
+            }
+        }
+        // Weighted by their inverse, the drawn questions stand for all aspects.
+        let stands_for = weights / f64::from(DRAWS);
+        assert!((stands_for / aspects as f64 - 1.0).abs() < 0.02, "{stands_for} of {aspects}");
+    }
+}
+
+#[test]
+fn what_is_believed_wrong_is_asked_more_often_than_what_is_not() {
+    let session = midway();
+    let spec = ProbeSpec::default();
+    let is_wrong: Vec<bool> = (0..session.kitchen.aspects.len()).map(|index| index == 3).collect();
+    let asked = |is_wrong: Option<&[bool]>| {
+        let of_3 = |probe: &u32| {
+            let asked = questions(&session, &spec, *probe, is_wrong);
+            asked.iter().any(|question| aspect(&session.kitchen, &question.about) == Some(AspectId(3)))
+        };
+        (1..=500).filter(of_3).count()
+    };
+    assert!(asked(Some(&is_wrong)) > 2 * asked(None));
 }

@@ -2,22 +2,15 @@
 
 use std::convert::Infallible;
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::kitchen::Agent;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::policy::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
 use tomcom_session::apply::silence_so_far;
-use tomcom_session::engine::SessionEngine;
-use tomcom_session::headless;
 use tomcom_session::orders::OrderList;
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom_session::{Event, Session, SessionSpec, TimestampedEvent, apply};
+use tomcom_session::{apply, headless};
 
 use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
+use crate::support::*;
 
 #[test]
 fn a_stopped_robot_gives_up_its_press_and_waits_for_the_wizard() {
@@ -195,7 +188,6 @@ fn a_robot_whose_human_is_passive_serves_alone_within_40_s() {
         let served = *engine.session().served.first().expect("it serves an order");
         assert_eq!(engine.session().kitchen.dish(served.dish).name, "shrimp nigiri");
         let done = done(&events);
-        println!("{arm:?}: served at {:.1} s: {done:?}", served.time.as_secs_f64());
         assert!(["counter", "rolling_mat"].contains(&done[0].as_str()), "{done:?}");
         let rest = [
             "cooking_pot",
@@ -248,7 +240,7 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
         headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
         let mut cost = CostToGo::new(kitchen.clone());
         let mut session = Session::new(kitchen.clone(), engine.session().spec.clone(), trial);
-        let initiative = SessionTime::from_secs_f64(session.spec.robot.initiative_s);
+        let initiative = at(session.spec.robot.initiative_s);
         for stamped in &events {
             let passed_s = stamped.time.secs_since(session.time);
             if session.is_running() {
@@ -272,11 +264,6 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
             apply(&mut session, stamped).expect("an event of the session");
         }
     }
-    println!(
-        "{name}: idle in {:.1} % of {all_s:.0} s, of that {:.2} % needlessly",
-        100.0 * idle_s / all_s,
-        100.0 * needless_s / idle_s
-    );
     assert!(idle_s > 0.02 * all_s && needless_s < 0.02 * idle_s, "{name}: {needless_s} of {idle_s} s");
 }
 

@@ -1,13 +1,15 @@
-//! The trial's clock, pauses and orders, and its end.
+//! The trial's clock, pauses, orders and end; which presses are errors, and what orders took.
 
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen, State};
-use tomcom_session::event::{SignalEndReason, TrialEndReason};
-use tomcom_session::settings::Condition;
-use tomcom_session::{Event, TrialPhase};
+use tomcom::run::recording_list::{RecordingListDetail, list};
+use tomcom_core::measures::errors::{PressJudge, PressVerdict};
+use tomcom_session::apply;
+use tomcom_session::engine::InputResult;
+use tomcom_session::follower::SessionFollower;
+use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
-use super::{at, check, engine, press, refused};
+use super::probes::on_request;
+use super::{at, check, engine, kitchen, press, refused};
+use crate::support::*;
 
 fn highlight(location: &str) -> Event {
     Event::SignalShown { by: Sender::Wizard, signal: Signal::Highlight(location.to_string()), offer: None }
@@ -175,4 +177,160 @@ fn presses_faster_than_the_sessions_pace_are_recorded_and_do_not_count() {
     assert_eq!(engine.session().presses[Agent::Human.index()], 1, "7.96 s on the trial's clock");
     let kinds = check(&mut engine, &[(20.1, press("counter")), (20.2, press("take rice"))]);
     assert_eq!(engine.session().presses[Agent::Human.index()], 2, "{kinds:?}");
+}
+
+/// The verdict on the human's last press of a list by both agents, one second apart but for the last one, that comes
+/// `after_s` after the one before it; orders of these dishes are present.
+fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVerdict {
+    let kitchen = kitchen();
+    let mut cost = CostToGo::new(kitchen.clone());
+    let mut judge = PressJudge::new(kitchen.clone());
+    let mut state = kitchen.empty_state();
+    for (order, dish) in kitchen.orders.iter().zip(dishes) {
+        let dish = kitchen.dishes.iter().position(|known| known.name == *dish).expect("a dish of the menu");
+        state.set_order(*order, OrderContent::Dish(tomcom_core::kitchen::DishId(dish as u8)));
+    }
+    let mut last = None;
+    for (index, (agent, name)) in presses.iter().enumerate() {
+        let button = kitchen.button_named(*agent, name).expect("a button");
+        let is_last = index + 1 == presses.len();
+        let now = at(if is_last { index as f64 - 1.0 + after_s } else { index as f64 });
+        let press = kitchen.try_press(state, *agent, button);
+        match agent {
+            Agent::Robot => judge.others_changed(now, press.before, press.after),
+            Agent::Human => last = Some(judge.human_pressed(&mut cost, now, &press)),
+        }
+        state = press.after;
+    }
+    last.expect("a press of the human")
+}
+
+#[test]
+fn errors_are_presses_that_lose_more_than_the_best_one() {
+    use Agent::{Human, Robot};
+    let good = verdict(&["crab maki"], &[(Human, "take crab")], 1.0);
+    assert_eq!(good, PressVerdict { regret: 0, excess: 0, race: false, error: false, is_proven: true });
+    // The wrong shellfish has to be thrown away.
+    let wrong = verdict(&["crab maki"], &[(Human, "take shrimp")], 1.0);
+    assert_eq!((wrong.excess, wrong.error), (2, true));
+    let nothing_to_cut = verdict(&["crab maki"], &[(Human, "cut")], 1.0);
+    assert_eq!((nothing_to_cut.regret, nothing_to_cut.error), (1, true));
+    // Without an order no press is better than another.
+    assert!(!verdict(&[], &[(Human, "cut")], 1.0).error);
+    // The robot was faster at the board by a quarter of a second, or by two.
+    let both = [(Human, "take nori"), (Robot, "take nori"), (Robot, "assembly_board"), (Human, "assembly_board")];
+    let (race, late) = (verdict(&["crab maki"], &both, 0.25), verdict(&["crab maki"], &both, 2.0));
+    assert_eq!((race.race, race.error, late.race, late.error), (true, false, false, true));
+}
+
+/// The events of a session in which a freeze probe stands between a correction of the wizard and a press at its place.
+fn press_after_a_probe() -> (SessionEngine, Vec<TimestampedEvent>) {
+    let mut engine = on_request(|_| ());
+    let corrected = Event::KitchenCorrected { location: "human_hand".to_string(), content: "nori".to_string() };
+    let skipped = ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() };
+    let inputs = [
+        (0.0, Event::TrialStarted),
+        (0.4, corrected),
+        (0.5, Event::Probe(ProbeEvent::Requested)),
+        (1.0, Event::Probe(skipped)),
+        // The probe ends at 4 s, after its count down.
+        (4.1, press("cut")),
+    ];
+    let mut events = Vec::new();
+    for (seconds, event) in inputs {
+        let InputResult { events: new, refused } = engine.input(at(seconds), event.clone());
+        assert_eq!(refused, None, "{event:?}");
+        events.extend(new);
+    }
+    (engine, events)
+}
+
+#[test]
+fn a_freeze_probe_is_no_time_for_the_next_press_wherever_presses_are_judged() {
+    let (engine, events) = press_after_a_probe();
+    let spec = &engine.session().spec;
+    let mut follower = SessionFollower::new(Session::new(kitchen(), spec.clone(), 0), CostToGo::new(kitchen()));
+    events.iter().for_each(|stamped| drop(follower.apply(stamped).expect("its own events")));
+    let verdict = follower.judged.last().expect("a press").verdict;
+    assert!(verdict.excess >= 1 && verdict.race && !verdict.error, "{verdict:?}");
+    // The list of recordings judges by itself.
+    let files = session_file("default");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("judged-after-a-probe");
+    let _ = fs::remove_dir_all(&out);
+    let header = LogHeader::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("a recording");
+    events.iter().for_each(|stamped| log.append(stamped).expect("written"));
+    drop(log);
+    let (listed, _) = list(&out, RecordingListDetail::WithErrors, |_| (), || ()).expect("a recording");
+    assert_eq!(listed.recordings[0].errors, Some(0));
+}
+
+/// Applies events a given time apart and sums the regret of presses.
+struct Recorded {
+    session: Session,
+    regret: RegretSum,
+    cost: CostToGo,
+    seq: u64,
+    now_s: f64,
+}
+
+impl Recorded {
+    fn add(&mut self, after_s: f64, event: Event) {
+        self.now_s += after_s;
+        let stamped = TimestampedEvent { seq: self.seq, time: at(self.now_s), event };
+        self.seq += 1;
+        let applied = apply(&mut self.session, &stamped).expect("an event that fits");
+        self.regret.note(&self.session.kitchen.clone(), &mut self.cost, &applied.change);
+    }
+
+    fn press(&mut self, agent: Agent, button: &str) {
+        self.add(2.0, Event::Press { agent, button: button.to_string(), at_ns: None });
+    }
+}
+
+/// A press of either agent that loses nothing.
+fn best(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> (Agent, String) {
+    let recipes = kitchen.true_recipes();
+    let here = cost.all_orders(state, &recipes);
+    for agent in [Agent::Human, Agent::Robot] {
+        for index in 0..kitchen.buttons[agent.index()].len() {
+            let button = ButtonId(index as u8);
+            let press = kitchen.press(state, &recipes, agent, button);
+            if press.is_some_and(|after| cost.all_orders(after, &recipes) + 1 == here) {
+                return (agent, kitchen.button(agent, button).name.clone());
+            }
+        }
+    }
+    panic!("no press brings the orders nearer");
+}
+
+#[test]
+fn an_order_takes_the_time_from_its_appearance_and_every_lost_press() {
+    let kitchen = kitchen();
+    let mut cost = CostToGo::new(kitchen.clone());
+    let spec = session_file("default").spec;
+    let session = Session::new(kitchen.clone(), spec, 0);
+    let mut recorded = Recorded { session, regret: RegretSum::default(), cost: cost.clone(), seq: 0, now_s: 0.0 };
+    recorded.add(0.0, Event::TrialStarted);
+    let dish = kitchen.dishes[0].name.clone();
+    recorded.add(5.0, Event::OrderShown { order: "order_1".to_string(), dish: dish.clone() });
+    recorded.add(7.0, Event::OrderShown { order: "order_2".to_string(), dish });
+    assert_eq!(recorded.regret.per_order(0), None);
+    // Three lost presses: rice that is taken and thrown away again, and a serving without a dish.
+    recorded.press(Agent::Human, "take rice");
+    recorded.press(Agent::Human, "trash");
+    recorded.press(Agent::Human, "serve 1");
+    let mut served_s = Vec::new();
+    while served_s.len() < 2 {
+        let (agent, button) = best(&kitchen, &mut cost, recorded.session.state);
+        recorded.press(agent, &button);
+        if recorded.session.served.len() > served_s.len() {
+            served_s.push((recorded.now_s, button));
+        }
+    }
+    let appeared_s = |button: &str| if button == "serve 1" { 5.0 } else { 12.0 };
+    let wanted: Vec<f64> = served_s.iter().map(|(served_s, button)| served_s - appeared_s(button)).collect();
+    assert_eq!(order_times(&recorded.session), wanted);
+    // Taking rice brings the orders nearer, throwing it away loses that press and itself.
+    assert_eq!(recorded.regret.per_order(2), Some(1.5));
 }

@@ -1,7 +1,5 @@
 //! The effect of assistance, against values of other programs.
 
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::effect::{effect, left_out_in_words, pairs};
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
@@ -12,7 +10,8 @@ use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::DetailTotals;
 use tomcom_study::trial_statistics::{TrialStatistics, arrange};
 
-use super::{near, trial, trials};
+use super::{near, summary, trial, trials};
+use crate::support::*;
 
 /// Unequal groups, with ties; the figures are those of afex 1.2-1 (type III), pingouin 0.7.0 and SciPy 1.17.1.
 #[test]
@@ -69,7 +68,7 @@ fn the_period_does_not_contain_the_assistance_where_groups_are_unequal() {
     let words = "B3, B4, B5, B6, B7, B8, B9 (trial 2 does not count (excluded: the tracker slipped))";
     assert_eq!(left_out_in_words(&found.left_out).as_deref(), Some(words));
     // In the printed summary and in the report, too.
-    let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let summary = summary(&trials);
     let text = describe(&summary);
     assert!(text.contains("13 participants: 10 assisted in the second trial, 3 in the first; left out: B3"), "{text}");
     let page = report::page(&summary, &trials, &RecordingFacts::default(), &[]);
@@ -82,12 +81,12 @@ fn the_period_does_not_contain_the_assistance_where_groups_are_unequal() {
 fn an_unblinded_trial_counts_in_the_planned_arm_and_is_listed() {
     let second: Vec<[u64; 2]> = (0..7).map(|index| [24 + index, 12 + index % 3]).collect();
     let mut trials = trials(&second, &second);
-    let planned = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let planned = summary(&trials);
     assert!(planned.deviations.is_empty() && planned.as_carried_out.is_none());
     let unblinded = trials.iter_mut().find(|trial| trial.planned_arm == StudyArm::Wizard).expect("a trial");
     (unblinded.study_arm, unblinded.wizard_saw_advice) = (StudyArm::WizardWithAdvice, true);
     let recording = unblinded.recording.clone();
-    let found = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let found = summary(&trials);
     assert!(found.anova.is_some() && found.pearson.is_some() && found.permutation_p.is_some());
     assert_eq!((&found.anova, &found.pearson, &found.effects), (&planned.anova, &planned.pearson, &planned.effects));
     assert_eq!((&found.arms, &found.conditions), (&planned.arms, &planned.conditions));
@@ -117,7 +116,7 @@ fn what_is_missing_leaves_the_participant_out_of_the_pairs_and_nothing_is_invent
     let paired = pairs(&trials, HEADLINE);
     assert_eq!((paired.pairs.len(), paired.left_out.len()), (3, 1));
     assert_eq!(paired.left_out[0].reason, "trial 1 does not count (excluded: the tracker slipped)");
-    let figures = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let figures = summary(&trials);
     assert_eq!((figures.trials, figures.participants, figures.left_out.len()), (7, 4, 1));
     // A second trial that was done again counts as it was done the last time.
     let mut again = trial("A1", 2, Condition::Wizard, 2);
@@ -163,7 +162,7 @@ fn large_groups_have_nearly_the_interval_of_the_exact_distribution() {
 #[test]
 fn trials_with_different_human_models_are_told() {
     let told = |trials: &[TrialStatistics]| {
-        let figures = StudySummary::from_trials(trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+        let figures = summary(trials);
         describe(&figures)
     };
     let mut trials = trials(&[[8, 4]], &[[3, 9]]);

@@ -2,36 +2,29 @@
 
 mod arms;
 mod effect;
-mod frozen;
-mod live_arms;
-mod missing_trials;
+mod planned;
 mod power;
 mod prevention;
-mod probe_recordings;
 mod probes;
 mod rater_episodes;
 mod report;
 mod tables;
-mod tutorials;
 
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::sequences::BeliefErrorCounts;
-use tomcom_session::event::TrialEndReason;
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::analysis::offer_summary::OfferSummary;
+use tomcom_study::column::CsvTable;
+use tomcom_study::facts::RecordingFacts;
+use tomcom_study::figures::StudySummary;
 use tomcom_study::robot_tally::RobotEventSummary;
+use tomcom_study::trial_statistics::DetailTotals;
 use tomcom_study::trial_statistics::SignalSenderWithParameter;
 use tomcom_study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
 
+use crate::support::*;
+
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");
-}
-
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
 }
 
 /// A trial of 200 presses of the human with this many errors, three of four of them belief related.
@@ -97,6 +90,20 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         stale_consensus: None,
         probes: None,
     }
+}
+
+/// The figures of these trials alone.
+fn summary(trials: &[TrialStatistics]) -> StudySummary {
+    with_details(trials, DetailTotals::default())
+}
+
+fn with_details(trials: &[TrialStatistics], details: DetailTotals) -> StudySummary {
+    StudySummary::from_trials(trials, details, &RecordingFacts::default(), 0)
+}
+
+/// The report with these figures, beside all tables.
+fn page(figures: &StudySummary, trials: &[TrialStatistics]) -> String {
+    tomcom_study::report::page(figures, trials, &RecordingFacts::default(), &CsvTable::ALL)
 }
 
 /// Participants with errors in the first and in the second trial; those of the first list are assisted in the second one.

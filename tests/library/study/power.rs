@@ -1,21 +1,11 @@
 //! Studies drawn from pools: what is put in is found as often as it should be, and a pool is the same from shards and on any number of threads.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use rand::RngExt;
 use rand_distr::{Distribution, Gamma, Normal, Poisson};
-use tomcom::edge::picture_file::{check_picture, write_picture};
-use tomcom_core::base::rng::stream;
 use tomcom_session::plan::{PrimaryOutcome, StudyAims, orders};
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
 use tomcom_study::arm_comparison::compare_arms;
 use tomcom_study::arm_table::StudyArmTable;
-use tomcom_study::charts;
 use tomcom_study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampler, results, tests};
 use tomcom_study::effect::{effect, pairs};
-use tomcom_study::files::pool_file::{check_table, write_table};
 use tomcom_study::files::pool_file::{read_pool, write_pool};
 use tomcom_study::pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom_study::power::{PowerRequest, measure};
@@ -25,6 +15,7 @@ use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::trial;
+use crate::support::*;
 
 const TWO: [StudyArm; 2] = [StudyArm::None, StudyArm::Wizard];
 const THREE: [StudyArm; 3] = [StudyArm::None, StudyArm::Wizard, StudyArm::TomCom];
@@ -220,10 +211,7 @@ fn the_least_effect_lies_between_the_ratios_that_were_tried() {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("power").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
+    empty_folder(format!("power/{name}"))
 }
 
 #[test]
@@ -279,27 +267,6 @@ fn shards_are_joined_in_any_order_and_nothing_else_is() {
     let dear = write_pool(&other, &pool).expect_err("another pool is there").to_string();
     assert!(dear.contains("not the same pool"), "{dear}");
     assert!(refused(&[one, other]).contains("other.jsonl: found a part of another pool"));
-}
-
-#[test]
-fn table_and_picture_take_the_place_of_their_own_kind_alone() {
-    let folder = folder("files");
-    let found = asked(&made_up(&THREE, 24, 0.5, 10), &[8, 12], 40, DrawnEffect::AsSimulated);
-    let (table, picture) = (folder.join("power.csv"), folder.join("power.svg"));
-    for _ in 0..2 {
-        check_table(&table).expect("free, or its own");
-        check_picture(&picture, "a picture of power").expect("free, or its own");
-        write_table(&table, &found).expect("written");
-        write_picture(&picture, &charts::power(&found)).expect("written");
-    }
-    let rows = fs::read_to_string(&table).expect("text");
-    assert_eq!(rows.lines().count(), 1 + 2 * 3, "{rows}");
-    assert!(rows.starts_with("participants,method,arm,against,studies,rejected,"), "{rows}");
-    let drawn = fs::read_to_string(&picture).expect("text");
-    assert!(drawn.starts_with("<svg ") && drawn.contains("xmlns=\"http://www.w3.org/2000/svg\""), "{drawn}");
-    assert!(drawn.contains("tom-com") && drawn.contains("Power by number of participants"), "{drawn}");
-    fs::write(&picture, "<html>").expect("written");
-    assert!(check_picture(&picture, "a picture of power").is_err() && check_table(&picture).is_err());
 }
 
 #[test]

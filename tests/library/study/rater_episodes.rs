@@ -1,20 +1,17 @@
 //! False belief episodes from raters' codes: each clause of the rule on logs made by hand.
 
-use std::sync::Arc;
-
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen, OrderContent, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::FalseBeliefTarget;
 use tomcom_core::measures::errors::PressJudge;
-use tomcom_core::measures::raters::{BeliefSource, ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::BeliefSource;
+use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
 use tomcom_study::prevention::TrialGroundTruth;
 use tomcom_study::rater_episodes::rater_episodes;
-use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent, KnownFalseBeliefs, RaterFalseBeliefAgreement};
+use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent};
+use tomcom_study::rater_episodes::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
 
 use super::at;
-use crate::kitchen;
+use crate::support::*;
 
 /// A log that is written by hand, a second from line to line.
 struct Log {

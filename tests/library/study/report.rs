@@ -1,25 +1,16 @@
 //! The report: participants, robot, methods, raters.
 
-use std::fs;
-use std::path::Path;
-
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::{
     Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
 };
-use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::SafetyMode;
-use tomcom_session::Event;
-use tomcom_session::event::TrialEndReason;
 use tomcom_session::log::{consensus_file, rater_codes};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom_study::analysis::offer_summary::TimedOffer;
 use tomcom_study::codes::CodedRecording;
 use tomcom_study::column::{CsvCell, CsvRow, CsvTable};
@@ -32,10 +23,12 @@ use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::report;
 use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
 use tomcom_study::roc::ConceptPreventionCounts;
-use tomcom_study::trial_statistics::{DetailTotals, TrialDetails};
+use tomcom_study::trial_statistics::DetailTotals;
+use tomcom_study::trial_statistics::TrialDetails;
 use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
-use super::{at, near, trial, trials};
+use super::{at, near, summary, trial, trials, with_details};
+use crate::support::*;
 
 #[test]
 fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
@@ -58,10 +51,10 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             score: None,
         });
     }
-    let figures = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
+    let figures = summary(&trials);
     let accepted = figures.acceptance.clone().expect("answers");
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
-    let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
+    let page = super::page(&figures, &trials);
     assert!(page.contains("<title>No kitchen: a study of simulated participants</title>"));
     let mut names: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     names.sort_unstable();
@@ -75,12 +68,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     assert!(!page.contains("NaN") && !page.contains("inf "));
     let people: Vec<TrialStatistics> =
         trials.into_iter().map(|trial| TrialStatistics { kind: ParticipantKind::Display, ..trial }).collect();
-    let page = report::page(
-        &StudySummary::from_trials(&people, DetailTotals::default(), &RecordingFacts::default(), 0),
-        &people,
-        &RecordingFacts::default(),
-        &CsvTable::ALL,
-    );
+    let page = super::page(&summary(&people), &people);
     assert!(!page.contains("simulated participants</title>"));
 }
 
@@ -91,8 +79,8 @@ fn few_participants_have_no_r_among_the_main_results() {
         let errors: Vec<[u64; 2]> =
             (0..participants as u64 / 2).map(|index| [24 + index, 12 + index * index]).collect();
         let trials = trials(&errors, &errors);
-        let summary = StudySummary::from_trials(&trials, DetailTotals::default(), &RecordingFacts::default(), 0);
-        let page = report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL);
+        let summary = summary(&trials);
+        let page = super::page(&summary, &trials);
         assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
         page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
     };
@@ -154,12 +142,7 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
 fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
     let report = |trials: &[TrialStatistics], details: DetailTotals, tables: &[CsvTable]| {
-        report::page(
-            &StudySummary::from_trials(trials, details, &RecordingFacts::default(), 0),
-            trials,
-            &RecordingFacts::default(),
-            tables,
-        )
+        report::page(&with_details(trials, details), trials, &RecordingFacts::default(), tables)
     };
     let page = report(&trials, DetailTotals::default(), &[CsvTable::Trials]);
     assert!(page.contains("6 after the set number of presses.") && page.contains("arm was timed."));
@@ -195,9 +178,7 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
 /// Of people it is estimated what they believed, until two raters have coded every error.
 #[test]
 fn two_raters_say_why_people_erred() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-raters");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = empty_folder("study-raters");
     fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || match reading::read(&folder, "hand", extent, None, &mut KeptCost::default()) {
@@ -238,8 +219,8 @@ fn two_raters_say_why_people_erred() {
 #[test]
 fn what_was_offered_stands_beside_what_the_wizard_did() {
     let offer = |seq: u64, stood_s: f64, how: Option<OfferKeyKind>, reason| {
-        let opened = SessionTime::from_secs_f64(10.0 * seq as f64);
-        let sent = how.map(|_| opened + SessionTime::from_secs_f64(stood_s));
+        let opened = at(10.0 * seq as f64);
+        let sent = how.map(|_| opened + at(stood_s));
         let what = OfferedCommunication::Signal(Signal::ShowRecipe("order_1".to_string()));
         let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
         TimedOffer {
@@ -260,8 +241,8 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
     let wizards = trials.iter().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
     let mut details = DetailTotals::default();
     details.add(wizards, TrialDetails { offers, ..TrialDetails::default() });
-    let figures = StudySummary::from_trials(&trials, details, &RecordingFacts::default(), 0);
-    let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
+    let figures = with_details(&trials, details);
+    let page = super::page(&figures, &trials);
     for words in [
         "The wizard saw 3 offers, which stood 3.0 s in the median, 2.0 s at least",
         "1 taken, 1 sent by its own key, 1 no longer worth it",
@@ -274,9 +255,7 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
 /// What two raters settled says why people erred, and their agreement stays that of their own codes.
 #[test]
 fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-consensus");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = empty_folder("study-consensus");
     fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || {

@@ -1,17 +1,10 @@
 //! The study's tables: columns that are declared once, the rows and the dictionary that follow, and the files they go to.
 
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
-use tomcom_core::kitchen::LocationId;
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
 use tomcom_session::plan::QuestionnaireItemKind;
+use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
-use tomcom_session::settings::Condition;
-use tomcom_session::study_arm::StudyArm;
+use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use tomcom_study::column::{DataDictionaryRow, columns, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
@@ -21,13 +14,16 @@ use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::study_part::AnalysedRecording;
+use tomcom_study::tables::participants::TutorialSummary;
 use tomcom_study::tables::participants::participants;
 use tomcom_study::tables::participants::{AnswerRow, answers as answers_of};
+use tomcom_study::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
 use tomcom_study::tables::trials::{HEADLINE, measures};
 use tomcom_study::trial_statistics::TrialDetails;
 use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::probes::one_right_answer;
+use crate::support::*;
 
 /// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
 const PUBLISHED: [(CsvTable, &str); 10] = [
@@ -71,10 +67,7 @@ const PUBLISHED: [(CsvTable, &str); 10] = [
 ];
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-tables").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
+    empty_folder(format!("study-tables/{name}"))
 }
 
 /// What a recording of a person gives, with errors, signals and gaze.
@@ -304,4 +297,78 @@ fn tables_of_events_say_what_happened() {
     assert_eq!(sequences.len(), trial.beliefs.expect("an estimate").lengths.len());
     let sent = fields(&folder, CsvTable::Communications, "lane").len() as u64;
     assert_eq!((sent, sent > 0), (trial.signals, true));
+}
+
+/// The settings of the first recording of a participant of the study, in which the tutorial is.
+fn settings(kind: ParticipantKind) -> SessionSpec {
+    let mut files = session_file("study");
+    files.spec.participant.kind = kind;
+    let study = files.study().expect("a plan");
+    study.settings(WantedRecording { participant: 0, slot: 0, attempt: 1, instructed: false }).0
+}
+
+/// The rows of these events, each with its time in seconds.
+fn answers(spec: &SessionSpec, events: Vec<(f64, ProtocolEvent)>) -> Vec<TutorialQuestionRow> {
+    let mut answers = TutorialAnswerCollector::new("first", spec).expect("a tutorial");
+    for (seq, (time_s, event)) in events.into_iter().enumerate() {
+        let time = at(time_s);
+        answers.note(&TimestampedEvent { seq: seq as u64, time, event: Event::Protocol(event) });
+    }
+    answers.finish()
+}
+
+fn begun() -> ProtocolEvent {
+    ProtocolEvent::PhaseStarted { phase: StudyPhase::Tutorial, number: 2 }
+}
+
+fn shown(step: &str) -> ProtocolEvent {
+    ProtocolEvent::Tutorial(TutorialEvent::Shown { step: step.to_string(), by: TutorialPageTurner::Participant })
+}
+
+fn answered(step: &str, choice: u8) -> ProtocolEvent {
+    ProtocolEvent::Tutorial(TutorialEvent::Answered { step: step.to_string(), choice })
+}
+
+#[test]
+fn a_row_tells_the_first_answer_the_tries_and_the_time_to_the_right_one() {
+    let spec = settings(ParticipantKind::Display);
+    let events = vec![
+        (1.0, begun()),
+        (10.0, shown("ask_shape")),
+        (14.0, answered("ask_shape", 1)),
+        // The time counts from the first appearance, also after a look back.
+        (16.0, shown("order")),
+        (17.0, shown("ask_shape")),
+        (20.0, answered("ask_shape", 3)),
+        (21.0, shown("ask_crab")),
+        (24.0, answered("ask_crab", 2)),
+        (25.0, shown("ask_highlight")),
+    ];
+    let rows = answers(&spec, events);
+    let found: Vec<_> = rows
+        .iter()
+        .map(|row| (row.step.as_str(), row.first_answer.as_deref(), row.tries, row.right, row.seconds))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            ("ask_shape", Some("Raw rice"), 2, Some(true), Some(10.0)),
+            ("ask_crab", Some("It is cooked, then cut"), 1, Some(true), Some(3.0)),
+            ("ask_highlight", None, 0, None, None),
+        ]
+    );
+    let unanswered = rows[2].cells();
+    assert_eq!(unanswered[5..7], [CsvCell::Unknown, CsvCell::Unknown], "a question that was left out is not wrong");
+    let summary = TutorialSummary::from_answers(&rows);
+    assert_eq!(summary, Some(TutorialSummary { participants: 1, questions: 2, right_at_once: 1 }));
+}
+
+#[test]
+fn a_recording_in_which_no_tutorial_began_has_no_rows() {
+    let spec = settings(ParticipantKind::Display);
+    let instruction = ProtocolEvent::PhaseStarted { phase: StudyPhase::Instruction, number: 1 };
+    assert!(answers(&spec, vec![(1.0, instruction)]).is_empty());
+    assert_eq!(TutorialSummary::from_answers(&answers(&spec, vec![(1.0, begun())])), None);
+    // At the keyboard there is no tutorial.
+    assert!(TutorialAnswerCollector::new("first", &settings(ParticipantKind::Keyboard)).is_none());
 }

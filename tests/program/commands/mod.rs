@@ -1,7 +1,6 @@
 //! The commands as they are typed: exit codes, what is on stdout, and what is said about wrong files.
 
 mod doctor;
-mod key_files;
 mod recordings;
 mod simulate;
 mod wrong;

@@ -1,17 +1,13 @@
-//! The rules of offers: opening, holding, closing, and what `enter` means.
+//! Advice: when the assistant is asked, what becomes of its signals as offers, and of the proposals of DEV.
 
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::recommendation::{HumanPressProposal, Recommendation, SignalOption};
-use tomcom_core::communication::settings::ShadowMode;
-use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::kitchen::OrderContent;
-use tomcom_session::engine::SessionEngine;
+use tomcom_devices::sight::sight;
 use tomcom_session::event::WizardScreenContent;
-use tomcom_session::settings::{Condition, SessionSpec, WizardVisibility};
-use tomcom_session::{Event, offers};
+use tomcom_session::offers;
 
-use super::{at, check, engine};
+use super::{at, check, engine, press, refused};
+use crate::support::*;
 
 /// A running trial with an assistant whose advice the test gives.
 fn advised(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
@@ -258,4 +254,207 @@ fn whether_a_wizard_could_see_an_offer_is_recorded() {
 fn an_assistant_that_acts_makes_no_offers() {
     let mut acting = advised(|spec| spec.trial.condition = Condition::Assistant);
     assert_eq!(changes(&mut acting, &[pot(1.0, 1.0), marker(9.0)]), []);
+}
+
+fn dev(spec: &mut SessionSpec) {
+    spec.trial.condition = Condition::Assistant;
+    spec.assistant.concept = ConceptName::Dev;
+}
+
+/// Gives an input, and lets the assistant answer whatever is asked because of it; the events, in order.
+fn with_advice(engine: &mut SessionEngine, seconds: f64, event: Event) -> Vec<Event> {
+    let mut advisor = engine.advisor();
+    let mut events = engine.input(at(seconds), event).events;
+    for question in engine.take_questions() {
+        let advice = advisor.answer(&question);
+        events.extend(engine.input(at(seconds), Event::Advised(advice)).events);
+    }
+    events.into_iter().map(|stamped| stamped.event).collect()
+}
+
+/// A session in which the human has thrown away what an order needs.
+fn after_an_error(change: impl Fn(&mut SessionSpec)) -> (SessionEngine, Vec<Event>) {
+    let mut engine = engine(|spec| {
+        dev(spec);
+        change(spec);
+    });
+    // A robot that stands still changes nothing in between.
+    with_advice(&mut engine, 0.0, Event::TrialStarted);
+    with_advice(&mut engine, 0.1, Event::RobotStopped);
+    with_advice(&mut engine, 0.5, press("take rice"));
+    let events = with_advice(&mut engine, 1.0, press("trash"));
+    assert!(engine.judged().last().expect("a press").verdict.error, "rice is needed for every dish");
+    (engine, events)
+}
+
+fn proposed(engine: &SessionEngine) -> Option<Vec<String>> {
+    match &engine.session().shown.as_ref()?.signal {
+        Signal::Propose(presses) => Some(presses.clone()),
+        other => panic!("DEV shows {other:?}"),
+    }
+}
+
+fn ends(events: &[Event]) -> Vec<SignalEndReason> {
+    let reason = |event: &Event| match event {
+        Event::SignalEnded { reason } => Some(*reason),
+        _ => None,
+    };
+    events.iter().filter_map(reason).collect()
+}
+
+/// What the page is told of the signal.
+fn told(engine: &SessionEngine) -> serde_json::Value {
+    serde_json::to_value(sight(engine.session())).expect("a sight is JSON")["signal"].clone()
+}
+
+#[test]
+fn an_error_gets_one_proposal_until_it_is_made() {
+    let (mut engine, events) = after_an_error(|_| ());
+    let shown: Vec<&Event> = events.iter().filter(|event| matches!(event, Event::SignalShown { .. })).collect();
+    let [Event::SignalShown { by: Sender::Assistant, signal: Signal::Propose(presses), offer: None, .. }] = &shown[..]
+    else {
+        panic!("one proposal of the assistant: {shown:?}");
+    };
+    assert_eq!(presses.len(), 1);
+    let kitchen = engine.session().kitchen.clone();
+    let button = kitchen.button_named(Agent::Human, &presses[0]).expect("a button of the human");
+    assert_eq!(told(&engine), serde_json::json!({ "next": [button.index()] }));
+    // The task changes without a press of the human: the error has had its proposal.
+    let corrected = Event::KitchenCorrected { location: "counter".to_string(), content: "tuna raw".to_string() };
+    let again = with_advice(&mut engine, 1.5, corrected);
+    assert!(
+        again.iter().any(|event| matches!(event, Event::Advised(advice) if advice.proposal.is_some())),
+        "{again:?}"
+    );
+    assert!(!again.iter().any(|event| matches!(event, Event::SignalShown { .. })), "{again:?}");
+    let followed = with_advice(&mut engine, 2.0, press(&presses[0]));
+    assert_eq!((ends(&followed), proposed(&engine)), (vec![SignalEndReason::Outdated], None));
+    assert_eq!(told(&engine), serde_json::Value::Null);
+    assert!(!engine.judged().last().expect("a press").verdict.error, "a proposed press is a good one");
+}
+
+#[test]
+fn a_proposal_of_several_presses_is_crossed_off_press_by_press() {
+    let (mut engine, _) = after_an_error(|spec| spec.assistant.proposed_presses = 3);
+    let presses = proposed(&engine).expect("a proposal");
+    assert_eq!(presses.len(), 3);
+    for (made, name) in presses.iter().enumerate() {
+        let left = told(&engine)["next"].as_array().map(Vec::len);
+        assert_eq!(left, Some(3 - made), "{presses:?}");
+        let events = with_advice(&mut engine, 2.0 + made as f64 / 2.0, press(name));
+        let wanted = if made == 2 { vec![SignalEndReason::Outdated] } else { Vec::new() };
+        assert_eq!(ends(&events), wanted, "after {name} of {presses:?}");
+    }
+}
+
+#[test]
+fn a_proposal_ends_by_another_press_by_a_change_that_spoils_it_and_after_its_time() {
+    let (mut engine, _) = after_an_error(|spec| spec.assistant.proposed_presses = 2);
+    assert_eq!(ends(&with_advice(&mut engine, 2.0, press("counter"))), [SignalEndReason::Outdated]);
+
+    let (mut engine, _) = after_an_error(|_| ());
+    // With a full hand nothing can be taken.
+    let full = Event::KitchenCorrected { location: "human_hand".to_string(), content: "tuna raw".to_string() };
+    let presses = proposed(&engine).expect("a proposal");
+    assert!(presses[0].starts_with("take "), "{presses:?}");
+    assert_eq!(ends(&with_advice(&mut engine, 2.0, full)), [SignalEndReason::Outdated]);
+
+    let (mut engine, _) = after_an_error(|_| ());
+    let marker = Event::Marker { note: "later".to_string() };
+    assert_eq!(ends(&with_advice(&mut engine, 6.0, marker)), [SignalEndReason::Elapsed]);
+}
+
+#[test]
+fn only_the_assistant_of_dev_proposes() {
+    let propose =
+        |by, press: &str| Event::SignalShown { by, signal: Signal::Propose(vec![press.to_string()]), offer: None };
+    let (mut engine, _) = after_an_error(dev);
+    assert!(refused(&mut engine, 2.0, propose(Sender::Wizard, "take rice")).contains("assistant"));
+    assert!(refused(&mut engine, 2.0, propose(Sender::Assistant, "trash")).contains("do nothing"));
+    assert!(refused(&mut engine, 2.0, propose(Sender::Assistant, "dance")).contains("no such button"));
+    let (mut other, _) = after_an_error(|spec| spec.assistant.concept = ConceptName::Tom);
+    assert!(refused(&mut other, 2.0, propose(Sender::Assistant, "take rice")).contains("only DEV"));
+}
+
+/// An estimate of a session with proposals is that of the same session without them, until a proposed press is made.
+#[test]
+fn a_proposal_on_the_display_teaches_the_estimate_nothing() {
+    let [(with, _), (without, _)] =
+        [ConceptName::Dev, ConceptName::None].map(|concept| after_an_error(|spec| spec.assistant.concept = concept));
+    assert!(proposed(&with).is_some() && without.session().shown.is_none());
+    assert_eq!(with.belief(), without.belief());
+}
+
+/// A trial with presses in these intervals; the time of the last.
+fn pressed(engine: &mut SessionEngine, intervals_s: &[f64]) -> (Vec<(&'static str, f64)>, f64) {
+    let mut inputs = vec![(0.0, Event::TrialStarted), (2.0, press("take rice"))];
+    let mut now_s = 2.0;
+    for interval_s in intervals_s {
+        now_s += interval_s;
+        inputs.push((now_s, press("take rice")));
+    }
+    (check(engine, &inputs), now_s)
+}
+
+fn later(seconds: f64) -> (f64, Event) {
+    (seconds, Event::Marker { note: "later".to_string() })
+}
+
+fn waits(kinds: &[(&str, f64)]) -> Vec<f64> {
+    kinds.iter().filter(|(kind, _)| *kind == "human_waits").map(|(_, seconds)| *seconds).collect()
+}
+
+/// The silences after the last press are noted at these seconds since then, and the assistant is asked at each.
+fn check_silences(engine: &mut SessionEngine, last_s: f64, until_s: f64, expected_s: &[f64]) {
+    engine.take_questions();
+    let found = waits(&check(engine, &[later(last_s + until_s)]));
+    assert_eq!(found.len(), expected_s.len(), "{found:?} after {last_s}");
+    let asked = engine.take_questions();
+    for (found, expected) in found.iter().zip(expected_s) {
+        assert!((found - last_s - expected).abs() < 1e-6, "{found} after {last_s}, {expected}");
+        assert!(asked.iter().any(|request| request.time == at(*found)), "the assistant is asked then");
+    }
+}
+
+#[test]
+fn a_silence_is_unusual_after_three_usual_intervals_and_again_after_each_three() {
+    let mut slow = engine(|_| ());
+    let (kinds, last_s) = pressed(&mut slow, &[4.0, 5.0, 3.0, 9.0, 4.5]);
+    assert!(waits(&kinds).is_empty(), "{kinds:?}");
+    check_silences(&mut slow, last_s, 41.0, &[13.5, 27.0, 40.5]);
+}
+
+#[test]
+fn a_silence_of_six_seconds_is_unusual_whoever_presses_faster_or_not_at_all() {
+    let mut fast = engine(|_| ());
+    let (_, last_s) = pressed(&mut fast, &[1.0, 1.2, 0.9]);
+    check_silences(&mut fast, last_s, 13.0, &[6.0, 12.0]);
+    let mut passive = engine(|_| ());
+    check(&mut passive, &[(0.0, Event::TrialStarted)]);
+    check_silences(&mut passive, 0.0, 13.0, &[6.0, 12.0]);
+}
+
+#[test]
+fn a_press_ends_the_silence_and_a_pause_is_none() {
+    let mut engine = engine(|_| ());
+    let (_, last_s) = pressed(&mut engine, &[1.0, 1.0, 1.0]);
+    let kinds = check(&mut engine, &[later(last_s + 5.0), (last_s + 5.5, press("trash")), later(last_s + 11.0)]);
+    assert!(waits(&kinds).is_empty(), "{kinds:?}");
+    let now_s = last_s + 11.0;
+    let kinds =
+        check(&mut engine, &[(now_s, Event::TrialPaused), (now_s + 10.0, Event::TrialResumed), later(now_s + 12.0)]);
+    let found = waits(&kinds);
+    assert!(found.len() == 1 && (found[0] - last_s - 5.5 - 16.0).abs() < 1e-6, "{found:?} after {last_s}");
+}
+
+#[test]
+fn the_silence_that_is_recorded_is_the_time_since_the_last_press() {
+    let mut engine = engine(|_| ());
+    let (_, last_s) = pressed(&mut engine, &[1.0]);
+    let events = engine.input(at(last_s + 13.0), Event::Marker { note: String::new() }).events;
+    let silences = events.iter().filter_map(|stamped| match stamped.event {
+        Event::HumanWaits { silent_ns } => Some(silent_ns),
+        _ => None,
+    });
+    assert_eq!(silences.collect::<Vec<_>>(), [at(6.0), at(12.0)]);
 }

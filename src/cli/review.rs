@@ -70,18 +70,3 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
     }
     open(each_chosen(&recordings)?, save, args.web, args.at)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_moment_is_written_as_the_console_shows_it_or_in_seconds() {
-        for (text, seconds) in [("1:34", 94.0), ("94.6", 94.6), ("0:07.5", 7.5), ("12:00", 720.0)] {
-            assert_eq!(moment(text), Ok(SessionTime::from_secs_f64(seconds)), "{text}");
-        }
-        for text in ["", "1:60", "-3", "1:2:3", "x", "nan", ":30"] {
-            assert!(moment(text).is_err(), "{text}");
-        }
-    }
-}

@@ -59,7 +59,7 @@ pub fn ground() -> Option<TerminalBackground> {
 }
 
 /// The background in a terminal's answer to OSC 11: `]11;rgb:RED/GREEN/BLUE`, each of 1 to 4 hexadecimal digits.
-fn background(answer: &str) -> Option<TerminalBackground> {
+pub fn background(answer: &str) -> Option<TerminalBackground> {
     let colour = answer.split("]11;rgb:").nth(1)?;
     let mut parts = colour.split('/').map(|part| {
         let digits: String = part.chars().take_while(char::is_ascii_hexdigit).collect();
@@ -71,20 +71,4 @@ fn background(answer: &str) -> Option<TerminalBackground> {
     // Perceived brightness (ITU-R BT.601) of the background's colour values, without gamma correction.
     let brightness = 0.299 * red + 0.587 * green + 0.114 * blue;
     Some(if brightness > 0.5 { TerminalBackground::Light } else { TerminalBackground::Dark })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_colour_has_one_to_four_digits_and_everything_else_is_none() {
-        let told = |colour: &str| background(&format!("\x1b]11;rgb:{colour}\x1b\\\x1b[?62;22c"));
-        assert_eq!(told("0/0/0"), Some(TerminalBackground::Dark));
-        assert_eq!(told("ffff/ffff/dddd"), Some(TerminalBackground::Light));
-        for wrong in ["fffff/ffff/ffff", "ffffffff/ffffffff/ffffffff", "//", "0/0", "red/green/blue"] {
-            assert_eq!(told(wrong), None, "{wrong}");
-        }
-        assert_eq!(background("\x1b[?62;22c"), None);
-    }
 }

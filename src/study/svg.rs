@@ -184,20 +184,3 @@ fn tenths(pixels: f64) -> String {
 pub fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn labels(low: f64, high: f64) -> Vec<String> {
-        PlotAxis::between("", low, high).ticks.into_iter().map(|(_, label)| label).collect()
-    }
-
-    #[test]
-    fn labels_of_ticks_are_not_rounded() {
-        assert_eq!(labels(0.0, 12.5), ["0.0", "2.5", "5.0", "7.5", "10.0", "12.5"]);
-        assert_eq!(labels(0.0, 1.25), ["0.00", "0.25", "0.50", "0.75", "1.00", "1.25"]);
-        assert_eq!(labels(-100.0, 150.0), ["−100", "−50", "0", "50", "100", "150"]);
-        assert_eq!(labels(0.0, 0.005), ["0.000", "0.001", "0.002", "0.003", "0.004", "0.005"]);
-    }
-}

@@ -5,5 +5,7 @@ mod gaze;
 mod inference;
 mod kitchen;
 mod measures;
+mod recorded_times;
+mod rng;
 mod robot;
 mod scenarios;

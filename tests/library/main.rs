@@ -20,6 +20,7 @@ mod lsl_streams;
 mod malformed_requests;
 mod mcap_export;
 mod measures;
+mod outside;
 mod participant;
 mod plan;
 mod ranges;
@@ -27,6 +28,7 @@ mod readers;
 mod replay;
 mod robot_on_display;
 mod session;
+mod session_files;
 mod study;
 mod support;
 #[cfg(unix)]

@@ -12,18 +12,6 @@ pub fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
     })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::ones;
-
-    #[test]
-    fn every_bit_once_and_in_order() {
-        assert_eq!(ones(0).count(), 0);
-        assert_eq!(ones(0x8000_0101).collect::<Vec<_>>(), [0, 8, 31]);
-        assert_eq!(ones(u32::MAX).count(), 32);
-    }
-}
-
 /// I_x(a, b): the probability that a variate of the beta distribution with parameters `a` and `b` is at most `x`, between
 /// 0 and 1. With `a` = 0 the variate is 0, with `b` = 0 it is 1.
 pub fn regularized_incomplete_beta(x: f64, a: f64, b: f64) -> f64 {

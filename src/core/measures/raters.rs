@@ -390,49 +390,6 @@ pub fn unsettled(errors: &[u64], codes: [&RaterCodes; 2]) -> Vec<u64> {
     errors.iter().copied().filter(differs).collect()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn codes(of: &[(u64, ErrorCauseCode)]) -> RaterCodes {
-        RaterCodes(of.iter().cloned().collect())
-    }
-
-    #[test]
-    fn what_both_say_is_taken_over_and_the_rest_is_to_be_settled() {
-        let one = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Race), (8, ErrorCauseCode::Other)]);
-        let other = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Slip)]);
-        assert_eq!(unsettled(&[3, 5, 8, 9], [&one, &other]), [5, 8, 9]);
-        let begun = RaterConsensus::new("R2", "R1").with_agreed([&one, &other]);
-        assert_eq!((begun.name().as_str(), begun.agreed()), ("R1+R2", 1));
-        let decided = codes(&[(5, ErrorCauseCode::Race), (8, ErrorCauseCode::Buttons)]);
-        let settled = begun.with_decided(&decided, [&one, &other]);
-        assert_eq!(settled.current([&one, &other]).0.len(), 3);
-        assert_eq!(settled.settled[&8].from, [Some(ErrorCauseCode::Other), None]);
-    }
-
-    #[test]
-    fn a_code_that_changes_afterwards_makes_its_error_stale_and_no_other() {
-        let one = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Race)]);
-        let other = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Slip)]);
-        let settled = RaterConsensus::new("R1", "R2")
-            .with_agreed([&one, &other])
-            .with_decided(&codes(&[(5, ErrorCauseCode::Race)]), [&one, &other]);
-        assert_eq!(settled.changed([&one, &other]), []);
-        let later = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Other)]);
-        assert_eq!(settled.changed([&one, &later]), [PostConsensusChange { press: 5, rater: "R2".to_string() }]);
-        assert_eq!(settled.current([&one, &later]), codes(&[(3, ErrorCauseCode::Slip)]));
-    }
-
-    #[test]
-    fn nobody_overrules_what_both_raters_say() {
-        let both = [Some(ErrorCauseCode::Slip), Some(ErrorCauseCode::Slip)];
-        assert!(ConsensusCode { code: ErrorCauseCode::Race, from: both.clone() }.fault().is_some());
-        assert!(ConsensusCode { code: ErrorCauseCode::Slip, from: both }.fault().is_none());
-        assert!(ConsensusCode { code: ErrorCauseCode::Race, from: [None, None] }.fault().is_none());
-    }
-}
-
 /// Two raters with their codes of one recording. The raters are in alphabetical order, which has no meaning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RaterPair {

@@ -240,25 +240,3 @@ fn session_time(at: Instant, now: SessionTime) -> SessionTime {
     let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
     SessionTime(now.0.saturating_sub(age_ns))
 }
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use super::*;
-    use tomcom_session::files::built_in_session;
-
-    #[test]
-    fn a_press_that_is_refused_names_its_button_in_signs_that_can_be_shown() {
-        let files = built_in_session().expect("the program's own session");
-        let session = Session::new(Arc::new(files.kitchen.kitchen), files.spec, 0);
-        let refused = |button: &str| {
-            let PageEvent { event, notice } = press(button.to_string(), Instant::now(), &session, SessionTime::ZERO);
-            assert!(event.is_none(), "{event:?}");
-            notice.expect("a notice").1
-        };
-        assert!(refused("explode").contains("\"explode\""));
-        let text = refused(&format!("\u{1b}[2J{}", "x".repeat(5000)));
-        assert!(text.contains("[2J") && !text.contains('\u{1b}') && text.len() < 200, "{text}");
-    }
-}

@@ -196,26 +196,3 @@ fn within(value: &DeValue, names: &[&str], places: &mut Vec<Range<usize>>) {
         _ => {}
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::files::place_of;
-
-    const TEXT: &str = "name = \"a\"\n[tracker]\naddress = \"b\"\n[rerun]\naddress = \"c\"\n[human.decision]\ntau = 1\n\
-                        [[item]]\nid = \"d\"\n[[item]]\nid = \"e\"\n[plan]\nform = { after = [2] }\n";
-
-    fn line(path: &str, nth: usize) -> Option<&str> {
-        place_of(TEXT, path, nth).map(|place| &TEXT[place])
-    }
-
-    #[test]
-    fn a_setting_is_found_in_its_own_table() {
-        assert_eq!(line("rerun.address", 0), Some("address = \"c\""));
-        assert_eq!(line("tracker.address", 0), Some("address = \"b\""));
-        assert_eq!(line("human.tau", 0), Some("tau = 1"));
-        assert_eq!(line("item.id", 1), Some("id = \"e\""));
-        assert_eq!(line("form.after", 0), Some("after = [2]"));
-        assert_eq!(line("name", 0), Some("name = \"a\""));
-        assert_eq!(line("display.address", 0), None);
-    }
-}

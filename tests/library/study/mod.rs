@@ -2,6 +2,7 @@
 
 mod arms;
 mod effect;
+mod numbers;
 mod planned;
 mod power;
 mod prevention;

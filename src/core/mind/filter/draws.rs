@@ -352,7 +352,7 @@ impl DistinctWorlds {
     }
 
     /// Number of distinct worlds among the draws.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.known.len()
     }
 

@@ -8,4 +8,4 @@ pub mod dataset;
 pub mod events;
 pub(crate) mod recording_tables;
 pub(crate) mod sample_rows;
-pub(crate) mod tsv;
+pub mod tsv;

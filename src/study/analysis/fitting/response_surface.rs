@@ -104,7 +104,7 @@ impl QuadraticSurface {
         by
     }
 
-    pub(crate) fn is_convex(&self) -> bool {
+    pub fn is_convex(&self) -> bool {
         inverse(self.curvature.clone()).is_some()
     }
 
@@ -146,46 +146,4 @@ fn pairs(n: usize) -> Vec<(usize, usize)> {
 fn terms(by: &[f64]) -> Vec<f64> {
     let products = pairs(by.len()).into_iter().map(|(one, other)| by[one] * by[other]);
     std::iter::once(1.0).chain(by.iter().copied()).chain(products).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn finds_minimum_and_curvature_of_what_is_quadratic() {
-        let function = |x: &[f64]| {
-            let (a, b) = (x[0] - 1.0, x[1] + 2.0);
-            3.0 + 2.0 * a * a + 1.5 * b * b + a * b
-        };
-        let (centre, steps) = ([0.9, -2.2], [0.4, 0.3]);
-        let found = surface(function, &centre, &steps).expect("a surface");
-        let least = found.least(&[-REACH; 2], &[REACH; 2]);
-        assert!((found.at(&least) - 3.0).abs() < 1e-9 && found.noise < 1e-9, "{found:?}");
-        for (index, expected) in [1.0, -2.0].into_iter().enumerate() {
-            assert!((centre[index] + least[index] * steps[index] - expected).abs() < 1e-9, "{least:?}");
-        }
-        // The test function has the second derivatives 4, 3, and 1 across.
-        let per_step = |row: usize, column: usize| found.curvature[(row, column)] / (steps[row] * steps[column]);
-        for ((row, column), expected) in [((0, 0), 4.0), ((1, 1), 3.0), ((0, 1), 1.0), ((1, 0), 1.0)] {
-            assert!((per_step(row, column) - expected).abs() < 1e-9, "{found:?}");
-        }
-        // With slopes whose covariance is twice the curvature, variances are twice those of the observed information.
-        for (share, times) in [(2.0, 2.0), (0.5, 1.0)] {
-            let variances = found.variances(&(&found.curvature * share)).expect("variances");
-            for (index, expected) in [3.0 / 11.0, 4.0 / 11.0].into_iter().enumerate() {
-                assert!((variances[index] * steps[index].powi(2) - times * expected).abs() < 1e-9, "{variances}");
-            }
-        }
-        assert_eq!(points(2), 11);
-    }
-
-    #[test]
-    fn a_valley_has_no_covariance_and_ends_at_a_bound() {
-        let valley = surface(|x| x[0] * x[0], &[0.0, 0.0], &[1.0, 1.0]).expect("a surface");
-        assert!(!valley.is_convex() && valley.variances(&valley.curvature).is_none());
-        let saddle = surface(|x| x[0] * x[0] - x[1] * x[1] - 0.1 * x[1], &[0.0, 0.0], &[1.0, 1.0]);
-        let least = saddle.expect("a surface").least(&[-1.0, -1.0], &[1.0, 1.0]);
-        assert!(least[0].abs() < 1e-9 && least[1] == 1.0, "{least:?}");
-    }
 }

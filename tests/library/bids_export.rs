@@ -1,5 +1,6 @@
 //! Recordings as a BIDS data set: every event has a row, durations are those of the log, and no two codes become one label.
 
+use strum::VariantNames;
 use tomcom_study::analysis::bids::dataset::{BidsLabelMap, session_label};
 use tomcom_study::analysis::bids::events::LEVELS;
 use tomcom_study::bids_export::{BidsSummary, describe, export};
@@ -65,10 +66,7 @@ fn every_event_of_the_golden_recordings_has_its_row() {
 
 #[test]
 fn every_kind_of_event_but_samples_has_a_meaning() {
-    let source = fs::read_to_string("src/session/event.rs").expect("the events");
-    let (_, names) = source.split_once("pub fn kind(&self)").expect("the names of events");
-    let (names, _) = names.split_once("\n    }\n").expect("their end");
-    let names: BTreeSet<&str> = names.split("=> \"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let names: BTreeSet<&str> = Event::VARIANTS.iter().copied().collect();
     let meant: BTreeSet<&str> = LEVELS.iter().map(|(kind, _)| *kind).collect();
     let missing: Vec<&&str> = names.symmetric_difference(&meant).collect();
     assert_eq!(missing, [&"gaze", &"robot_moves"]);

@@ -1,9 +1,13 @@
 //! The participant's display: what is told to the page, in which words, and what may never be.
 
+use std::time::Instant;
+
+use tomcom::run::live::display::{PageEvent, press};
 use tomcom_core::communication::signals;
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_devices::sight::{DisplayStage, TrialClockState, scene, sight, time_left};
 use tomcom_session::files::LanguageFile;
+use tomcom_session::files::built_in_session;
 use tomcom_session::files::parse::parse;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::wall_display::{DisplayEvent, DisplaySpec};
@@ -458,4 +462,18 @@ fn both_languages_have_a_line_for_every_reason_that_names_no_content() {
         assert_eq!(lines.len(), 10, "{language}");
         assert!(lines.iter().all(|line| line.chars().count() <= 40 && line.ends_with('.')), "{lines:?}");
     }
+}
+
+#[test]
+fn a_press_that_is_refused_names_its_button_in_signs_that_can_be_shown() {
+    let files = built_in_session().expect("the program's own session");
+    let session = Session::new(Arc::new(files.kitchen.kitchen), files.spec, 0);
+    let refused = |button: &str| {
+        let PageEvent { event, notice } = press(button.to_string(), Instant::now(), &session, SessionTime::ZERO);
+        assert!(event.is_none(), "{event:?}");
+        notice.expect("a notice").1
+    };
+    assert!(refused("explode").contains("\"explode\""));
+    let text = refused(&format!("\u{1b}[2J{}", "x".repeat(5000)));
+    assert!(text.contains("[2J") && !text.contains('\u{1b}') && text.len() < 200, "{text}");
 }

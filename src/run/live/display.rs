@@ -86,7 +86,7 @@ impl ParticipantDisplay {
 
 /// What an input of the participant's page leads to: an event of the session, or a notice to the wizard.
 #[derive(Debug, Default)]
-pub(super) struct PageEvent {
+pub struct PageEvent {
     pub event: Option<Event>,
     pub notice: Option<(NoticeLevel, String)>,
 }
@@ -153,7 +153,7 @@ fn answered(reply: ParticipantResponse, session: &Session, now: SessionTime) -> 
 
 /// A press of the participant. The press's event has the time of reception, since time in the log never decreases; the
 /// time at which the button went down is recorded in addition.
-fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
+pub fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
         let named: String = printable(&button).chars().take(SHOWN_NAME).collect();
         let text =

@@ -7,7 +7,7 @@
 
 mod capture_orders;
 #[cfg(feature = "display")]
-mod display;
+pub mod display;
 #[cfg(not(feature = "display"))]
 #[path = "without_display.rs"]
 mod display;

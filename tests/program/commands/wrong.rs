@@ -24,6 +24,9 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["simulate", "sessions/default.toml", "--arm", "both"]);
+    for moment in ["1:60", "-3", "1:2:3", "x", "nan", ":30"] {
+        assert!(complaint(&["review", "nowhere", &format!("--at={moment}")]).contains(moment), "{moment}");
+    }
     for (word, hint) in [
         ("dance", "'tomcom operate SESSION'"),
         ("sessions/default.toml", "'tomcom operate sessions/default.toml'"),

@@ -13,7 +13,7 @@
 //!
 //! # The modules
 //!
-//! Imports go one way, from right to left: `console`, `edge`, `run`, `cli`. ARCHITECTURE.md says what
+//! Imports go one way, from right to left: `console`, `run`, `cli`. ARCHITECTURE.md says what
 //! each contains, and what it must not depend on.
 //!
 //! # Features
@@ -33,5 +33,4 @@
 
 pub mod cli;
 pub mod console;
-pub mod edge;
 pub mod run;

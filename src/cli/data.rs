@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::list::{exists, gathered};
 use super::output::{OutputFormat, print, progress, put, put_aside};
-use crate::edge::forget::{self, ParticipantData};
+use crate::run::forget::{self, ParticipantData};
 use crate::run::review_console;
 use tomcom_core::base::text::count;
 use tomcom_session::person_code;

@@ -6,7 +6,7 @@ use super::args::FitArgs;
 use super::failure::Failure;
 use super::list::gathered;
 use super::output::{print, progress};
-use crate::edge::files;
+use crate::run::files;
 use tomcom_study::analysis::fitting;
 use tomcom_study::fit;
 

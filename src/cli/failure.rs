@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::edge::forget::ParticipantDeletionError;
 use crate::run::error::{LiveError, ReviewError};
+use crate::run::forget::ParticipantDeletionError;
 use tomcom_session::features::MissingFeature;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::RecordingError;

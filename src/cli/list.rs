@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::edge::near_path;
+use crate::run::near_path;
 use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::count;
 use tomcom_session::log::LOG_NAME;

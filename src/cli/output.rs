@@ -11,7 +11,7 @@ use miette::{Diagnostic, LabeledSpan, Report, Severity, SourceCode};
 use serde::Serialize;
 
 use super::failure::Failure;
-use crate::edge::terminal;
+use crate::run::terminal;
 use tomcom_core::base::text::printable_lines;
 
 /// Format of a command's output: text or JSON.

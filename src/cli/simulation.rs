@@ -4,7 +4,7 @@ use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
 use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
-use crate::edge::files;
+use crate::run::files;
 use crate::run::simulate;
 use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::ConceptName;

@@ -8,7 +8,7 @@ use clap::Args;
 use super::failure::{Failure, wrong_argument, wrong_setting};
 use super::operate::address_without_port;
 use super::output::put;
-use crate::edge::files;
+use crate::run::files;
 use crate::run::options::{SessionStart, SettingOverrides};
 use crate::run::series;
 use tomcom_session::files::file_error::FileError;

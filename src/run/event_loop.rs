@@ -13,7 +13,7 @@ use crate::console::lists::RecordingPicker;
 use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
-use crate::edge::terminal::TerminalScreen;
+use crate::run::terminal::TerminalScreen;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::Session;

@@ -1,15 +1,26 @@
-//! Shells that run sessions: they combine session, robot, participant, files and clock, which no other module combines.
+//! Shells that run sessions: they combine session, robot, participant, files and clock, which no other module combines. What
+//! they stand on touches the outside: terminal, clock, key file, doctor, forget.
 
 mod advisor_thread;
+pub mod ask;
+pub mod clock;
 pub mod comparison_thread;
+pub mod doctor;
 pub mod error;
 mod event_loop;
+pub mod files;
+pub mod forget;
+mod frames;
+pub mod key_file;
 pub mod leaving;
+pub mod list_cache;
 pub mod live;
+pub mod near_path;
 #[cfg(feature = "rerun")]
 pub mod open_viewer;
 mod operator_station;
 pub mod options;
+pub mod picture_file;
 pub mod plan;
 mod rater_files;
 pub mod recording_list;
@@ -19,5 +30,8 @@ pub mod seekable_replay;
 pub mod series;
 pub mod simulate;
 mod start_prompt;
+pub mod terminal;
+pub mod terminal_bytes;
+pub mod terminal_input;
 pub mod train;
 mod training_shell;

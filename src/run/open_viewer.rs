@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use tempfile::TempPath;
 
-use crate::edge::terminal::asked_to_end;
+use crate::run::terminal::asked_to_end;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};

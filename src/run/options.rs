@@ -4,7 +4,7 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::edge::files;
+use crate::run::files;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::LogHeader;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::edge::files::read_session;
+use tomcom::run::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_core::mind::model::HumanModel;

@@ -1,7 +1,7 @@
 //! Recordings that are read together: each trial counts once, whatever leads to it, however often it was copied and corrected.
 
 use miette::Diagnostic;
-use tomcom::edge::forget;
+use tomcom::run::forget;
 use tomcom::run::recording_list::{RecordingListDetail, list};
 use tomcom::run::series::recordings_of;
 use tomcom_session::log::{CORRECTION_NAME, RecordingLock, correct, rule};

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use tomcom::console::view::theme::TerminalBackground;
-use tomcom::edge::ask::background;
-use tomcom::edge::clock::SessionClock;
+use tomcom::run::ask::background;
+use tomcom::run::clock::SessionClock;
 use tomcom_session::files::WallTime;
 
 use crate::support::*;

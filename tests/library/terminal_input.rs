@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use tomcom::console::ConsoleMessage::{self, Click, Focus, Key, Paste, Pointer, Wheel};
-use tomcom::edge::terminal_bytes::TerminalParser;
-use tomcom::edge::terminal_input::TerminalInput;
+use tomcom::run::terminal_bytes::TerminalParser;
+use tomcom::run::terminal_input::TerminalInput;
 use tomcom_core::base::rng::Stream;
 
 use crate::support::*;

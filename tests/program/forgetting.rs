@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use tomcom::edge::files::read_session;
+use tomcom::run::files::read_session;
 use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_session::LogHeader;
 use tomcom_session::headless::SimulationShard;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
-use tomcom::edge::files::read_session;
+use tomcom::run::files::read_session;
 use tomcom_session::LogHeader;
 use tomcom_session::log::LOG_NAME;
 use tomcom_session::plan::{PlanPosition, Study, WantedRecording};

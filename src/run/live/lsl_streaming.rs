@@ -4,7 +4,7 @@
 use std::rc::Rc;
 
 use crate::console::console_model::LslStatus;
-use crate::edge::clock::SessionClock;
+use crate::run::clock::SessionClock;
 use crate::run::operator_station::OperatorStation;
 use tomcom_core::base::text::count;
 use tomcom_devices::lsl::{LslCounts, LslSample, LslStreams};

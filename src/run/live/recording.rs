@@ -5,7 +5,7 @@ use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
-use crate::edge::doctor::free_bytes;
+use crate::run::doctor::free_bytes;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
 use tomcom_session::history::wording;
 use tomcom_session::log::{LogWriter, RecordingWriteError};

@@ -9,7 +9,7 @@ mod sessions;
 
 use std::sync::LazyLock;
 
-use tomcom::edge::files::read_kitchen;
+use tomcom::run::files::read_kitchen;
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::bodies::HandPose;

@@ -1,6 +1,6 @@
 //! The motion of the arm to its buttons, and its inverse kinematics.
 
-use tomcom::edge::files::read_kitchen;
+use tomcom::run::files::read_kitchen;
 use tomcom_arm::inverse::{twist, wrapped};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::reach::{ArmSurroundings, Obstruction};

@@ -3,7 +3,7 @@
 
 mod simulated;
 
-use tomcom::edge::files::read_kitchen;
+use tomcom::run::files::read_kitchen;
 use tomcom_core::base::number_range::{NumberRange, numbers};
 use tomcom_core::kitchen::files::LAYOUT_RANGES;
 use tomcom_core::mind::choice::ChoiceModel;

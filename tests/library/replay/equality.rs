@@ -1,6 +1,6 @@
 //! The same seed gives the same recording, and a recording the same session, from the golden recordings on.
 
-use tomcom::edge::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
+use tomcom::run::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use tomcom_session::header::VERSION;
 
 use super::{SESSIONS, by_hand, folder, same, simulated};

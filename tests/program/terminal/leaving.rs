@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use rustix::process::Signal;
-use tomcom::edge::terminal::TerminalScreen;
+use tomcom::run::terminal::TerminalScreen;
 
 use crate::pseudo_terminal::Terminal;
 

@@ -8,7 +8,7 @@ mod wizard;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::edge::files::read_session;
+use tomcom::run::files::read_session;
 use tomcom_core::kitchen::Kitchen;
 
 fn kitchen(session: &str) -> Arc<Kitchen> {

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use tomcom::console::ConsoleMessage;
-use tomcom::edge::key_file::key_map;
-use tomcom::edge::terminal_bytes::TerminalParser;
+use tomcom::run::key_file::key_map;
+use tomcom::run::terminal_bytes::TerminalParser;
 use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::raters::CodableErrors;

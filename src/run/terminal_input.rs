@@ -33,8 +33,8 @@ mod reading {
     use tokio::sync::mpsc::Sender;
 
     use super::{ConsoleMessage, TerminalInput, WAITING, channel};
-    use crate::edge::terminal::TerminalScreen;
-    use crate::edge::terminal_bytes::TerminalParser;
+    use crate::run::terminal::TerminalScreen;
+    use crate::run::terminal_bytes::TerminalParser;
 
     impl TerminalInput {
         /// Begins to read standard input, which is a terminal in raw mode.

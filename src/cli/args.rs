@@ -1,10 +1,11 @@
 //! The commands of the program `tomcom` and their arguments.
 
 use std::path::PathBuf;
+use tomcom_core::communication::concept::ConceptName;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
+use super::choices::{ArmArg, SimulatedCondition, concept_parser};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::list::ListArgs;
@@ -130,8 +131,8 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_enum)]
     pub(super) condition: Option<SimulatedCondition>,
     /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) concept: Option<ConceptArg>,
+    #[arg(long, value_parser = concept_parser())]
+    pub(super) concept: Option<ConceptName>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,

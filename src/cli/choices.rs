@@ -1,6 +1,7 @@
 //! Values of command line options that stand for session settings.
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
@@ -13,24 +14,6 @@ pub(super) enum ParticipantArg {
     Keyboard,
     /// A person at the wall display: a page in a browser, with keys, gamepad or touch.
     Display,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum GazeArg {
-    /// The simulated participant's gaze.
-    Simulated,
-    /// The mouse pointer over the kitchen, at the console or on the wall display.
-    Mouse,
-    /// The eye tracker Pupil Core, through the program Pupil Capture.
-    Pupil,
-    /// Recorded gaze from the file that --gaze-file names.
-    File,
-    /// Gaze samples as lines of JSON over TCP or UDP.
-    Json,
-    /// A stream of the Lab Streaming Layer: see [lsl.gaze] in the session file.
-    Lsl,
-    /// No gaze.
-    None,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -60,29 +43,22 @@ pub(super) enum ConditionArg {
     Assistant,
 }
 
-/// Communication concept of the assistant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ConceptArg {
-    /// Signals that save more presses than they cost (ToM-Com).
-    TomCom,
-    /// Signals about sufficiently certain false beliefs (ToM).
-    Tom,
-    /// Proposals of the next good presses after an error (DEV); on the display where the assistant acts by itself, at
-    /// the console where a wizard decides.
-    Dev,
-    /// No signals.
-    None,
+/// Reads one of these values by its name; lists of choices say what each is.
+fn named<T: Copy + Send + Sync + 'static, const N: usize>(
+    values: [T; N],
+    entry: fn(T) -> (&'static str, &'static str),
+) -> impl TypedValueParser<Value = T> {
+    let choices = values.map(|value| PossibleValue::new(entry(value).0).help(entry(value).1));
+    PossibleValuesParser::new(choices)
+        .try_map(move |name| values.into_iter().find(|value| entry(*value).0 == name).ok_or("no such name"))
 }
 
-impl From<ConceptArg> for ConceptName {
-    fn from(concept: ConceptArg) -> ConceptName {
-        match concept {
-            ConceptArg::TomCom => ConceptName::TomCom,
-            ConceptArg::Tom => ConceptName::Tom,
-            ConceptArg::Dev => ConceptName::Dev,
-            ConceptArg::None => ConceptName::None,
-        }
-    }
+pub(super) fn concept_parser() -> impl TypedValueParser<Value = ConceptName> {
+    named(ConceptName::ALL, |concept| (concept.name(), concept.entry().sends))
+}
+
+pub(super) fn gaze_parser() -> impl TypedValueParser<Value = GazeSource> {
+    named(GazeSource::ALL, |source| (source.entry().name, source.entry().about))
 }
 
 impl From<ParticipantArg> for ParticipantKind {
@@ -91,20 +67,6 @@ impl From<ParticipantArg> for ParticipantKind {
             ParticipantArg::Simulated => ParticipantKind::Simulated,
             ParticipantArg::Keyboard => ParticipantKind::Keyboard,
             ParticipantArg::Display => ParticipantKind::Display,
-        }
-    }
-}
-
-impl From<GazeArg> for GazeSource {
-    fn from(gaze: GazeArg) -> GazeSource {
-        match gaze {
-            GazeArg::Simulated => GazeSource::Simulated,
-            GazeArg::Mouse => GazeSource::Mouse,
-            GazeArg::Pupil => GazeSource::Pupil,
-            GazeArg::File => GazeSource::File,
-            GazeArg::Json => GazeSource::Json,
-            GazeArg::Lsl => GazeSource::Lsl,
-            GazeArg::None => GazeSource::None,
         }
     }
 }

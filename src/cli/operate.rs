@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
+use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept_parser, gaze_parser};
 use super::failure::{Failure, wrong_setting};
 use super::output::{put, put_aside};
 use crate::run::options::{self, SeriesRequest, SessionStart, SettingOverrides};
@@ -41,8 +41,8 @@ pub(super) struct OperateFlags {
     #[arg(long, value_enum)]
     pub(super) participant: Option<ParticipantArg>,
     /// Gaze source, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) gaze: Option<GazeArg>,
+    #[arg(long, value_parser = gaze_parser())]
+    pub(super) gaze: Option<GazeSource>,
     /// Replay gaze from this file: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of Pupil
     /// Cloud's Marker Mapper, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
@@ -58,8 +58,8 @@ pub(super) struct OperateFlags {
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
     /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) concept: Option<ConceptArg>,
+    #[arg(long, value_parser = concept_parser())]
+    pub(super) concept: Option<ConceptName>,
     /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the
     /// console shows. An address without a port: the port is that of the session file.
     #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
@@ -98,11 +98,11 @@ pub(super) fn new_session(
     let overrides = SettingOverrides {
         participant: flags.participant.map(ParticipantKind::from),
         arm: flags.arm.map(ArmKind::from),
-        gaze: flags.gaze.map(GazeSource::from),
+        gaze: flags.gaze,
         gaze_file: flags.gaze_file.clone(),
         gaze_start_s: flags.gaze_start,
         condition: flags.condition.map(Condition::from),
-        concept: flags.concept.map(ConceptName::from),
+        concept: flags.concept,
         seed: flags.seed,
         listen: flags.listen,
         code: flags.code.clone(),

@@ -7,7 +7,6 @@ use super::rerun_messages::save_all;
 use crate::run::files;
 use crate::run::simulate;
 use tomcom_core::base::text::count;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::WizardKind;
 use tomcom_session::SessionSpec;
@@ -53,7 +52,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
-    files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
+    files.spec.assistant.concept = args.concept.unwrap_or(files.spec.assistant.concept);
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
     files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };

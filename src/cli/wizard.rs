@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::ConceptArg;
+use super::choices::concept_parser;
 use super::failure::Failure;
 use super::list::{chosen, each_chosen, exists, gathered};
 use super::operate::{OperateFlags, new_session};
@@ -38,11 +38,11 @@ pub(super) struct CompareArgs {
     #[arg(long)]
     follow: bool,
     /// Further concepts besides the session's own, separated by commas.
-    #[arg(long, value_enum, value_delimiter = ',')]
-    with: Vec<ConceptArg>,
+    #[arg(long, value_parser = concept_parser(), value_delimiter = ',')]
+    with: Vec<ConceptName>,
     /// Show only these concepts; they are asked for advice, as with --with.
-    #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "follow")]
-    only: Vec<ConceptArg>,
+    #[arg(long, value_parser = concept_parser(), value_delimiter = ',', conflicts_with = "follow")]
+    only: Vec<ConceptName>,
     /// Window of a match, in presses of the human: communications further apart do not match.
     #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
     window: u32,
@@ -98,7 +98,7 @@ pub(super) struct TrainArgs {
 }
 
 pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
-    let with: Vec<ConceptName> = args.with.iter().chain(&args.only).map(|&concept| concept.into()).collect();
+    let with: Vec<ConceptName> = args.with.iter().chain(&args.only).copied().collect();
     let request = |window: u32| SenderComparisonSettings { with: with.clone(), window };
     let session = match &args.paths[..] {
         [] => Some(None),
@@ -128,7 +128,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         figures.pairs.extend(ComparisonSummary::from_recordings(&watch(window)?).pairs);
     }
     if !args.only.is_empty() {
-        let only: Vec<ConceptName> = args.only.iter().map(|&concept| concept.into()).collect();
+        let only = args.only.clone();
         figures = figures.only(&only);
     }
     if let Some(wizard) = &args.wizard {

@@ -25,7 +25,6 @@ use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunicati
 use tomcom_session::history::signal_judge::SignalJudge;
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::replay::ReplayLandmark;
-use tomcom_session::settings::GazeSource;
 use tomcom_session::{Event, TimelineEntry, TimelineEvent};
 
 /// Time for which a notice is shown, in seconds.
@@ -299,18 +298,6 @@ impl ConsoleModel {
     pub fn is_error(&self, entry: &TimelineEntry) -> bool {
         matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
             && self.errors.binary_search(&entry.time).is_ok()
-    }
-
-    pub fn gaze_label(source: GazeSource) -> &'static str {
-        match source {
-            GazeSource::Simulated => "simulated",
-            GazeSource::Mouse => "mouse",
-            GazeSource::Pupil => "pupil",
-            GazeSource::File => "file",
-            GazeSource::Json => "json",
-            GazeSource::Lsl => "lsl",
-            GazeSource::None => "none",
-        }
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{MietteHandlerOpts, Report};
@@ -133,8 +134,8 @@ struct SweepArgs {
     #[arg(long, value_enum, default_value = "assistant")]
     condition: SenderArg,
     /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_enum)]
-    concept: Option<ConceptArg>,
+    #[arg(long, value_parser = concept_parser())]
+    concept: Option<ConceptName>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     arm: Option<ArmArg>,
@@ -154,16 +155,10 @@ enum SenderArg {
     Assistant,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum ConceptArg {
-    /// Signals that save more presses than they cost (ToM-Com).
-    TomCom,
-    /// Signals about sufficiently certain false beliefs (ToM).
-    Tom,
-    /// Proposals of the next good presses after an error (DEV).
-    Dev,
-    /// No signals.
-    None,
+/// Reads the name of a communication concept.
+fn concept_parser() -> impl TypedValueParser<Value = ConceptName> {
+    let choices = ConceptName::ALL.map(|concept| PossibleValue::new(concept.name()).help(concept.entry().sends));
+    PossibleValuesParser::new(choices).try_map(|name| ConceptName::named(&name).ok_or("no concept"))
 }
 
 /// Compares the estimates before each press with recorded beliefs, and with the presses.
@@ -425,12 +420,7 @@ fn sweep(args: SweepArgs) -> Result<(), Failure> {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
-    spec.assistant.concept = args.concept.map_or(spec.assistant.concept, |concept| match concept {
-        ConceptArg::TomCom => ConceptName::TomCom,
-        ConceptArg::Tom => ConceptName::Tom,
-        ConceptArg::Dev => ConceptName::Dev,
-        ConceptArg::None => ConceptName::None,
-    });
+    spec.assistant.concept = args.concept.unwrap_or(spec.assistant.concept);
     spec.robot.arm = args.arm.map_or(spec.robot.arm, ArmKind::from);
     spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     let simulation = SimulationRequest { files, trials: args.trials, shard: args.shard, out: args.out };

@@ -347,6 +347,55 @@ pub enum GazeSource {
     None,
 }
 
+/// What the program calls a source of gaze.
+#[derive(Clone, Copy, Debug)]
+pub struct GazeSourceEntry {
+    /// Name in files, on the command line and at the console.
+    pub name: &'static str,
+    /// Name in the methods of a report.
+    pub title: &'static str,
+    /// What it is, for lists of choices.
+    pub about: &'static str,
+}
+
+impl GazeSource {
+    pub const ALL: [GazeSource; 7] = [
+        GazeSource::Simulated,
+        GazeSource::Mouse,
+        GazeSource::Pupil,
+        GazeSource::File,
+        GazeSource::Json,
+        GazeSource::Lsl,
+        GazeSource::None,
+    ];
+
+    /// The table of gaze sources.
+    pub const fn entry(self) -> GazeSourceEntry {
+        let (name, title, about) = match self {
+            GazeSource::Simulated => ("simulated", "simulated eyes", "The simulated participant's gaze"),
+            GazeSource::Mouse => (
+                "mouse",
+                "the mouse pointer in place of gaze",
+                "The mouse pointer over the kitchen, at the console or on the wall display",
+            ),
+            GazeSource::Pupil => {
+                ("pupil", "Pupil Core", "The eye tracker Pupil Core, through the program Pupil Capture")
+            }
+            GazeSource::File => ("file", "recorded gaze", "Recorded gaze from the file that --gaze-file names"),
+            GazeSource::Json => {
+                ("json", "an eye tracker that sends JSON lines", "Gaze samples as lines of JSON over TCP or UDP")
+            }
+            GazeSource::Lsl => (
+                "lsl",
+                "an eye tracker in the Lab Streaming Layer",
+                "A stream of the Lab Streaming Layer: see [lsl.gaze] in the session file",
+            ),
+            GazeSource::None => ("none", "no gaze", "No gaze"),
+        };
+        GazeSourceEntry { name, title, about }
+    }
+}
+
 /// From whom the JSON gaze input accepts datagrams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -14,7 +14,6 @@ use crate::statistics::mean;
 use crate::svg::{PlotAxis, SvgChart, document, minus};
 use crate::tables::trials::HEADLINE;
 use crate::trial_statistics::TrialStatistics;
-use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::detection::CalibrationBin;
 use tomcom_session::study_arm::StudyArm;
 
@@ -153,7 +152,7 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
     let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
     let mut chart = SvgChart::new(420.0, 380.0, x, y);
     for roc in &figures.roc {
-        chart.band(class_of(roc.concept), &roc.band);
+        chart.band(roc.concept.name(), &roc.band);
     }
     for roc in &figures.roc {
         curve(&mut chart, roc, f64::INFINITY, |point| (point.fpr, point.tpr));
@@ -177,7 +176,7 @@ pub(crate) fn equal_signals(figures: &StudySummary) -> Option<Markup> {
 }
 
 fn curve(chart: &mut SvgChart, roc: &ConceptRocCurve, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
-    let class = class_of(roc.concept);
+    let class = roc.concept.name();
     let is_drawn = |point: &&RocPoint| of(point).0 <= to;
     let mut points: Vec<(f64, f64)> = roc.points.iter().filter(is_drawn).map(of).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -205,15 +204,6 @@ pub(crate) fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
         chart.point("tom-com", bin.predicted, bin.observed, &title);
     }
     Some(chart.finish("Calibration of the estimate by answers to probes"))
-}
-
-fn class_of(concept: ConceptName) -> &'static str {
-    match concept {
-        ConceptName::TomCom => "tom-com",
-        ConceptName::Tom => "tom",
-        ConceptName::Dev => "dev",
-        ConceptName::None => "none",
-    }
 }
 
 fn group_class(pair: &TrialPair) -> &'static str {

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use tomcom_core::kitchen::{LocationId, LocationKind};
 use tomcom_people::wizard::{WizardKind, WizardSpec};
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
+use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, RobotSpec};
 use tomcom_session::{LogHeader, Session};
 
 /// Settings and circumstances by name (key), from one or several recordings; every value that occurred is kept.
@@ -40,7 +40,7 @@ impl RecordingFacts {
         if spec.participant.kind == ParticipantKind::Simulated {
             is("traits", parameters(&spec.participant.population.clone().unwrap_or_default()));
         }
-        is("gaze", gaze_source(spec.participant.gaze).to_string());
+        is("gaze", spec.participant.gaze.entry().title.to_string());
         is("participant", participant_kind(spec.participant.kind).to_string());
         if let Some(orders) = spec.trial.orders {
             is("orders", orders.to_string());
@@ -130,18 +130,6 @@ fn script(wizard: &WizardSpec) -> String {
         100.0 * wizard.sees_overlooked,
         100.0 * wizard.guesses_wrong
     )
-}
-
-fn gaze_source(source: GazeSource) -> &'static str {
-    match source {
-        GazeSource::Simulated => "simulated eyes",
-        GazeSource::Mouse => "the mouse pointer in place of gaze",
-        GazeSource::Pupil => "Pupil Core",
-        GazeSource::File => "recorded gaze",
-        GazeSource::Json => "an eye tracker that sends JSON lines",
-        GazeSource::Lsl => "an eye tracker in the Lab Streaming Layer",
-        GazeSource::None => "no gaze",
-    }
 }
 
 fn participant_kind(kind: ParticipantKind) -> &'static str {

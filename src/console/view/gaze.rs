@@ -42,7 +42,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         alarm(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
         return;
     }
-    let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
+    let source = session.spec.participant.gaze.entry().name;
     // The gaze panel shows only the most frequent fault; the preflight checks and the summaries show all.
     let worst = faults(session).into_iter().max_by_key(|(samples, _)| *samples);
     let rejected = Some(model.rejected_senders).filter(|senders| *senders > 0);

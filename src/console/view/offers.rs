@@ -18,7 +18,7 @@ use crate::console::mouse::ClickAction;
 use crate::console::panels::Panel;
 use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::communication::{Sender, Signal, unavailable};
@@ -87,9 +87,9 @@ impl ShownOffer<'_> {
     /// What the offered signal saves: "saves ≈ 4 presses".
     fn saves(&self, brush: &Painter, session: &Session) -> String {
         let Some(benefit) = self.benefit else { return String::new() };
-        match session.spec.assistant.concept {
-            ConceptName::Tom => format!("belief deviation {benefit:.2}"),
-            _ => {
+        match session.spec.assistant.concept.unit() {
+            BenefitUnit::Deviation => format!("belief deviation {benefit:.2}"),
+            BenefitUnit::Presses | BenefitUnit::None => {
                 let about = if brush.theme.unicode { "≈" } else { "about" };
                 format!("saves {about} {}", count(benefit.round().max(1.0) as u64, "press", "presses"))
             }
@@ -230,7 +230,7 @@ fn withheld(session: &Session, model: &ConsoleModel, wrong: &[AspectId]) -> Opti
 
 /// That signals are known, but that none saves as much as it costs.
 fn too_costly(session: &Session) -> Option<String> {
-    let is_estimated = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
+    let is_estimated = session.spec.assistant.concept.unit() != BenefitUnit::None;
     let options = session.advice.iter().flat_map(|advice| &advice.options);
     let best = options.max_by(|one, other| one.net.total_cmp(&other.net)).filter(|_| is_estimated)?;
     (best.net <= 0.0 && best.benefit >= NOTHING).then(|| "no signal is worth its cost".to_string())
@@ -297,11 +297,10 @@ fn quietly(brush: &mut Painter, area: Rect, text: &str) {
 
 /// Unit of the numbers in the list of signals, as the remark in the panel's title.
 fn remark(session: &Session) -> &'static str {
-    match session.spec.assistant.concept {
-        ConceptName::TomCom => "presses saved",
-        ConceptName::Tom => "deviation of beliefs",
-        ConceptName::Dev => "concept DEV",
-        ConceptName::None => "no communication concept",
+    match session.spec.assistant.concept.unit() {
+        BenefitUnit::Presses => "presses saved",
+        BenefitUnit::Deviation => "deviation of beliefs",
+        BenefitUnit::None => session.spec.assistant.concept.title(),
     }
 }
 
@@ -316,8 +315,8 @@ fn why_no_list(session: &Session) -> &'static str {
 
 /// The benefit of a signal in the unit of the communication concept: presses, or belief deviation.
 fn worth(option: &SignalOption, session: &Session) -> String {
-    match session.spec.assistant.concept {
-        ConceptName::Tom => format!("{:>4.2} ", option.benefit),
+    match session.spec.assistant.concept.unit() {
+        BenefitUnit::Deviation => format!("{:>4.2} ", option.benefit),
         // A benefit that rounds to zero is shown as 0.0, never as -0.0.
         _ => format!("{:>4.1} ", if option.benefit.abs() < NOTHING { 0.0 } else { option.benefit }),
     }
@@ -363,8 +362,11 @@ fn option_line(
 /// a line at the cost.
 fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &Session, role: TextRole) -> u16 {
     let signs = brush.theme.signs();
-    let (cost, of_tom) = (session.spec.assistant.price(), session.spec.assistant.concept == ConceptName::Tom);
-    let a_column = if of_tom { 1.0 / f64::from(GAUGE) } else { PRESSES_A_COLUMN };
+    let cost = session.spec.assistant.price();
+    let a_column = match session.spec.assistant.concept.unit() {
+        BenefitUnit::Deviation => 1.0 / f64::from(GAUGE),
+        BenefitUnit::Presses | BenefitUnit::None => PRESSES_A_COLUMN,
+    };
     let (full, open, line) = (signs.bar_full, signs.bar_empty, signs.frame[5]);
     let column = |worth: f64| worth / a_column;
     let (least, most) = (option.benefit - option.standard_error, option.benefit + option.standard_error);
@@ -391,11 +393,14 @@ fn cost_line(
     model: &ConsoleModel,
 ) {
     let price = session.spec.assistant.price();
-    let left = match session.spec.assistant.concept {
-        ConceptName::Tom => format!("{price:>4.2} threshold for a signal"),
-        ConceptName::Dev => "DEV proposes presses after an error: see the line of the offer".to_string(),
-        ConceptName::None => String::new(),
-        ConceptName::TomCom => format!("{price:>4.1} cost of a signal"),
+    let concept = session.spec.assistant.concept;
+    let left = match concept.unit() {
+        BenefitUnit::Deviation => format!("{price:>4.2} threshold for a signal"),
+        BenefitUnit::Presses => format!("{price:>4.1} cost of a signal"),
+        BenefitUnit::None if concept == ConceptName::Dev => {
+            "DEV proposes presses after an error: see the line of the offer".to_string()
+        }
+        BenefitUnit::None => String::new(),
     };
     let quiet = brush.style(TextRole::Quiet);
     let end = brush.text(inside.x, y, inside.width, &left, quiet);

@@ -106,28 +106,80 @@ pub enum ConceptName {
     None,
 }
 
+/// What the benefits and the price of a concept's signals are measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BenefitUnit {
+    /// Presses of the human that a signal saves.
+    Presses,
+    /// Expected deviation of the belief that a signal corrects, a probability.
+    Deviation,
+    /// The concept rates no signals.
+    None,
+}
+
+/// What the program knows of a concept beside its rule.
+#[derive(Clone, Copy, Debug)]
+pub struct ConceptEntry {
+    /// Name in files, on the command line and in style sheets.
+    pub name: &'static str,
+    /// Name in texts.
+    pub title: &'static str,
+    /// What it sends, for lists of choices.
+    pub sends: &'static str,
+    /// Unit of its benefits.
+    pub unit: BenefitUnit,
+}
+
 impl ConceptName {
     /// All communication concepts.
     pub const ALL: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
 
-    /// Name of the communication concept in files.
-    pub fn name(self) -> &'static str {
+    /// The table of concepts.
+    pub const fn entry(self) -> ConceptEntry {
         match self {
-            ConceptName::TomCom => "tom-com",
-            ConceptName::Tom => "tom",
-            ConceptName::Dev => "dev",
-            ConceptName::None => "none",
+            ConceptName::TomCom => ConceptEntry {
+                name: "tom-com",
+                title: "ToM-Com",
+                sends: "Signals that save more presses than they cost (ToM-Com)",
+                unit: BenefitUnit::Presses,
+            },
+            ConceptName::Tom => ConceptEntry {
+                name: "tom",
+                title: "ToM",
+                sends: "Signals about sufficiently certain false beliefs (ToM)",
+                unit: BenefitUnit::Deviation,
+            },
+            ConceptName::Dev => ConceptEntry {
+                name: "dev",
+                title: "DEV",
+                sends: "Proposals of the next good presses after an error (DEV); on the display where the assistant acts by \
+                        itself, at the console where a wizard decides",
+                unit: BenefitUnit::None,
+            },
+            ConceptName::None => {
+                ConceptEntry { name: "none", title: "no concept", sends: "No signals", unit: BenefitUnit::None }
+            }
         }
     }
 
+    /// Name of the communication concept in files.
+    pub const fn name(self) -> &'static str {
+        self.entry().name
+    }
+
     /// Name of the communication concept in texts.
-    pub fn title(self) -> &'static str {
-        match self {
-            ConceptName::TomCom => "ToM-Com",
-            ConceptName::Tom => "ToM",
-            ConceptName::Dev => "DEV",
-            ConceptName::None => "no concept",
-        }
+    pub const fn title(self) -> &'static str {
+        self.entry().title
+    }
+
+    /// The concept with this name in files.
+    pub fn named(name: &str) -> Option<ConceptName> {
+        ConceptName::ALL.into_iter().find(|concept| concept.name() == name)
+    }
+
+    /// Unit of the concept's benefits.
+    pub const fn unit(self) -> BenefitUnit {
+        self.entry().unit
     }
 }
 

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concept::ConceptName;
+use super::concept::{BenefitUnit, ConceptName};
 use super::recommendation::SignalReason;
 use super::signal::Signal;
 use crate::base::time::SessionTime;
@@ -233,11 +233,9 @@ impl OfferCloseThresholds {
     /// ToM: 0.1 of probability; one look at a place changes the belief about that place by more. DEV: its proposals
     /// have no net benefit.
     pub fn for_concept(name: ConceptName) -> OfferCloseThresholds {
-        match name {
-            ConceptName::TomCom | ConceptName::Dev | ConceptName::None => {
-                OfferCloseThresholds { closes_below: -0.5, better_by: 0.5 }
-            }
-            ConceptName::Tom => OfferCloseThresholds { closes_below: -0.1, better_by: 0.1 },
+        match name.unit() {
+            BenefitUnit::Presses | BenefitUnit::None => OfferCloseThresholds { closes_below: -0.5, better_by: 0.5 },
+            BenefitUnit::Deviation => OfferCloseThresholds { closes_below: -0.1, better_by: 0.1 },
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::concept::ConceptName;
+use super::concept::{BenefitUnit, ConceptName};
 use crate::mind::model::LookingModel;
 
 /// Settings of the assistant, which recommends or sends signals.
@@ -114,9 +114,9 @@ impl RolloutSettings {
 impl AssistantSpec {
     /// The value that a signal's benefit must exceed: the cost of communication in presses, or the threshold of ToM.
     pub fn price(&self) -> f64 {
-        match self.concept {
-            ConceptName::Tom => self.belief_threshold,
-            ConceptName::TomCom | ConceptName::Dev | ConceptName::None => self.cost_of_communication,
+        match self.concept.unit() {
+            BenefitUnit::Deviation => self.belief_threshold,
+            BenefitUnit::Presses | BenefitUnit::None => self.cost_of_communication,
         }
     }
 

@@ -15,7 +15,7 @@ use super::gaze_inlet::compare;
 use super::library::{LslLibrary, LslOutletHandle};
 use crate::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::concept::BenefitUnit;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Signal, signals};
 use tomcom_core::kitchen::{Agent, Kitchen, Location};
@@ -286,10 +286,12 @@ fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
     session_signals(spec, kitchen).into_iter().map(label).collect()
 }
 
-/// Unit of the channels with the net benefit of signals: presses, except for the concept ToM, which computes deviations
-/// of beliefs only.
+/// Unit of the channels with the net benefit of signals: presses, or the deviation of beliefs.
 fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
-    if spec.assistant.concept == ConceptName::Tom { "probability" } else { "presses" }
+    match spec.assistant.concept.unit() {
+        BenefitUnit::Deviation => "probability",
+        BenefitUnit::Presses | BenefitUnit::None => "presses",
+    }
 }
 
 /// Metadata that all LSL streams have: program, participant, study, and layout of the kitchen.

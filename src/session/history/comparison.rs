@@ -9,7 +9,7 @@ use crate::history::wording;
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use tomcom_core::measures::matching::{
@@ -213,7 +213,7 @@ impl SenderComparison {
             lines.push(format!(
                 "recommendation of {} at this time: {}",
                 lane.name,
-                thought(kitchen, advice, lane.concept == Some(ConceptName::Tom))
+                thought(kitchen, advice, lane.concept.is_some_and(|concept| concept.unit() == BenefitUnit::Deviation))
             ));
         }
         lines.extend(believed(kitchen, known));

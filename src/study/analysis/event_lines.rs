@@ -2,7 +2,7 @@
 
 use tomcom_core::base::text::count;
 use tomcom_core::base::text::printable;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::OfferedAdvice;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::{Agent, Kitchen};
@@ -189,8 +189,8 @@ fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Optio
     }
     let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
     let what = wording::signal(&best.signal);
-    let worth = match by {
-        ConceptName::Tom => format!("belief off by {:.2}", best.benefit),
+    let worth = match by.unit() {
+        BenefitUnit::Deviation => format!("belief off by {:.2}", best.benefit),
         _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),
     };
     let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));

@@ -4,7 +4,7 @@
 //! The human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an
 //! assistant, sends *signals* that show the human a recipe or a location. This crate is the program `tomcom` that runs
 //! such experiments. What it stands on are crates of their own: the model ([`tomcom_core`]), simulated people
-//! ([`tomcom_people`]), the robot arms ([`tomcom_arm`]), sessions with their recordings ([`tomcom_session`]), their devices
+//! ([`tomcom_people`]), the robot arms (`tomcom_arm`), sessions with their recordings ([`tomcom_session`]), their devices
 //! ([`tomcom_devices`]) and studies ([`tomcom_study`]).
 //!
 //! A **session** ([`tomcom_session::Session`]) is its event log. [`tomcom_session::apply()`] is the only way to change one. The

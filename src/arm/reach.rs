@@ -227,7 +227,7 @@ impl SerialArm {
             .collect()
     }
 
-    /// The first obstruction that is nearer to the arm than [`KEPT_M`]. Only the stick may touch the table.
+    /// The first obstruction that is nearer to the arm than `KEPT_M`. Only the stick may touch the table.
     pub fn in_the_way(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Obstruction> {
         let capsules = self.capsules(joints);
         let stick = self.links.len() - 1;

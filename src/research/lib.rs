@@ -1,6 +1,6 @@
 //! What the development of tomcom itself measures, and labs do not need: how accurate and how fast estimate and planner are.
 //!
-//! Each command of the program `tomcom-research` ([`cli`]) is a module. [`reference`] has filter and planner in their
+//! Each command of the program `tomcom-research` ([`cli`]) is a module. [`mod@reference`] has filter and planner in their
 //! plainest form, straight from the equations; the tests hold the crates of the program against them.
 
 #![deny(unsafe_code)]

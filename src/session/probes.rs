@@ -1,6 +1,6 @@
 //! Freeze probes: when one is due, which of its events a session accepts, and what they change.
 //!
-//! A running session asks [`upcoming`] after every event and records the event of a probe that is due; a replay
+//! A running session asks `upcoming` after every event and records the event of a probe that is due; a replay
 //! applies the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which
 //! stands still while the wizard pauses the probe.
 

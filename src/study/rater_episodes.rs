@@ -1,5 +1,5 @@
 //! False beliefs of participants: known from the recorded beliefs of simulated participants, or, of people, derived
-//! from the causes that raters gave to errors. [`RULE`] states the rule of this derivation, and the report prints it.
+//! from the causes that raters gave to errors. `RULE` states the rule of this derivation, and the report prints it.
 //!
 //! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate is not
 //! used, so that the estimate can be evaluated against these episodes.
@@ -311,7 +311,7 @@ impl KnownFalseBeliefs {
         KnownFalseBeliefs { basis: BeliefSource::Recorded, targets, episodes }
     }
 
-    /// The false beliefs that follow from codes on which two raters agree (see [`super::rater_episodes::RULE`]).
+    /// The false beliefs that follow from codes on which two raters agree (see `super::rater_episodes::RULE`).
     pub fn coded(
         basis: BeliefSource,
         kitchen: &Kitchen,

@@ -88,11 +88,11 @@ pub struct ConceptRocCurve {
     pub points: Vec<RocPoint>,
     /// Confidence band of the curve, as false positive rate with lower and upper true positive rate.
     pub band: Vec<[f64; 3]>,
-    /// True positive rates at the numbers of signals in [`EQUAL_SIGNALS`].
+    /// True positive rates at the numbers of signals in `EQUAL_SIGNALS`.
     pub at_equal_signals: Vec<BootstrapInterval>,
     pub useless_at_equal_signals: Vec<BootstrapInterval>,
     /// Difference between the first concept's true positive rate and this concept's, at the numbers of signals in
-    /// [`EQUAL_SIGNALS`].
+    /// `EQUAL_SIGNALS`.
     pub behind_first: Vec<BootstrapInterval>,
 }
 

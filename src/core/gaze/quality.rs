@@ -52,7 +52,7 @@ impl GazeFaultCounts {
 pub struct DroppedInputCounts {
     /// Malformed messages, lines and gaze samples: truncated, of a wrong type, not a number.
     pub malformed: u64,
-    /// Gaze samples above the highest accepted rate, [`MAX_HZ`].
+    /// Gaze samples above the highest accepted rate, `MAX_HZ`.
     pub too_frequent: u64,
     /// Gaze samples that arrived faster than they could be processed.
     pub overrun: u64,

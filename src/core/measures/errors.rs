@@ -30,7 +30,7 @@ pub struct PressVerdict {
     pub regret: i32,
     /// Excess of the press's regret over that of the human's best press.
     pub excess: i32,
-    /// Whether somebody else changed the same place within [`RACE_S`] before the press; such presses do not count as
+    /// Whether somebody else changed the same place within `RACE_S` before the press; such presses do not count as
     /// errors.
     pub race: bool,
     /// Whether the press counts as an error.

@@ -5,7 +5,7 @@
 //! after the belief became false and before the third error (the estimate from before a press is before that press). A
 //! false flag is a flag on an aspect that is believed right. There is one threshold for locations and one for recipes.
 //! The chosen thresholds detect most episodes with at most [`MOST_FALSE_FLAGS`], and with aspects flagged at most
-//! [`MOST_WRONGLY_FLAGGED`] of the time while the aspects are believed right; among equal thresholds, those with the
+//! `MOST_WRONGLY_FLAGGED` of the time while the aspects are believed right; among equal thresholds, those with the
 //! fewest false flags are chosen. Thresholds are evaluated on trials of other participants than those on whose trials the
 //! thresholds were chosen: given thresholds on the trials that are named, else by cross-fitting, in which the trials of each
 //! half of the participants are evaluated with the thresholds of the other half, and the counts are added. A participant's
@@ -17,7 +17,7 @@ use super::detection::{BeliefsBeforePress, TrialBeliefs};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
 pub(crate) const MOST_WRONGLY_FLAGGED: f64 = 0.05;
-/// Largest number of false flags (on aspects that are believed right) per [`PER_PRESSES`] presses of the human.
+/// Largest number of false flags (on aspects that are believed right) per `PER_PRESSES` presses of the human.
 pub const MOST_FALSE_FLAGS: f64 = 0.7;
 /// The unit of the rate of false flags, in presses of the human.
 pub(crate) const PER_PRESSES: f64 = 20.0;

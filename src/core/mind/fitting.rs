@@ -232,7 +232,7 @@ pub struct TrialLikelihood {
     pub log_p: f64,
     /// Number of answers to probes.
     pub answers: u64,
-    /// Sum over answers of ln p(answer) under the estimate at the freeze, with the share [`ANSWERS_AT_RANDOM`] of
+    /// Sum over answers of ln p(answer) under the estimate at the freeze, with the share `ANSWERS_AT_RANDOM` of
     /// random answers, in nats.
     pub log_p_answers: f64,
     /// Log likelihood of each press and each answer in order of time, in nats. Which of them comes when does not depend

@@ -176,7 +176,7 @@ model_table! {
         /// Probability that an observation gives any other wrong content.
         anything: f64,
         /// Confidence at which half of a gaze sample's time counts as known; the share that counts rises linearly over
-        /// [`CONFIDENCE_RAMP`]. Where samples are observations: the least confidence of a sample that is used.
+        /// `CONFIDENCE_RAMP`. Where samples are observations: the least confidence of a sample that is used.
         min_confidence: f64,
         /// Length of the history of displayed states, in seconds; gaze samples taken earlier are not used.
         history_s: f64,

@@ -12,7 +12,7 @@ pub(crate) const MOST_PROPOSED: usize = 5;
 pub struct ProposedPresses([Option<ButtonId>; MOST_PROPOSED]);
 
 impl ProposedPresses {
-    /// A proposal with the first [`MOST_PROPOSED`] of these presses.
+    /// A proposal with the first `MOST_PROPOSED` of these presses.
     pub fn new(presses: impl IntoIterator<Item = ButtonId>) -> ProposedPresses {
         let mut all = ProposedPresses::default();
         all.0.iter_mut().zip(presses).for_each(|(place, press)| *place = Some(press));

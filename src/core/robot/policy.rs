@@ -220,7 +220,7 @@ fn steps<'a>(kitchen: &'a Kitchen, state: State, recipes: &'a Recipes) -> impl I
     buttons.filter_map(move |button| Some((button, kitchen.press(state, recipes, Agent::Robot, button)?)))
 }
 
-/// The shortest ways of at most [`MOST_PRESSES`] presses in which the robot alone serves this order; `None` without such
+/// The shortest ways of at most `MOST_PRESSES` presses in which the robot alone serves this order; `None` without such
 /// a way.
 pub fn own_ways(
     kitchen: &Kitchen,

@@ -6,7 +6,7 @@ use super::store::{CacheSlot, CostToGo, DecisionCosts, MAX_BUTTONS, SLOT_BITS, S
 use crate::kitchen::{Agent, ButtonAction, ContentId, LocationId, OrderContent, Recipes, State};
 
 impl CostToGo {
-    /// C(s, recipes): number of presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if the
+    /// C(s, recipes): number of presses until all present orders are served; 0 without orders, `UNREACHABLE` if the
     /// orders cannot be served.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         self.all_orders_with(Fidelity::Searched, state, recipes)

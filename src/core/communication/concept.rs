@@ -210,19 +210,17 @@ impl Concept for SilentConcept {
     }
 }
 
-// DEV: the deviation based communication concept. When the human's press was an error, DEV proposes the next good
-// presses (paper, "Concept comparisons": 1 to 5 presses).
-//
-// A proposal has a kind of signal of its own ([`Signal::Propose`](super::Signal::Propose)): "next: …". Most good
-// presses involve the human's own hand or a storage, about which there is no other signal, and highlighting the
-// location of a press would reveal its content, as the theory of mind concepts do. In trials of DEV the assistant
-// sends proposals; beside a wizard, proposals are shown at the console only. No other concept proposes presses. The
-// offline comparison of concepts assumes that participants follow proposals, as in the paper.
-
 /// Largest number of presses of both agents that a proposal of DEV plans ahead.
 const MOST_AHEAD: usize = 40;
 
-/// The DEV concept: proposes the next good presses after an error.
+/// DEV, the deviation based concept: when the human's press was an error, it proposes the next good presses (paper, "Concept
+/// comparisons": 1 to 5 presses).
+///
+/// A proposal has a kind of signal of its own ([`Signal::Propose`]): "next: …". Most good presses involve the human's own
+/// hand or a storage, about which there is no other signal, and highlighting the location of a press would reveal its
+/// content, as the theory of mind concepts do. In trials of DEV the assistant sends proposals; beside a wizard, proposals
+/// are shown at the console only. The offline comparison of concepts assumes that participants follow proposals, as in the
+/// paper.
 #[derive(Clone, Debug)]
 pub struct DevConcept {
     kitchen: Arc<Kitchen>,
@@ -275,15 +273,12 @@ impl Concept for DevConcept {
     }
 }
 
-// ToM: the communication concept with theory of mind, but without planning. ToM sends signals about false or uncertain
-// beliefs, whether the beliefs matter now or not (paper, "Concept comparisons"; Buehler and Weisswange 2018).
-//
-// ToM has the paper's signals: the recipe of an order, and highlights of the places where both agents get into each
-// other's way, the robot's hand and the assembly board. Among those that can be sent, the one whose aspect has the
-// largest expected belief deviation, 1 - E[P(truth)], is recommended if that deviation exceeds a threshold (0.4 to
-// 0.99 in the paper).
-
-/// The ToM concept: signals about the aspect with the largest expected belief deviation.
+/// ToM, the concept with theory of mind, but without planning: signals about false or uncertain beliefs, whether the beliefs
+/// matter now or not (paper, "Concept comparisons"; Buehler and Weisswange 2018).
+///
+/// It has the paper's signals: the recipe of an order, and highlights of the places where both agents get into each other's
+/// way, the robot's hand and the assembly board. Among those that can be sent, the one whose aspect has the largest expected
+/// belief deviation, 1 - E[P(truth)], is recommended if that deviation exceeds a threshold (0.4 to 0.99 in the paper).
 #[derive(Clone, Debug)]
 pub struct TomConcept {
     kitchen: Arc<Kitchen>,

@@ -44,7 +44,7 @@ def main():
         sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT + HZ), str(HZ)])
         viewer = None
         try:
-            console.wait_for(r"conf\w* 0.9")
+            console.wait_for(r"gaze +\d+ Hz|◉")
             console.start()
             time.sleep(2)
             measure(console, log, arguments.signals, "nobody looks on")

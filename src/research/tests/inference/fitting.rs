@@ -132,7 +132,7 @@ fn people() -> (HumanModel, HumanModel) {
 
 /// By hand: `cargo test --test inference fitting -- --ignored --nocapture`.
 #[test]
-#[ignore = "takes minutes, in release"]
+#[ignore = "takes minutes"]
 fn fitting_recovers_how_a_human_decides_and_looks() {
     let (truth, mut start) = people();
     start.transition = truth.transition.clone();
@@ -150,7 +150,7 @@ fn fitting_recovers_how_a_human_decides_and_looks() {
 
 /// By hand, as above.
 #[test]
-#[ignore = "takes minutes, in release"]
+#[ignore = "takes minutes"]
 fn fitting_recovers_how_a_human_forgets() {
     let (truth, mut start) = people();
     (start.decision, start.perception) = (truth.decision.clone(), truth.perception.clone());

@@ -14,8 +14,7 @@ use crate::run::review_console;
 use tomcom_core::base::text::count;
 use tomcom_session::person_code;
 use tomcom_session::settings::is_code;
-use tomcom_study::code_exchange::{self, ImportableCodes};
-use tomcom_study::codes::{self, CodedRecording, InterRaterSummary};
+use tomcom_study::codes::{self, CodedRecording, ImportableCodes, InterRaterSummary};
 
 /// Longest answer to a question, in bytes; no code of a participant is as long.
 const MAX_ANSWER: u64 = 1 << 12;
@@ -54,7 +53,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     bar.finish_and_clear();
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {
-        let codes = code_exchange::read(&recordings, file)?;
+        let codes = codes::read(&recordings, file)?;
         if !are_meant(&codes, args.yes)? {
             put_aside("nothing was imported\n");
             return Err(Failure::No);
@@ -63,7 +62,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     }
     if let Some(file) = &args.export {
         // The recordings are as they should be: what fails is writing.
-        code_exchange::export(&recordings, file).map_err(|error| Failure::Failed(miette::Report::new(error)))?;
+        codes::export(&recordings, file).map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     }
     let figures = InterRaterSummary::from_recordings(&recordings);
     print(args.format, &figures, || codes::describe(&figures))

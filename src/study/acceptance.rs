@@ -21,7 +21,6 @@ pub struct Acceptance {
     pub undecided: u64,
     /// Number of participants with low acceptance: a mean answer below 5/12.
     pub low: u64,
-    /// Number of participants without answers to items about acceptance.
     pub not_reported: u64,
     /// Mean acceptance over all participants, from 0 to 1; null without answers.
     pub mean: Option<f64>,
@@ -43,7 +42,6 @@ pub struct ItemSummary {
     pub counts: Vec<u64>,
     pub options: Vec<String>,
     pub answers: u64,
-    /// Number of participants' questionnaires in which the item was left without an answer.
     pub left_out: u64,
     /// Mean of the item's answers that are numbers; reversed items are not reversed here.
     pub mean: Option<f64>,
@@ -52,16 +50,13 @@ pub struct ItemSummary {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScoreSummary {
     pub questionnaire: String,
-    /// Condition of the trial after which the questionnaire was asked; `None` if the questionnaire was asked before the
-    /// trials.
+    /// `None`: before the trials.
     pub condition: Option<StudyArm>,
     pub scores: Vec<f64>,
     pub mean: Option<f64>,
-    /// Standard deviation of the questionnaire's scores.
     pub sd: Option<f64>,
 }
 
-/// Condition of the trial after which an answer was given; `None` for answers before the trials.
 fn asked_after(trial: &TrialStatistics, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
     (!answered.before).then_some(trial.planned_arm)
 }
@@ -158,7 +153,6 @@ impl ItemSummary {
     }
 }
 
-/// Acceptance of the assistance from the answers after assisted trials; `None` without answers.
 pub(super) fn acceptance(trials: &[&TrialStatistics]) -> Option<Acceptance> {
     let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {

@@ -2,7 +2,7 @@
 //! of the human.
 //!
 //! The primary model is a linear mixed model of log((count + 0.5) / presses), with the participant as random effect,
-//! and arm and period as fixed effects ([`super::linear_mixed_model`]). A mixed negative binomial model with log
+//! and arm and period as fixed effects ([`super::mixed_models`]). A mixed negative binomial model with log
 //! presses as offset is reported beside it. A mixed Poisson model would assume that errors are independent, but errors
 //! come in runs. Contrasts are ratios of rates; their p values are corrected together (Holm 1979). With three or more
 //! arms, a model with the effect of the previous arm (carry-over) is a sensitivity analysis.
@@ -15,11 +15,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use crate::effect::{AssistanceEffect, LEVEL, LeftOutParticipant, StudyMeasure, effect, pairs};
-use crate::linear_mixed_model::{LinearMixedModel, MixedModelContrast, MixedModelMeasurement};
-use crate::negative_binomial_model::{CountObservation, NegativeBinomialModel, WaldContrast};
+use crate::mixed_models::{
+    CountObservation, LinearMixedModel, MixedModelContrast, MixedModelMeasurement, NegativeBinomialModel, WaldContrast,
+};
 use crate::statistics::mean;
-use crate::tables::probe_table::PROBES_WRONG;
-use crate::tables::trials::measures;
+use crate::tables::trials::{MEASURES, PROBES_WRONG};
 use crate::trial_statistics::{TrialStatistics, TrialTotals};
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
 use tomcom_session::settings::WizardVisibility;
@@ -27,19 +27,16 @@ use tomcom_session::study_arm::StudyArm;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmComparison {
-    /// Primary outcome: the event whose rate is compared between study arms.
     pub outcome: PrimaryOutcome,
     pub participants: usize,
     pub trials: usize,
     pub left_out: Vec<LeftOutParticipant>,
-    /// Numbers of trials, events and presses of each arm, in the order of tables.
     pub arms: Vec<StudyArmCounts>,
     /// Standard deviations of log rates: between participants, and residual (within participants).
     pub standard_deviations: [f64; 2],
     /// Contrasts of the primary model: arms against the arm without signals and against the wizard.
     pub contrasts: Vec<StudyArmContrast>,
-    /// Contrasts of the model that includes the effect of the previous arm (carry-over); empty with fewer than three
-    /// arms, or where the model cannot be estimated.
+    /// Of the model with the previous arm (carry-over); empty with two arms, or where it cannot be estimated.
     pub with_carry_over: Vec<StudyArmContrast>,
     /// Comparison by the mixed negative binomial model; null where the model cannot be estimated.
     pub negative_binomial: Option<NegativeBinomialComparison>,
@@ -76,12 +73,9 @@ pub struct StudyArmContrast {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NegativeBinomialComparison {
-    /// Standard deviation of log rates between participants.
     pub between_sd: f64,
-    /// Size parameter of the negative binomial distribution: the variance of a count is mu + mu^2 / size; null where
-    /// counts vary no more than under a Poisson distribution.
+    /// The variance of a count is mu + mu^2 / size; null where counts vary as under a Poisson distribution.
     pub size: Option<f64>,
-    /// Contrasts between the same arms as in the primary model.
     pub contrasts: Vec<NegativeBinomialContrast>,
 }
 
@@ -95,23 +89,19 @@ pub struct NegativeBinomialContrast {
     pub contrast: WaldContrast,
 }
 
-/// Test whether an arm of the assistant is not worse than the wizard (non-inferiority).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NonInferiority {
     pub arm: StudyArm,
     pub against: StudyArm,
     pub margin: f64,
-    /// Ratio of the assistant's rate of the primary outcome to the wizard's.
     pub ratio: f64,
     /// Upper end of the one-sided 97.5 % confidence interval of the ratio of rates.
     pub upper: f64,
     /// One-sided p value of the hypothesis that the ratio is at or above the margin.
     pub p: f64,
-    /// Whether non-inferiority is shown: the upper end of the interval is below the margin.
     pub holds: bool,
 }
 
-/// Number of events of the primary outcome in a trial; `None` if that number is unknown for the trial.
 fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
     match outcome {
         PrimaryOutcome::Errors => Some(trial.errors),
@@ -133,8 +123,7 @@ fn usable(trial: &TrialStatistics, outcome: PrimaryOutcome) -> Result<(u32, u64)
     Ok((period, events))
 }
 
-/// The trials that the comparison uses, and the participants without such a trial. If a participant repeated a period,
-/// its last trial counts.
+/// The usable trials, and the participants without one. Of a repeated period, the last trial counts.
 fn counted(trials: &[TrialStatistics], outcome: PrimaryOutcome) -> (Vec<StudyArmTrial>, Vec<LeftOutParticipant>) {
     let (mut rows, mut left_out): (Vec<StudyArmTrial>, _) = (Vec::new(), Vec::new());
     for own in trials.chunk_by(|a, b| a.participant == b.participant) {
@@ -199,8 +188,7 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Contrasts of the primary model alone, for trials ordered by participant and period; empty where the model cannot be
-/// estimated.
+/// `trials`: ordered by participant and period; empty where the model cannot be estimated.
 pub(crate) fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
     let design = ArmComparisonDesign::new(trials);
     let model = if design.is_within() { design.linear(false) } else { None };
@@ -217,8 +205,7 @@ pub fn compare_arms(trials: &[TrialStatistics]) -> Option<StudyArmComparison> {
     Some(StudyArmComparison { groups: group_orders(trials), left_out, ..compared })
 }
 
-/// Compares arms by counts of the primary outcome that `aims` sets; the result has no starting groups, and
-/// leaves nobody out.
+/// By counts of the outcome that `aims` sets; without starting groups, and leaves nobody out.
 pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
     let design = ArmComparisonDesign::new(trials);
     if !design.is_within() {
@@ -265,7 +252,6 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
     })
 }
 
-/// A trial in the comparison of arms: participant, period, arm, and counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StudyArmTrial {
     pub participant: usize,
@@ -284,7 +270,6 @@ impl StudyArmTrial {
     }
 }
 
-/// Design of a comparison of arms: one row of effects per trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmComparisonDesign {
     trials: Vec<StudyArmTrial>,
@@ -292,8 +277,7 @@ pub struct ArmComparisonDesign {
     periods: Vec<u32>,
 }
 
-/// The pairs of study arms that are compared: every arm with the one without signals, and every other one with the
-/// wizard's. If neither exists, all others are compared with the first arm.
+/// Every arm with the one without signals, every other one with the wizard's; else all with the first.
 pub(crate) fn arm_pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
     let mut pairs = Vec::new();
     for against in [StudyArm::None, StudyArm::Wizard] {
@@ -321,14 +305,12 @@ impl ArmComparisonDesign {
         self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
     }
 
-    /// The study arm of the participant's trial before the one with this index.
     fn before(&self, index: usize) -> Option<StudyArm> {
         let before = self.trials.get(index.checked_sub(1)?)?;
         (before.participant == self.trials[index].participant).then_some(before.arm)
     }
 
-    /// Row of fixed effects of a trial in the design matrix: intercept, arms without the first, periods without the
-    /// first and, with `carry_over`, previous arms without the first.
+    /// Intercept, arms without the first, periods without the first; with `carry_over` previous arms likewise.
     fn effects(&self, index: usize, carry_over: bool) -> Vec<f64> {
         let (trial, before) = (&self.trials[index], self.before(index));
         let is = |holds: bool| f64::from(u8::from(holds));
@@ -338,8 +320,7 @@ impl ArmComparisonDesign {
         std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
     }
 
-    /// The primary (linear mixed) model, with `carry_over` including the effect of the previous arm; `None` where the
-    /// model cannot be estimated.
+    /// The primary model, with `carry_over` including the previous arm; `None` where it cannot be estimated.
     pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
         let measurement = |(index, trial): (usize, &StudyArmTrial)| MixedModelMeasurement {
             participant: trial.participant,
@@ -379,7 +360,6 @@ pub struct GroupOrder {
     pub participants: usize,
 }
 
-/// The starting groups of the trials that the analysis includes, sorted by name.
 fn group_orders(trials: &[TrialStatistics]) -> Vec<GroupOrder> {
     let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.counts()) {
@@ -411,7 +391,6 @@ pub struct ArmDeviation {
     pub participant: String,
     pub planned: StudyArm,
     pub carried_out: StudyArm,
-    /// Whether the wizard was shown during the trial what the assistants would send.
     pub unblinded: bool,
 }
 
@@ -429,26 +408,22 @@ impl ArmDeviation {
         })
     }
 
-    /// The deviation in words.
     pub fn describe(&self) -> String {
         let why = if self.unblinded { ", since the wizard was shown what the assistants would send" } else { "" };
         format!("{}: planned {}, carried out {}{why}", self.recording, self.planned.title(), self.carried_out.title())
     }
 }
 
-/// Comparison of the conditions of a study: rates by condition, the effect of assistance, and the comparison of arms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmAnalysis {
     pub conditions: Vec<StudyConditionSummary>,
     pub effects: Vec<AssistanceEffect>,
-    /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
-    /// arms.
+    /// By the plan's primary outcome; null unless participants have trials in different arms.
     pub arms: Option<StudyArmComparison>,
 }
 
 impl ArmAnalysis {
-    /// The comparison by planned arms; `trials` must be ordered by participant and period. `seed` seeds the random
-    /// permutations.
+    /// By planned arms; `trials` must be ordered by participant and period. `seed`: of the permutations.
     pub fn from_trials(trials: &[TrialStatistics], seed: u64) -> ArmAnalysis {
         let effects = compared(trials).map(|measure| effect(measure, pairs(trials, measure), seed)).collect();
         ArmAnalysis { conditions: conditions(trials), effects, arms: compare_arms(trials) }
@@ -462,7 +437,6 @@ impl ArmAnalysis {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyConditionSummary {
-    /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
     pub condition: StudyArm,
     pub trials: u64,
     #[serde(flatten)]
@@ -479,7 +453,7 @@ pub struct StudyConditionSummary {
 /// The measures that are compared in these trials; those of freeze probes only if there are probes.
 fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
     let has_probes = trials.iter().any(|trial| trial.probes.is_some());
-    measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
+    MEASURES.into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
 }
 
 fn conditions(trials: &[TrialStatistics]) -> Vec<StudyConditionSummary> {

@@ -3,16 +3,15 @@
 
 use serde::Serialize;
 
-use crate::analysis::trial_bootstrap::interval_where_known;
 use crate::arm_comparison::{StudyArmComparison, StudyArmTrial, compare_counts};
 use crate::pool::{PoolTrialCounts, SimulationPool};
+use crate::statistics::interval_where_known;
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
 use tomcom_session::study_arm::StudyArm;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
 
-/// A statistic of one arm with its 95 % confidence interval, by a bootstrap over participants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmStatistic {
     /// The statistic over all trials of the arm; null where it cannot be computed.
@@ -21,19 +20,16 @@ pub struct StudyArmStatistic {
     pub interval: Option<[f64; 2]>,
 }
 
-/// Row of the table of study arms: rates of one arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmRow {
     pub arm: StudyArm,
     pub trials: u64,
-    /// Errors per 100 presses of the human.
     pub errors_per_100: StudyArmStatistic,
     /// Errors that follow from false beliefs, per 100 presses of the human.
     pub related_per_100: StudyArmStatistic,
     /// Mean number of errors in a sequence that follows from the same false belief.
     pub sequence_length: StudyArmStatistic,
     pub orders_per_minute: StudyArmStatistic,
-    /// Signals per 100 presses of the human.
     pub signals_per_100: StudyArmStatistic,
     pub signal_time: StudyArmStatistic,
 }
@@ -46,10 +42,8 @@ pub struct StudyArmTable {
     pub program: String,
     pub seed: u64,
     pub participants: u32,
-    /// One row per study arm, in the order of tables.
     pub arms: Vec<StudyArmRow>,
-    /// Comparisons of arms by errors and by errors from false beliefs; comparisons that cannot be estimated are left
-    /// out.
+    /// By errors and by errors from false beliefs; those that cannot be estimated are left out.
     pub comparisons: Vec<StudyArmComparison>,
 }
 

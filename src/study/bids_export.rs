@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::analysis::bids::BidsFile;
 use crate::analysis::bids::dataset::{
     BidsLabelMap, BidsParticipant, BidsSession, QuestionnairePhenotypes, dataset_files, letters_and_digits,
     session_label, sessions_files,
 };
-use crate::analysis::bids::recording_tables::{BidsRowCounts, PressOutcome, RecordingTables};
-use crate::analysis::bids::sample_rows::{LongTable, LongTableFacts};
-use crate::analysis::bids::tsv::BidsFile;
+use crate::analysis::bids::recording_tables::{
+    BidsRowCounts, LongTable, LongTableFacts, PressOutcome, RecordingTables,
+};
 use crate::files::bids_tree::BidsTree;
 use crate::gathered::GatheredRecordings;
 use crate::kept_cost::KeptCost;
@@ -19,8 +20,7 @@ use crate::pass::reading;
 use crate::planned_trial::{RecordingCopy, copies_in_words};
 use crate::standing;
 use crate::trial_statistics::kind_name;
-use tomcom_core::base::text::PathText;
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{PathText, count};
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_session::event::Event;
@@ -29,7 +29,6 @@ use tomcom_session::log::{LogEnding, LogReader};
 use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::{LogHeader, apply};
 
-/// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
     pub folder: PathText,
@@ -48,7 +47,6 @@ pub struct BidsRecording {
     pub rows: BidsRowCounts,
 }
 
-/// A recording with its place in the data set, before it is read.
 struct Planned {
     recording: PathBuf,
     header: LogHeader,
@@ -57,10 +55,8 @@ struct Planned {
 }
 
 /// Exports these recordings into a new folder. `with_words`: whether text that wizards and participants typed is
-/// exported, too. `done` is called after each recording.
-///
-/// # Errors
-/// A recording cannot be read or is still being written, or the data set cannot be written.
+/// exported, too. `done` is called after each recording. Errors: a recording cannot be read or is still being written,
+/// or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
     let GatheredRecordings { paths, copies } = GatheredRecordings::find(recordings)?;
     let whole =

@@ -1,6 +1,6 @@
 //! Columns of tables for other programs: one row per observation, one column per variable (Wickham 2014, "Tidy Data").
-//! Each column is declared once with name, unit, meaning and value; the header line, the rows and the data dictionary
-//! are generated from these declarations.
+//! Each column is declared once, as an entry of [`columns`]; header lines, rows, the data dictionary and the sidecar files
+//! of BIDS are generated from these entries.
 
 use std::borrow::Cow;
 
@@ -12,7 +12,8 @@ use crate::tables::participants::{AnswerRow, ParticipantRow, TutorialQuestionRow
 use crate::tables::probe_table::ProbeRow;
 use crate::trial_statistics::TrialStatistics;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum CsvTable {
     Participants,
     Trials,
@@ -25,86 +26,95 @@ pub enum CsvTable {
     Beliefs,
     Gaze,
     Probes,
-    /// Table with a row for each column of every table: the column's unit and meaning.
+    /// A row for each column of every table: the column's unit and meaning.
     Dictionary,
 }
 
 impl CsvTable {
-    pub const ALL: [CsvTable; 12] = [
-        CsvTable::Participants,
-        CsvTable::Trials,
-        CsvTable::Questionnaires,
-        CsvTable::Tutorial,
-        CsvTable::Concepts,
-        CsvTable::Actions,
-        CsvTable::Communications,
-        CsvTable::Offers,
-        CsvTable::Beliefs,
-        CsvTable::Gaze,
-        CsvTable::Probes,
-        CsvTable::Dictionary,
-    ];
+    pub const ALL: &[CsvTable] = <CsvTable as strum::VariantArray>::VARIANTS;
     pub const OF_EVENTS: [CsvTable; 5] =
         [CsvTable::Actions, CsvTable::Communications, CsvTable::Offers, CsvTable::Beliefs, CsvTable::Gaze];
 
-    /// File name of the CSV table without `.csv`.
+    /// File name without `.csv`.
     pub fn name(self) -> &'static str {
-        match self {
-            CsvTable::Participants => "participants",
-            CsvTable::Trials => "trials",
-            CsvTable::Questionnaires => "questionnaires",
-            CsvTable::Tutorial => "tutorial",
-            CsvTable::Concepts => "concepts",
-            CsvTable::Actions => "actions",
-            CsvTable::Communications => "communications",
-            CsvTable::Offers => "offers",
-            CsvTable::Beliefs => "beliefs",
-            CsvTable::Gaze => "gaze",
-            CsvTable::Probes => "probes",
-            CsvTable::Dictionary => "dictionary",
-        }
+        self.into()
     }
 }
 
 pub trait CsvRow: Sized {
     const TABLE: CsvTable;
 
-    /// Columns of the table, in the order of the file.
-    fn columns() -> Vec<CsvColumn<Self>>;
+    /// In the order of the file.
+    fn columns() -> Vec<TableColumn<Self>>;
 
-    /// Declares a column with its name, unit (empty for none), meaning, and the function from row to value.
-    fn column(
-        name: impl Into<Cow<'static, str>>,
-        unit: &'static str,
-        meaning: impl Into<Cow<'static, str>>,
-        value: impl Fn(&Self) -> CsvCell<'_> + 'static,
-    ) -> CsvColumn<Self> {
-        CsvColumn { name: name.into(), unit, meaning: meaning.into(), value: Box::new(value) }
-    }
-
-    fn cells(&self) -> Vec<CsvCell<'_>> {
+    fn cells(&self) -> Vec<TableCell<'_>> {
         Self::columns().iter().map(|column| column.cell(self)).collect()
     }
 }
 
-pub struct CsvColumn<Row> {
+/// Possible values of a column with their meanings.
+pub type Levels = &'static [(&'static str, &'static str)];
+
+pub struct TableColumn<Row> {
     pub name: Cow<'static, str>,
-    /// Unit of the column's values; empty if they have none.
+    /// Empty: none.
     pub unit: &'static str,
+    /// Empty if the values are not from a list.
+    pub levels: Levels,
     pub meaning: Cow<'static, str>,
-    value: Box<dyn Fn(&Row) -> CsvCell<'_>>,
+    value: Box<dyn Fn(&Row) -> TableCell<'_>>,
 }
 
-impl<Row> CsvColumn<Row> {
-    pub fn cell<'a>(&self, row: &'a Row) -> CsvCell<'a> {
+/// What the values of a column are: numbers of a unit (or texts, for which it is empty), or some of a list.
+pub enum ColumnValues {
+    Unit(&'static str),
+    Levels(Levels),
+}
+
+impl From<&'static str> for ColumnValues {
+    fn from(unit: &'static str) -> Self {
+        ColumnValues::Unit(unit)
+    }
+}
+
+impl From<Levels> for ColumnValues {
+    fn from(levels: Levels) -> Self {
+        ColumnValues::Levels(levels)
+    }
+}
+
+impl<Row> TableColumn<Row> {
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        values: impl Into<ColumnValues>,
+        meaning: impl Into<Cow<'static, str>>,
+        value: impl Fn(&Row) -> TableCell<'_> + 'static,
+    ) -> TableColumn<Row> {
+        let (unit, levels): (&str, Levels) = match values.into() {
+            ColumnValues::Unit(unit) => (unit, &[]),
+            ColumnValues::Levels(levels) => ("", levels),
+        };
+        TableColumn { name: name.into(), unit, levels, meaning: meaning.into(), value: Box::new(value) }
+    }
+
+    pub fn cell<'a>(&self, row: &'a Row) -> TableCell<'a> {
         (self.value)(row)
     }
 }
 
+/// The columns of a table, an entry each: name; unit (empty: none) or list of values; meaning; value in a row.
+macro_rules! columns {
+    (|$row:tt: $Row:ty| $($name:expr, $values:expr, $meaning:expr => $value:expr;)*) => {
+        vec![$($crate::column::TableColumn::new($name, $values, $meaning, |$row: &$Row| $value.into())),*]
+    };
+}
+
+pub(crate) use columns;
+
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum CsvCell<'a> {
-    /// Unknown or missing value, written as an empty field.
+pub enum TableCell<'a> {
+    /// Unknown or missing: an empty field.
     Unknown,
     Flag(bool),
     Count(u64),
@@ -115,37 +125,20 @@ pub enum CsvCell<'a> {
 
 macro_rules! cell_from {
     ($($from:ty => $kind:ident),*) => {
-        $(impl From<$from> for CsvCell<'_> {
+        $(impl<'a> From<$from> for TableCell<'a> {
             fn from(value: $from) -> Self {
-                CsvCell::$kind(value.into())
+                TableCell::$kind(value.into())
             }
         })*
     };
 }
 
-cell_from!(bool => Flag, u8 => Count, u32 => Count, u64 => Count, i32 => Whole, i64 => Whole, f64 => Number);
+cell_from!(bool => Flag, u8 => Count, u32 => Count, u64 => Count, i32 => Whole, i64 => Whole, f64 => Number,
+    &'a str => Text, &'a String => Text, String => Text);
 
-impl<'a> From<&'a str> for CsvCell<'a> {
-    fn from(text: &'a str) -> Self {
-        CsvCell::Text(Cow::Borrowed(text))
-    }
-}
-
-impl<'a> From<&'a String> for CsvCell<'a> {
-    fn from(text: &'a String) -> Self {
-        CsvCell::Text(Cow::Borrowed(text))
-    }
-}
-
-impl From<String> for CsvCell<'_> {
-    fn from(text: String) -> Self {
-        CsvCell::Text(Cow::Owned(text))
-    }
-}
-
-impl<'a, T: Into<CsvCell<'a>>> From<Option<T>> for CsvCell<'a> {
+impl<'a, T: Into<TableCell<'a>>> From<Option<T>> for TableCell<'a> {
     fn from(value: Option<T>) -> Self {
-        value.map_or(CsvCell::Unknown, Into::into)
+        value.map_or(TableCell::Unknown, Into::into)
     }
 }
 
@@ -153,7 +146,6 @@ impl<'a, T: Into<CsvCell<'a>>> From<Option<T>> for CsvCell<'a> {
 pub struct DataDictionaryRow {
     pub table: CsvTable,
     pub column: Cow<'static, str>,
-    /// Unit of the column's values; empty if they have none.
     pub unit: &'static str,
     pub meaning: Cow<'static, str>,
 }
@@ -161,18 +153,18 @@ pub struct DataDictionaryRow {
 impl CsvRow for DataDictionaryRow {
     const TABLE: CsvTable = CsvTable::Dictionary;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        vec![
-            Self::column("table", "", "name of the table's file without .csv", |row| row.table.name().into()),
-            Self::column("column", "", "", |row| row.column.as_ref().into()),
-            Self::column("unit", "", "empty: none", |row| row.unit.into()),
-            Self::column("meaning", "", "", |row| row.meaning.as_ref().into()),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "table", "", "name of the table's file without .csv" => row.table.name();
+            "column", "", "" => row.column.as_ref();
+            "unit", "", "empty: none" => row.unit;
+            "meaning", "", "" => row.meaning.as_ref();
+        }
     }
 }
 
 /// Data dictionary entries of a table, in the order of its columns.
-pub fn columns(table: CsvTable) -> Vec<DataDictionaryRow> {
+pub fn described(table: CsvTable) -> Vec<DataDictionaryRow> {
     match table {
         CsvTable::Participants => declared::<ParticipantRow>(),
         CsvTable::Trials => declared::<TrialStatistics>(),
@@ -190,7 +182,7 @@ pub fn columns(table: CsvTable) -> Vec<DataDictionaryRow> {
 }
 
 fn declared<Row: CsvRow>() -> Vec<DataDictionaryRow> {
-    let row = |CsvColumn { name, unit, meaning, .. }: CsvColumn<Row>| DataDictionaryRow {
+    let row = |TableColumn { name, unit, meaning, .. }: TableColumn<Row>| DataDictionaryRow {
         table: Row::TABLE,
         column: name,
         unit,
@@ -200,5 +192,5 @@ fn declared<Row: CsvRow>() -> Vec<DataDictionaryRow> {
 }
 
 pub fn dictionary() -> impl Iterator<Item = DataDictionaryRow> {
-    CsvTable::ALL.into_iter().flat_map(columns)
+    CsvTable::ALL.iter().copied().flat_map(described)
 }

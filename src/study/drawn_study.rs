@@ -20,20 +20,19 @@ use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_session::plan::orders;
 use tomcom_session::study_arm::StudyArm;
 
-/// Least number of participants in each order of arms: drawing from a single participant would give no variance between
-/// participants.
+/// Drawing from a single participant would give no variance between participants.
 const FEWEST: usize = 2;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnEffect {
     AsSimulated,
-    /// The arms of drawn studies get this ratio of the rate of events (in every arm but the reference) to the
-    /// unassisted rate: above 0, at most 1.
+    /// Rate of events in every arm but the reference, relative to the unassisted rate: above 0, at most 1.
     Ratio(f64),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum SignificanceTestMethod {
     /// The paper's test of two conditions: the interaction of period and starting group in a mixed ANOVA of rates.
     MixedAnova,
@@ -41,7 +40,6 @@ pub enum SignificanceTestMethod {
     LinearMixedModel,
 }
 
-/// A statistical test of one study arm against another, whose power is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PowerTest {
     pub method: SignificanceTestMethod,
@@ -56,8 +54,7 @@ pub struct SignificanceTestResult {
     pub p_uncorrected: f64,
 }
 
-/// The reference arm with which all other arms are compared: the arm without signals, or else the first in the order of
-/// tables.
+/// The arm without signals, or else the first in the order of tables.
 pub fn reference(conditions: &[StudyArm]) -> StudyArm {
     StudyArm::ALL.into_iter().find(|arm| conditions.contains(arm)).unwrap_or_default()
 }
@@ -112,10 +109,7 @@ pub struct StudySampler<'a> {
 }
 
 impl<'a> StudySampler<'a> {
-    /// A sampler over all participants of a pool.
-    ///
-    /// # Errors
-    /// An order of the conditions has too few participants; the error says how many.
+    /// Errors: an order of the conditions has too few participants; the error says how many.
     pub fn new(pool: &'a SimulationPool) -> Result<StudySampler<'a>, String> {
         let conditions = &pool.header.conditions;
         let order = |order: &Vec<usize>| order.iter().map(|&index| conditions[index]).collect::<Vec<_>>();
@@ -132,8 +126,7 @@ impl<'a> StudySampler<'a> {
         Ok(StudySampler { pool, orders, by_order, number: 0 })
     }
 
-    /// Bootstrap resample of the pool within its orders of arms, which shows the uncertainty due to the size of the
-    /// pool.
+    /// Resample within the orders of arms, which shows the uncertainty due to the size of the pool.
     pub fn resampled(&self, number: u64) -> StudySampler<'a> {
         let mut random = stream(self.pool.header.seed, "resampled pool", number);
         let again = |persons: &Vec<usize>| persons.iter().map(|_| drawn(persons, &mut random)).collect();
@@ -160,7 +153,6 @@ impl<'a> StudySampler<'a> {
         study
     }
 
-    /// Trial with this index of a drawn participant, who has this order of arms.
     fn trial(
         &self,
         (participant, person): (usize, usize),

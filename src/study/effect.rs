@@ -7,10 +7,10 @@
 
 use serde::{Serialize, Serializer};
 
-use super::statistics::{
+use super::trial_statistics::TrialStatistics;
+use crate::statistics::{
     ConfidenceInterval, Correlation, FTest, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
 };
-use super::trial_statistics::TrialStatistics;
 use tomcom_session::study_arm::StudyArm;
 
 pub(crate) const LEVEL: f64 = 0.95;
@@ -24,7 +24,6 @@ pub struct TrialPair {
 }
 
 impl TrialPair {
-    /// Improvement of the participant from the first to the second trial: first value minus second value.
     pub(crate) fn improvement(&self) -> f64 {
         self.values[0] - self.values[1]
     }
@@ -41,8 +40,7 @@ pub struct LeftOutParticipant {
     pub reason: String,
 }
 
-/// The participants who are left out in words, with participants of the same reason together: "P03, P07 (no trial 2)";
-/// `None` if nobody is left out.
+/// "P03, P07 (no trial 2)": participants of the same reason together; `None` if nobody is left out.
 pub fn left_out_in_words(left_out: &[LeftOutParticipant]) -> Option<String> {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for LeftOutParticipant { participant, reason } in left_out {
@@ -57,9 +55,7 @@ pub fn left_out_in_words(left_out: &[LeftOutParticipant]) -> Option<String> {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PairedTrials {
-    /// The pairs of trials, in the order of participant codes.
     pub pairs: Vec<TrialPair>,
-    /// The participants without a pair, in the order of their codes.
     pub left_out: Vec<LeftOutParticipant>,
 }
 
@@ -67,8 +63,7 @@ pub struct PairedTrials {
 /// column of the table of trials, two columns of the table of participants, and a line of the report's tests.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyMeasure {
-    /// Name of the measure: its column in the table of trials, and its key in the summary; the table of participants
-    /// adds the suffixes `_1` and `_2`.
+    /// Column in the table of trials, and key in the summary; the table of participants adds `_1` and `_2`.
     pub name: &'static str,
     pub unit: &'static str,
     /// Definition of the measure for the data dictionary; empty if the unit says enough.
@@ -103,12 +98,10 @@ pub struct AssistanceEffect {
     pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance with period within and starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
-    /// Mixed analysis of variance in the paper's coding, with condition within and starting group between; assistance
-    /// is the factor within.
+    /// In the paper's coding: condition within; assistance is the factor within.
     pub by_condition: MixedAnova,
     /// Correlation of starting group (1: assisted second) and improvement; positive if assistance helps.
     pub pearson: Option<Correlation>,
-    /// Two-sided p value of the permutation test on the groups' improvements.
     pub permutation_p: Option<f64>,
     /// Reduction of the measure by assistance: half the Hodges-Lehmann shift between the groups' improvements.
     pub reduction: Option<ConfidenceInterval>,
@@ -122,7 +115,6 @@ impl AssistanceEffect {
         self.by_period.interaction
     }
 
-    /// Whether any participant has a trial with assistance and one without.
     pub fn has_pairs(&self) -> bool {
         self.groups != [0, 0]
     }
@@ -174,7 +166,6 @@ fn pair(code: &str, trials: &[TrialStatistics], measure: StudyMeasure) -> Result
     Ok(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
-/// Computes the effect of assistance on a measure; `seed` seeds the random permutations.
 pub fn effect(measure: StudyMeasure, paired: PairedTrials, seed: u64) -> AssistanceEffect {
     let PairedTrials { pairs, left_out } = paired;
     let group = |pair: &TrialPair| usize::from(pair.assisted_second);

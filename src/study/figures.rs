@@ -21,9 +21,7 @@ use crate::tables::participants::TutorialSummary;
 use crate::trial_statistics::{DetailTotals, TrialStatistics, TrialTotals, WizardAssistantSimilarity};
 use tomcom_core::base::text::count;
 use tomcom_core::measures::matching::{MatchCounts, Similarity};
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::RaterPair;
-use tomcom_core::measures::raters::{AgreementTable, RaterAgreement};
+use tomcom_core::measures::raters::{AgreementTable, BeliefSource, RaterAgreement, RaterPair};
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::header::CodeCorrection;
@@ -48,38 +46,30 @@ pub struct StudySummary {
     /// Agreement of the study with its frozen (preregistered) plan; absent if no frozen plan was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preregistration: Option<PreregistrationCheck>,
-    /// Trials of the plan without a recording, of participants up to the last with a recording; absent if there are
-    /// none.
+    /// Of participants up to the last with a recording; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub missing_trials: Vec<MissingTrials>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub corrections: Vec<CorrectedRecording>,
-    /// Recordings that are copies of others, and are not counted; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub copies: Vec<RecordingCopy>,
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
     pub anova: Option<FTest>,
     pub pearson: Option<Correlation>,
-    /// Two-sided p value of a permutation test that compares the improvement in errors between the starting groups.
     pub permutation_p: Option<f64>,
     pub effects: Vec<AssistanceEffect>,
-    /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
-    /// arms.
+    /// By the plan's primary outcome; null unless participants have trials in different arms.
     pub arms: Option<StudyArmComparison>,
-    /// Trials that were carried out in another arm than the planned one, under which they count; absent if there are
-    /// none.
+    /// Trials that count under another arm than they were carried out in; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub deviations: Vec<ArmDeviation>,
-    /// The same analysis with each trial in the arm in which it was carried out; absent without deviations.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub as_carried_out: Option<ArmAnalysis>,
     pub roc: Vec<ConceptRocCurve>,
-    /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
-    /// share trials.
+    /// Of concepts that sent signals by themselves in the same simulated trials; empty unless arms share trials.
     pub live: Vec<SignalSenderResults>,
-    /// Source of what participants believed in the trials for the comparison of concepts; of several sources, the least
-    /// reliable one.
+    /// Of the trials for the comparison of concepts; of several sources, the least reliable one.
     pub roc_beliefs_from: Option<BeliefSource>,
     pub roc_participants: u64,
     pub roc_trials: u64,
@@ -88,31 +78,25 @@ pub struct StudySummary {
     /// Similarity of the wizard's signals (first lane) and the signals that the assistant would have sent, over trials
     /// in which the wizard did not see the assistant's recommendations; null without such trials.
     pub similarity: Option<Similarity>,
-    /// Similarity over trials in which the wizard saw the assistant's recommendations, which are not part of
-    /// `similarity`; null without such trials.
+    /// Where the wizard saw recommendations; not part of `similarity`; null without such trials.
     pub similarity_with_advice: Option<Similarity>,
     pub similarity_by_trial: Vec<WizardAssistantSimilarity>,
     pub wizard: Option<WizardMeasures>,
-    /// Source of what participants believed in the trials with a wizard; of several sources, the least reliable one.
-    /// Null where `wizard` has no hits.
+    /// Of the trials with a wizard; of several, the least reliable. Null where `wizard` has no hits.
     pub wizard_beliefs_from: Option<BeliefSource>,
     /// Offers that wizards could see in trials in which they could send signals; null without such offers.
     pub offers: Option<OfferSummary>,
     pub acceptance: Option<Acceptance>,
     pub questionnaires: Vec<ItemSummary>,
     pub questionnaire_scores: Vec<ScoreSummary>,
-    /// Answers to the questions of tutorials; absent if no question was answered.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<TutorialSummary>,
-    /// Results of freeze probes: what participants knew, and the accuracy of the estimate; absent without answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probes: Option<ProbeSummary>,
     pub raters: Option<RaterAgreement>,
-    /// Number of trials by the pair of raters ("R1+R2") whose codes or consensus determine the causes of errors; absent
-    /// without raters.
+    /// Trials by the raters ("R1+R2") whose codes or consensus determine the causes of errors.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub rater_pairs: BTreeMap<String, u64>,
-    /// Trials in which both raters gave the same codes to all errors; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub identical_codes: Vec<IdenticalCodes>,
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
@@ -141,7 +125,6 @@ impl CorrectedRecording {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct IdenticalCodes {
     pub recording: String,
-    /// The two raters: "R1+R2".
     pub raters: String,
     pub errors: u64,
 }
@@ -156,7 +139,6 @@ impl IdenticalCodes {
     }
 }
 
-/// A consensus of two raters that no longer holds, since one of them changed a code.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StaleConsensus {
     pub recording: String,
@@ -167,7 +149,6 @@ pub struct StaleConsensus {
 pub struct ExcludedTrial {
     pub recording: String,
     pub participant: String,
-    /// Reason for excluding the trial.
     pub reason: String,
 }
 
@@ -251,7 +232,6 @@ impl StudySummary {
     }
 }
 
-/// How often each of these occurs.
 fn counts<K: Ord>(all: impl Iterator<Item = K>) -> BTreeMap<K, u64> {
     let mut counts = BTreeMap::new();
     all.for_each(|one| *counts.entry(one).or_default() += 1);

@@ -28,11 +28,9 @@ pub struct FitTrials {
 }
 
 impl FitTrials {
-    /// Reads recordings for a fit; answers to freeze probes are read only with `probes`.
-    ///
-    /// # Errors
-    /// A recording cannot be read or replayed; the recordings are of different kitchens; there are no answers although
-    /// `probes` asks for them.
+    /// Reads recordings for a fit; answers to freeze probes are read only with `probes`. Errors: a recording cannot be
+    /// read or replayed; the recordings are of different kitchens; there are no answers although `probes` asks for
+    /// them.
     pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
         let recordings = &recordings.paths;
         let (mut one_kitchen, mut observations, mut models) =
@@ -64,7 +62,6 @@ impl FitTrials {
         Ok(FitTrials { kitchen, model, others, observations })
     }
 
-    /// The trials of this fit without answers to freeze probes.
     fn without_answers(&self) -> FitTrials {
         let mut trials = self.clone();
         trials.observations.iter_mut().for_each(|one| one.answers.clear());

@@ -59,7 +59,6 @@ pub struct FrozenAnalysis {
     pub exclusions: Vec<String>,
 }
 
-/// Content of a frozen plan's file: study plan, definitions and analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenPlan {
@@ -159,7 +158,6 @@ pub struct RecordedPlan {
     pub participant: String,
     /// Name and digest of the recording's study plan; `None` for a recording without a plan.
     pub plan: Option<(String, String)>,
-    /// Place of the recording in its plan; `None` for a recording without a plan.
     pub place: Option<PlaceInPlan>,
 }
 
@@ -179,8 +177,7 @@ impl RecordedPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceInPlan {
-    /// Index of the participant in the plan, from 0; `None` if the participant's code was corrected, since the log has
-    /// the index of another one.
+    /// From 0; `None` if the code was corrected, since the log has the index of another participant.
     pub participant: Option<u32>,
     /// Number of the trial, from 1; `None` for practice.
     pub period: Option<u32>,
@@ -199,8 +196,7 @@ pub struct PreregistrationCheck {
 }
 
 impl PreregistrationCheck {
-    /// Compares the recordings of an analysis, and the definitions of this version of the program, with the frozen plan
-    /// that has this digest.
+    /// Compares recordings, and this version's definitions, with the frozen plan that has this digest.
     pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> PreregistrationCheck {
         let mut differences = frozen.differs_from_program();
         let mut others: BTreeMap<String, u64> = BTreeMap::new();
@@ -229,7 +225,6 @@ impl PreregistrationCheck {
         PreregistrationCheck { digest, plan, recordings_before, differences }
     }
 
-    /// The result of the comparison in words: that the study is preregistered, or what differs.
     pub fn words(&self) -> String {
         let before = match self.recordings_before {
             0 => "when no recording of it was there".to_string(),
@@ -243,7 +238,6 @@ impl PreregistrationCheck {
     }
 }
 
-/// List of participants in words; `None` if the list is empty.
 fn named(who: &str, codes: &[&str]) -> Option<String> {
     let number = count(codes.len() as u64, "participant is", "participants are");
     (!codes.is_empty()).then(|| format!("{number} {who}: {}", codes.join(", ")))

@@ -16,12 +16,10 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
 use tomcom_session::{LogHeader, person_code};
 
-/// Recordings without copies, of which no two count for one trial of a plan.
 #[derive(Clone, Debug, Default)]
 pub struct GatheredRecordings {
     /// Paths of the recordings, in the order in which they were named; those of a folder are sorted by name.
     pub paths: Vec<PathBuf>,
-    /// Recordings that were left out, since they are copies.
     pub copies: Vec<RecordingCopy>,
 }
 
@@ -39,14 +37,11 @@ struct FoundRecording {
 
 impl GatheredRecordings {
     /// Finds the recordings at these paths: recordings, their logs, or folders of recordings. A recording to which
-    /// several paths lead is there once, and so is a recording whose log equals that of another one or a beginning of it:
-    /// the longest counts, but none that is excluded before one that is not. Earlier parts of a recording are read with
-    /// the last part.
-    ///
-    /// # Errors
-    /// A path is neither a recording nor a folder with recordings; a recording has no readable header; two recordings
-    /// count for one trial of a plan; the codes of two participants differ in capital letters only; or codes
-    /// of raters, or a correction, stand beside a copy alone.
+    /// several paths lead is there once, and so is a recording whose log equals that of another one or a beginning of
+    /// it: the longest counts, but none that is excluded before one that is not. Earlier parts of a recording are read
+    /// with the last part. Errors: a path is neither a recording nor a folder with recordings; a recording has no
+    /// readable header; two recordings count for one trial of a plan; the codes of two participants differ in capital
+    /// letters only; or codes of raters, or a correction, stand beside a copy alone.
     pub fn find(paths: &[PathBuf]) -> FileResult<GatheredRecordings> {
         let mut found = Vec::new();
         for path in paths {
@@ -140,10 +135,7 @@ impl GatheredRecordings {
         Ok(GatheredRecordings { paths, copies })
     }
 
-    /// These recordings, and then the others, of which none may be among these.
-    ///
-    /// # Errors
-    /// A recording, or a copy of it, is among both.
+    /// These, and then the others. Errors: a recording, or a copy of it, is among both.
     pub fn beside(&self, others: &GatheredRecordings) -> FileResult<Vec<PathBuf>> {
         let all = [&self.paths[..], &others.paths].concat();
         let once = GatheredRecordings::find(&all)?;
@@ -213,8 +205,7 @@ fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
     PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
 }
 
-/// Checks that no two codes differ in capital letters only: one of them was probably typed wrong, and other programs
-/// would make one person of them, or two.
+/// One of them was probably typed wrong, and other programs would make one person of them, or two.
 fn check_codes(opened: &[FoundRecording]) -> FileResult<()> {
     let mut codes: BTreeMap<&str, &Path> = BTreeMap::new();
     for one in opened {

@@ -8,8 +8,8 @@
 //! every error, else from the belief estimate. The summary names the source of the causes (`beliefs_from`).
 //!
 //! - [`figures`] summarizes the trials with [`effect`], [`roc`] and [`statistics`]. [`arm_comparison`] compares any number
-//!   of arms, as planned and as carried out, by a [linear mixed model](linear_mixed_model) and a
-//!   [negative binomial one](negative_binomial_model).
+//!   of arms, as planned and as carried out, by a linear mixed model and a
+//!   negative binomial one ([`mixed_models`]).
 //! - [`pool`] simulates participants, [`drawn_study`] draws studies from them; [`power`] counts in how many of these
 //!   studies tests find an effect; [`arm_table`] compares the arms of a pool.
 //! - [`frozen_plan`] is the plan that is frozen before a study, and compared with it; [`planned_trial`] finds trials of a
@@ -21,8 +21,8 @@
 //!   participants and its line in the report are generated.
 //! - [`report`] builds the page of the report, with [`charts`].
 //!
-//! Commands over recordings: [`pass`] reads each once for a study; [`fit`], [`similarity`], [`codes`] with
-//! [`code_exchange`], [`bids_export`] and `mcap_export`. [`analysis`] has computation over events, [`files`] what is read
+//! Commands over recordings: [`pass`] reads each once for a study; [`fit`], [`similarity`], [`codes`],
+//! [`bids_export`] and `mcap_export`. [`analysis`] has computation over events, [`files`] what is read
 //! and written.
 
 #![deny(unsafe_code)]
@@ -33,7 +33,6 @@ pub mod arm_comparison;
 pub mod arm_table;
 pub mod bids_export;
 pub mod charts;
-pub mod code_exchange;
 pub mod codes;
 pub mod column;
 pub mod definitions;
@@ -46,12 +45,10 @@ pub mod fit;
 pub mod frozen_plan;
 pub mod gathered;
 pub mod kept_cost;
-pub mod linear_mixed_model;
 pub mod live_arms;
 #[cfg(feature = "mcap")]
 pub mod mcap_export;
-pub mod negative_binomial_model;
-pub mod pairwise_differences;
+pub mod mixed_models;
 pub mod parallel;
 pub mod pass;
 pub mod planned_trial;
@@ -66,6 +63,5 @@ pub mod similarity;
 pub mod standing;
 pub mod statistics;
 pub mod study_part;
-pub mod svg;
 pub mod tables;
 pub mod trial_statistics;

@@ -23,7 +23,6 @@ pub struct SignalSenderResults {
     pub belief_related_per_100: Option<f64>,
     /// Error sequences (errors from the same false belief) per 100 presses of the human.
     pub sequences_per_100: Option<f64>,
-    /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
     pub orders: u64,
     pub orders_per_minute: Option<f64>,
@@ -31,16 +30,13 @@ pub struct SignalSenderResults {
     pub interruptions_per_100: Option<f64>,
     /// Pieces of content that signals told per 100 presses of the human; a proposal of k presses has k contents.
     pub contents_per_100: Option<f64>,
-    /// Useless signals per 100 presses of the human, judged by simulating each trial without the signal; null where a
-    /// trial was not judged in this way.
+    /// Judged by simulating each trial without the signal; null where a trial was not judged.
     pub useless_per_100: Option<f64>,
     /// Share of useless signals among all signals; null without signals, or where a trial was not judged.
     pub useless_share: Option<f64>,
-    /// Share by which errors from false beliefs per press are fewer than in the arm without signals; null if there is
-    /// no such arm.
+    /// By which errors from false beliefs per press are fewer than without signals; null without such an arm.
     pub prevented: Option<f64>,
-    /// Share of errors that the analysis of unassisted trials predicts to be prevented with the same parameter; null
-    /// where that value of the parameter was not analysed.
+    /// As predicted from unassisted trials with the same parameter; null where that was not analysed.
     pub prevented_offline: Option<f64>,
     /// Interruptions per 100 presses of the human that the analysis of unassisted trials predicts.
     pub interruptions_per_100_offline: Option<f64>,

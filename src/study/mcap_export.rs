@@ -9,8 +9,7 @@ use mcap::{McapError, WriteOptions, Writer};
 use serde::Serialize;
 
 use crate::analysis::foxglove::{McapChannel, McapMessage, McapMessageConverter};
-use tomcom_core::base::text::PathText;
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{PathText, count};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::LogHeader;
 use tomcom_session::files::file_error::{FileError, FileResult};
@@ -26,11 +25,8 @@ pub struct McapSummary {
     pub messages: BTreeMap<&'static str, u32>,
 }
 
-/// Exports a recording as an MCAP file in the recording's folder.
-///
-/// # Errors
-/// The recording cannot be read or is still being written, the path is not a recording's folder, or the file cannot be
-/// written.
+/// Exports a recording as an MCAP file in the recording's folder. Errors: the recording cannot be read or is still
+/// being written, the path is not a recording's folder, or the file cannot be written.
 pub fn export(recording: &Path) -> FileResult<McapSummary> {
     let mut log = LogReader::open(recording)?;
     let wrong =
@@ -95,7 +91,6 @@ pub fn describe(summaries: &[McapSummary]) -> String {
     format!("{}:\n{lines}", count(summaries.len() as u64, "MCAP", "MCAPs"))
 }
 
-/// First bytes of every MCAP file (its magic number).
 const BEGINS: &[u8] = b"\x89MCAP0\r\n";
 const LIBRARY: &str = "tomcom";
 const ENCODING: &str = "json";
@@ -104,15 +99,13 @@ const SCHEMA_ENCODING: &str = "jsonschema";
 /// An MCAP file that is being written. The file gets its final name when it is complete.
 pub struct McapFile {
     writer: Writer<Replacement>,
-    channels: BTreeMap<McapChannel, (u16, u32)>,
+    channels: BTreeMap<&'static str, (u16, u32)>,
     path: PathBuf,
 }
 
 impl McapFile {
-    /// Creates the MCAP file of the recording in this folder. An earlier file of this program is replaced.
-    ///
-    /// # Errors
-    /// The name is taken by a file of another program, or the file cannot be written.
+    /// Creates the MCAP file of the recording in this folder. An earlier file of this program is replaced. Errors: the
+    /// name is taken by a file of another program, or the file cannot be written.
     pub fn create(folder: &Path) -> io::Result<McapFile> {
         let path = folder.join(MCAP_NAME);
         let is_own = |head: &[u8]| {
@@ -125,17 +118,15 @@ impl McapFile {
         let mut channels = BTreeMap::new();
         for channel in McapChannel::ALL {
             let schema = format!("{:#}", channel.schema());
-            let schema =
-                writer.add_schema(channel.schema_name(), SCHEMA_ENCODING, schema.as_bytes()).map_err(reason)?;
-            let number = writer.add_channel(schema, channel.topic(), ENCODING, &BTreeMap::new()).map_err(reason)?;
-            channels.insert(channel, (number, 0));
+            let schema = writer.add_schema(channel.schema_name, SCHEMA_ENCODING, schema.as_bytes()).map_err(reason)?;
+            let number = writer.add_channel(schema, channel.topic, ENCODING, &BTreeMap::new()).map_err(reason)?;
+            channels.insert(channel.topic, (number, 0));
         }
         Ok(McapFile { writer, channels, path })
     }
 
-    /// Writes a message to its channel in the MCAP file.
     pub fn write(&mut self, message: &McapMessage) -> io::Result<()> {
-        let Some((channel, sequence)) = self.channels.get_mut(&message.channel) else { return Ok(()) };
+        let Some((channel, sequence)) = self.channels.get_mut(message.topic) else { return Ok(()) };
         let header = MessageHeader {
             channel_id: *channel,
             sequence: *sequence,
@@ -146,13 +137,12 @@ impl McapFile {
         self.writer.write_to_known_channel(&header, message.content.to_string().as_bytes()).map_err(reason)
     }
 
-    /// Completes the MCAP file with these metadata about the recording, and gives it its final name; returns the file's
-    /// path, and the number of messages by channel.
+    /// Gives the file its name; returns its path, and the number of messages by channel.
     pub fn finish(mut self, about: BTreeMap<String, String>) -> io::Result<(PathBuf, BTreeMap<&'static str, u32>)> {
         self.writer.write_metadata(&Metadata { name: LIBRARY.to_string(), metadata: about }).map_err(reason)?;
         self.writer.finish().map_err(reason)?;
         self.writer.into_inner().finish()?;
-        let counts = self.channels.iter().map(|(channel, (_, messages))| (channel.topic(), *messages)).collect();
+        let counts = self.channels.iter().map(|(topic, (_, messages))| (*topic, *messages)).collect();
         Ok((self.path, counts))
     }
 }

@@ -19,8 +19,7 @@ pub fn each_with<T: Sync, R: Send, W: Send>(
     WorkerPool::new(own).each(items, work, done)
 }
 
-/// A pool of worker states (such as caches) that are kept between calls. A worker state changes computing time, never
-/// results.
+/// Worker states (such as caches) change computing time, never results.
 pub struct WorkerPool<W, F: Fn() -> W> {
     own: F,
     idle: Mutex<Vec<W>>,

@@ -27,8 +27,7 @@ impl PlannedTrialKey {
         Some(PlannedTrialKey { plan, participant, period })
     }
 
-    /// What is wrong about a second recording that counts for this trial, where `first` is the other recording; and
-    /// what would be right.
+    /// What is wrong if `first` is another recording that counts for this trial; and what would be right.
     pub(crate) fn counted_twice(&self, first: &str) -> (String, String) {
         let PlannedTrialKey { plan, participant, period } = self;
         let found = format!(
@@ -44,14 +43,12 @@ impl PlannedTrialKey {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordingCopy {
-    /// The recording that does not count.
     pub recording: String,
     pub copy_of: String,
     /// Why the copy would be left out anyway, in words; null if it would count.
     pub left_out: Option<String>,
 }
 
-/// Copies of recordings in words; `None` if there are none.
 pub fn copies_in_words(copies: &[RecordingCopy]) -> Option<String> {
     let name = |one: &RecordingCopy| {
         let left_out = one.left_out.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
@@ -104,8 +101,7 @@ pub struct MissingTrials {
 #[derive(Default)]
 struct PlanRecordings<'a> {
     periods: u32,
-    /// By the code of a participant: index in the plan, as far as it is known, and the numbers of the trials with a
-    /// recording.
+    /// By code: index in the plan, as far as it is known, and the numbers of the trials with a recording.
     participants: BTreeMap<&'a str, (Option<u32>, BTreeSet<u32>)>,
 }
 
@@ -146,7 +142,6 @@ impl PlanRecordings<'_> {
     }
 }
 
-/// The trials without a recording in words; `None` if there are none.
 pub fn in_words(missing: &[MissingTrials]) -> Option<String> {
     let number: u64 = missing.iter().map(|one| one.trials.len() as u64).sum();
     let named: Vec<String> = missing.iter().take(NAMED).map(MissingTrials::describe).collect();

@@ -53,10 +53,7 @@ struct PoolStudy<'a> {
 }
 
 impl PoolRequest {
-    /// Header of the pool: the first line of its file.
-    ///
-    /// # Errors
-    /// The session file has no study plan.
+    /// Header of the pool: the first line of its file. Errors: the session file has no study plan.
     pub fn header(&self, path: &Path) -> FileResult<PoolHeader> {
         Ok(self.study(path)?.header)
     }
@@ -84,10 +81,8 @@ impl PoolRequest {
         Ok(PoolStudy { request: self, study, header })
     }
 
-    /// Checks that the plan's trials can be simulated; `path` is the plan's file.
-    ///
-    /// # Errors
-    /// The plan has fewer than two conditions, or a condition in which only a person could send signals.
+    /// Checks that the plan's trials can be simulated; `path` is the plan's file. Errors: the plan has fewer than two
+    /// conditions, or a condition in which only a person could send signals.
     pub fn check(&self, path: &Path) -> FileResult<()> {
         let pool = self.study(path)?;
         let wrong = |found: String, remedy: &str| Err(FileError::from_finding(path, found, remedy.to_string()));
@@ -184,8 +179,7 @@ impl PoolStudy<'_> {
     }
 }
 
-/// Simulates the participants of the pool's shard on all processors. `path` is the file of the plan; `done` is called
-/// after each trial.
+/// `path`: of the plan; `done` is called after each trial.
 pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> FileResult<SimulationPool> {
     request.check(path)?;
     let pool = request.study(path)?;
@@ -199,7 +193,6 @@ pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> F
 
 pub const POOL_FORMAT: u32 = 1;
 
-/// First line of a pool's file (header): what the pool's participants have in common.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoolHeader {
@@ -214,14 +207,11 @@ pub struct PoolHeader {
     pub shard: u64,
     pub shards: u64,
     pub conditions: Vec<StudyArm>,
-    /// Primary outcome and margin of non-inferiority that the plan sets.
     pub aims: StudyAims,
     pub arms: bool,
-    /// Whether the unassisted twins (the same trials without signals) were simulated.
     pub unassisted: bool,
 }
 
-/// A line of a pool's file: one simulated trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoolTrial {
@@ -263,7 +253,6 @@ impl PoolTrialCounts {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoolParticipant {
-    /// Index of the participant in the plan, from 0.
     pub participant: u32,
     pub group: String,
     /// Trials of the participant, in the order of periods.
@@ -283,15 +272,11 @@ pub struct PoolTrialPair {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationPool {
     pub header: PoolHeader,
-    /// The pool's participants, in the order of the plan.
     pub persons: Vec<PoolParticipant>,
 }
 
 impl SimulationPool {
-    /// The pool that consists of these trials, which are ordered by participant and period.
-    ///
-    /// # Errors
-    /// A trial is missing, occurs twice, or does not fit the header.
+    /// `trials`: by participant and period. Errors: one is missing, occurs twice, or does not fit the header.
     pub fn from_trials(header: PoolHeader, trials: Vec<PoolTrial>) -> Result<SimulationPool, ShardMismatch> {
         let mut persons: Vec<PoolParticipant> = Vec::new();
         let count = trials.len();
@@ -359,10 +344,7 @@ impl SimulationPool {
         })
     }
 
-    /// The whole pool, joined from these shards.
-    ///
-    /// # Errors
-    /// Shards are of different pools, occur twice, or are not complete.
+    /// Errors: shards are of different pools, occur twice, or are not complete.
     pub fn joined(parts: Vec<SimulationPool>) -> Result<SimulationPool, ShardMismatch> {
         let Some(first) = parts.first().map(|part| part.header.clone()) else {
             return Err(ShardMismatch::new(0, "no part".to_string(), "at least one"));

@@ -25,16 +25,13 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::plan::PrimaryOutcome;
 use tomcom_session::study_arm::StudyArm;
 
-/// Significance level of the tests in a power analysis.
 pub(crate) const ALPHA: f64 = 0.05;
 /// Power that a study should reach (0.8).
 pub(crate) const WANTED: f64 = 0.8;
-/// Number of bootstrap resamples of the pool of simulated participants.
 pub(crate) const POOLS: u64 = 40;
 pub(crate) const STUDIES_OF_POOL: u64 = 25;
 /// Number of studies that are drawn for each ratio of rates in the search for the least detectable effect.
 pub(crate) const STUDIES_OF_RATIO: u64 = 400;
-/// Number of ratios of rates that are tried in the search for the least detectable effect.
 const RATIOS: u32 = 17;
 
 /// Ratios of rates that are tried for the least detectable effect, from the weakest effect on: 0.95, 0.90, …, 0.15.
@@ -42,13 +39,11 @@ pub fn ratios() -> Vec<f64> {
     (1..=RATIOS).map(|step| f64::from(20 - step) / 20.0).collect()
 }
 
-/// Number of drawn studies in which a test rejects the null hypothesis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RejectionCount {
     pub studies: u64,
     pub rejected: u64,
     pub uncorrected: u64,
-    /// Number of drawn studies in which the test cannot be computed.
     pub unknown: u64,
 }
 
@@ -72,15 +67,13 @@ impl RejectionCount {
         }
     }
 
-    /// Share of studies in which the test rejects the null hypothesis; a study without a test result counts as not
-    /// rejecting.
+    /// A study without a test result counts as not rejecting.
     pub fn share(&self) -> f64 {
         self.rejected as f64 / (self.studies + self.unknown).max(1) as f64
     }
 }
 
-/// Counts of rejections of each test over the studies with these numbers; the last element counts studies in which any
-/// contrast of the mixed model rejects after correction.
+/// The last element counts studies in which any contrast of the mixed model rejects after correction.
 pub(crate) fn count_rejections(
     source: &StudySampler,
     tests: &[PowerTest],
@@ -115,7 +108,6 @@ pub struct RejectionShare {
     pub rejected_uncorrected: u64,
     /// Number of studies in which the test cannot be computed; these studies count as not rejecting.
     pub unknown: u64,
-    /// Share of studies that reject the null hypothesis: the power or, without an effect, the type I error.
     pub share: f64,
     /// 95 % interval of the share of rejections, including the error due to the finite pool.
     pub interval: [f64; 2],
@@ -146,8 +138,7 @@ impl RejectionShare {
     }
 }
 
-/// Variance of the share of rejections between pools, without the part due to the finite numbers of studies; 0 with
-/// fewer than two pools.
+/// Of the shares, without the part due to the finite numbers of studies; 0 with fewer than two pools.
 fn variance_between(pools: &[RejectionCount]) -> f64 {
     let n = pools.len() as f64;
     if pools.len() < 2 {
@@ -173,15 +164,13 @@ pub fn least_ratio(shares: &[f64]) -> Option<f64> {
     Some(ratio + part * (ratios[weaker] - ratio))
 }
 
-/// Counts of rejections for one number of participants; each list has an entry per test and a last entry for any of the
-/// contrasts.
+/// Each list has an entry per test and a last entry for any of the contrasts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleSizeRejections {
     pub participants: usize,
     pub counts: Vec<RejectionCount>,
     pub of_pools: Vec<Vec<RejectionCount>>,
-    /// Counts of rejections over studies with each tried ratio of rates, the weakest effect first; empty if the least
-    /// effect was not searched for.
+    /// With each tried ratio, the weakest effect first; empty if the least effect was not searched for.
     pub of_ratios: Vec<Vec<RejectionCount>>,
 }
 
@@ -221,16 +210,13 @@ pub struct TestPower {
     pub least_ratio: Option<f64>,
 }
 
-/// Number of participants that a test needs for a power of 0.8.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RequiredSampleSize {
     #[serde(flatten)]
     pub test: PowerTest,
-    /// Least of the tried numbers of participants from which on the power is at least 0.8; null if the power is not
-    /// reached.
+    /// Least tried number from which on the power is at least 0.8; null if it is not reached.
     pub participants: Option<usize>,
-    /// Least of the tried numbers of participants from which on the lower end of the power's interval is at least 0.8;
-    /// null if that is not reached.
+    /// Least tried number from which on the lower end of the interval is at least 0.8; null likewise.
     pub surely: Option<usize>,
 }
 
@@ -361,8 +347,7 @@ fn describe_test(found: &PowerSummary, index: usize) -> String {
     text
 }
 
-/// Sentences on how many participants are needed, and on the effect that the middle one of the tried numbers of
-/// participants detects.
+/// How many participants are needed, and which effect the middle one of the tried numbers detects.
 fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usize) -> String {
     let largest = found.sizes.last().map_or(0, |size| size.participants);
     let mut text = match (needed.participants, needed.surely) {
@@ -404,7 +389,6 @@ fn error_in_words(found: &PowerSummary, index: usize) -> String {
 
 const BLOCK: u64 = 25;
 
-/// Request of a power analysis: study sizes, number of drawn studies, and effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerRequest {
     pub sizes: Vec<usize>,
@@ -433,8 +417,7 @@ pub fn blocks(request: &PowerRequest, pool: &SimulationPool) -> u64 {
     all_blocks(request, pool).len() as u64
 }
 
-/// All blocks of studies. The least detectable effect is searched for only if the pool has unassisted twins, since only
-/// then an effect of any size can be simulated.
+/// The least effect is searched for only with unassisted twins, which alone can have an effect of any size.
 fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
     let split =
         |studies: u64| (0..studies.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(studies));
@@ -452,9 +435,7 @@ fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
 }
 
 /// Draws the studies and computes the power. `path`: file of the pool, for messages; `done` is called after each block.
-///
-/// # Errors
-/// The pool has too few participants for an order of the conditions, or lacks the trials that the effect needs.
+/// Errors: the pool has too few participants for an order of the conditions, or lacks the trials that the effect needs.
 pub fn measure(
     request: &PowerRequest,
     pool: &SimulationPool,
@@ -508,7 +489,6 @@ pub fn measure(
     Ok(PowerSummary::new(header, request.effect, &sizes))
 }
 
-/// In how many studies of a block each test rejects its null hypothesis.
 fn counts(
     source: &StudySampler,
     tests: &[PowerTest],

@@ -19,14 +19,11 @@ use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 
-/// Number of nanoseconds in a millisecond; session time is in nanoseconds.
 const NANOS_PER_MS: u64 = 1_000_000;
 
-/// Errors and false beliefs of a trial, as known from recorded beliefs or from raters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialGroundTruth {
     pub presses: Vec<PressGroundTruth>,
-    /// Periods in which the participant held a false belief about a state aspect.
     pub false_beliefs: Vec<FalseBeliefGroundTruth>,
     /// Whether `false_beliefs` includes false beliefs that led to no error (harmless ones).
     pub knows_harmless: bool,
@@ -41,7 +38,6 @@ pub struct PressGroundTruth {
     pub aspects: Vec<AspectId>,
 }
 
-/// Period in which the participant held a false belief about one state aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FalseBeliefGroundTruth {
     pub aspect: AspectId,
@@ -58,7 +54,6 @@ pub struct HypotheticalSignal {
     pub aspects: Vec<AspectId>,
 }
 
-/// Counts of prevented errors and useless signals of a concept, in one or several trials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PreventionCounts {
     pub presses: u64,
@@ -69,14 +64,12 @@ pub struct PreventionCounts {
     pub related: u64,
     pub prevented: u64,
     pub useless: u64,
-    /// Sum over useful signals of the time from the signal to the first error that the signal prevents, in
-    /// milliseconds; 0 for proposals.
+    /// From useful signals to the first errors that they prevent; 0 for proposals.
     pub lead_ms: u64,
     pub outside: u64,
     pub false_presses: u64,
     pub false_inside: u64,
-    /// Number of signals about a false belief that led to no error; these signals count as useless, too. Null where
-    /// such beliefs are not known.
+    /// About a false belief that led to no error; useless, too. Null where such beliefs are not known.
     pub harmless: Option<u64>,
 }
 
@@ -98,7 +91,6 @@ impl Default for PreventionCounts {
     }
 }
 
-/// True and false positive rate of a concept at one value of the concept's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreventionRates {
     /// False positive rate: useless signals per human press.
@@ -136,8 +128,7 @@ impl PreventionCounts {
         })
     }
 
-    /// Mean time from a useful signal to the first error that the signal prevents, in seconds; `None` without useful
-    /// signals.
+    /// Mean time from a useful signal to the first error that it prevents; `None` without useful signals.
     pub fn lead_s(&self) -> Option<f64> {
         let useful = self.signals - self.useless;
         (useful > 0).then(|| self.lead_ms as f64 / 1000.0 / useful as f64)
@@ -154,8 +145,7 @@ impl FalseBeliefGroundTruth {
         self.began <= time && self.ended.is_none_or(|end| time < end)
     }
 
-    /// Whether this false belief caused the error of a press. A press at the time of the correction was decided before
-    /// the correction.
+    /// A press at the time of the correction was decided before the correction.
     fn caused(&self, press: &PressGroundTruth) -> bool {
         let is_inside = self.began <= press.time && self.ended.is_none_or(|end| press.time <= end);
         is_inside && press.aspects.contains(&self.aspect)
@@ -163,7 +153,6 @@ impl FalseBeliefGroundTruth {
 }
 
 impl TrialGroundTruth {
-    /// Errors and false beliefs of a trial, from the known false beliefs of the participant.
     pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownFalseBeliefs) -> TrialGroundTruth {
         let press = |press: &JudgedPress| PressGroundTruth {
             time: press.time,

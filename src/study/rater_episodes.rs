@@ -19,8 +19,7 @@ use tomcom_core::kitchen::{
 };
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::RaterCodes;
+use tomcom_core::measures::raters::{BeliefSource, RaterCodes};
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
@@ -57,7 +56,6 @@ pub fn rater_episodes(
     episodes
 }
 
-/// The rule that derives false belief episodes, applied to one trial.
 struct EpisodeRule<'a> {
     kitchen: &'a Kitchen,
     cost: &'a mut CostToGo,
@@ -73,8 +71,7 @@ struct BeliefCourse {
     value: usize,
     /// Session time after `since` at which somebody else first changed the location; `None` if nobody did.
     changed: Option<SessionTime>,
-    /// First look or signal, since the last error, change or press, that can have corrected the belief; later events
-    /// decide whether it did correct the belief.
+    /// First look or signal since the last error, change or press; later events decide whether it corrected.
     mended: Option<(SessionTime, usize)>,
     open: Option<FalseBeliefEpisode>,
     done: Vec<FalseBeliefEpisode>,
@@ -91,8 +88,7 @@ impl BeliefCourse {
         self.done.extend(self.open.take().map(|episode| FalseBeliefEpisode { corrected: Some(time), ..episode }));
     }
 
-    /// Notes that a look or signal has shown this value. The next error or press tells whether the participant
-    /// understood the value.
+    /// Notes a look or signal; the next error or press tells whether the participant understood it.
     fn told(&mut self, time: SessionTime, value: usize) {
         self.mended = self.mended.or(Some((time, value)));
     }
@@ -269,8 +265,7 @@ impl EpisodeRule<'_> {
         (1..one.values.len()).filter(|value| explains(value)).collect()
     }
 
-    /// Whether a press of the participant reduces the cost to go of all orders together, in the true state with this
-    /// aspect believed otherwise.
+    /// Whether it reduces the cost to go of all orders, in the true state with this aspect believed otherwise.
     fn helps(&mut self, state: State, button: ButtonId, otherwise: Option<(AspectId, usize)>) -> bool {
         let kitchen = self.kitchen;
         let mut world = World::with_true_recipes(kitchen, state);
@@ -286,7 +281,6 @@ impl EpisodeRule<'_> {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownFalseBeliefs {
-    /// Source from which the false beliefs are known: recorded beliefs, or raters.
     pub basis: BeliefSource,
     pub targets: BTreeMap<u64, FalseBeliefTarget>,
     /// False belief episodes of the trial; for people, only episodes that led to errors.
@@ -366,7 +360,6 @@ impl RaterFalseBeliefAgreement {
 #[derive(Clone, Debug, PartialEq)]
 pub enum BeliefEvidenceEvent {
     Started {
-        /// State of the kitchen at the trial's start: empty.
         state: State,
     },
     /// Somebody other than the participant changes the kitchen: the robot, a new order, or the wizard's correction.

@@ -8,8 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::trial_statistics::TrialStatistics;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
-use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::SafetyMode;
+use tomcom_core::robot::{AbortReason, SafetyMode};
 use tomcom_session::Event;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::settings::ArmKind;
@@ -29,7 +28,6 @@ pub struct RobotEventSummary {
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSafetySummary {
-    /// Number of protective stops: the arm stopped because of a contact force.
     pub protective_stops: u64,
     /// Number of stops because a joint did not follow its commanded motion.
     pub faults: u64,
@@ -80,22 +78,19 @@ impl RobotEventSummary {
 #[derive(Clone, Debug)]
 pub struct RobotEventTally {
     figures: RobotEventSummary,
-    /// Reason why the trial ended; `None` before its end.
     pub ended: Option<TrialEndReason>,
     mode: SafetyMode,
     clock: SessionTime,
 }
 
 impl RobotEventTally {
-    /// An empty tally for a trial with this kind of arm.
     pub fn new(arm: ArmKind) -> RobotEventTally {
         let arm = (arm == ArmKind::Physics).then(ArmSafetySummary::default);
         let figures = RobotEventSummary { arm, ..RobotEventSummary::default() };
         RobotEventTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
 
-    /// Counts an event at this time of the trial's clock; `was_on`: whether the trial had started and not ended before
-    /// the event.
+    /// `clock`: of the trial; `was_on`: whether the trial was on before the event.
     pub fn note(&mut self, event: &Event, clock: SessionTime, was_on: bool) {
         self.pass_time(clock);
         if let Event::RobotSafety { mode, .. } = event {
@@ -106,7 +101,6 @@ impl RobotEventTally {
         }
     }
 
-    /// Adds the time since the last event to the duration of the present safety mode.
     fn pass_time(&mut self, clock: SessionTime) {
         let seconds = clock.secs_since(self.clock);
         self.clock = clock;
@@ -151,7 +145,6 @@ impl RobotEventTally {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobotArmTotals {
-    /// Kind of the robot's arm: timed or physical.
     pub kind: ArmKind,
     pub trials: u64,
     #[serde(flatten)]

@@ -8,8 +8,8 @@
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::trial_bootstrap::percentiles;
 use crate::prevention::{PreventionCounts, PreventionRates};
+use crate::statistics::percentiles;
 use tomcom_core::base::rng::stream;
 use tomcom_core::communication::concept::ConceptName;
 
@@ -18,11 +18,9 @@ pub(crate) const LEAST_COST: f64 = 0.5;
 
 /// Signals per 100 human presses at which concepts are compared.
 pub(crate) const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
-/// Number of bootstrap resamples over participants, for confidence intervals.
 const RESAMPLES: u32 = 1000;
 /// Number of points of a confidence band over the range of false positive rates that all concepts reach.
 const BAND_STEPS: usize = 40;
-/// Confidence level of bootstrap intervals and bands.
 const COVERED: f64 = 0.95;
 
 /// Values that are tried for a concept's parameter: cost of communication, threshold, or number of proposed presses.
@@ -45,7 +43,6 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
 
 pub(crate) const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
 
-/// A point of a concept's receiver operating characteristic (ROC) curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RocPoint {
     pub parameter: f64,
@@ -53,9 +50,7 @@ pub struct RocPoint {
     pub fpr: f64,
     /// True positive rate: share of the errors from false beliefs that would have been prevented.
     pub tpr: f64,
-    /// Signals per 100 presses of the human.
     pub signals_per_100_actions: f64,
-    /// Useless signals per 100 presses of the human.
     pub useless_per_100_actions: f64,
     /// Share of useless signals among all signals; null without signals.
     pub useless_share: Option<f64>,
@@ -63,36 +58,27 @@ pub struct RocPoint {
     pub count: PreventionCounts,
 }
 
-/// A value with its 95 % bootstrap interval over participants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BootstrapInterval {
     /// The statistic's value; null where it cannot be computed.
     pub value: Option<f64>,
-    /// Lower end of the statistic's 95 % interval.
     pub low: Option<f64>,
-    /// Upper end of the statistic's 95 % interval.
     pub high: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConceptRocCurve {
     pub concept: ConceptName,
-    /// Area under the curve: mean true positive rate over the false positive rates that all concepts reach (partial
-    /// area divided by the range's width).
+    /// Mean true positive rate over the false positive rates that all concepts reach.
     pub auc: Option<f64>,
-    /// Lower end of the 95 % interval of the area `auc`.
     pub auc_low: Option<f64>,
-    /// Upper end of the 95 % interval of the area `auc`.
     pub auc_high: Option<f64>,
-    /// Points of the ROC curve, in the order of the concept's parameter.
     pub points: Vec<RocPoint>,
     /// Confidence band of the curve, as false positive rate with lower and upper true positive rate.
     pub band: Vec<[f64; 3]>,
-    /// True positive rates at the numbers of signals in `EQUAL_SIGNALS`.
     pub at_equal_signals: Vec<BootstrapInterval>,
     pub useless_at_equal_signals: Vec<BootstrapInterval>,
-    /// Difference between the first concept's true positive rate and this concept's, at the numbers of signals in
-    /// `EQUAL_SIGNALS`.
+    /// True positive rate of the first concept minus this one's, at `EQUAL_SIGNALS`.
     pub behind_first: Vec<BootstrapInterval>,
 }
 
@@ -107,8 +93,7 @@ pub struct ConceptComparison {
 
 /// Curves of all concepts for one bootstrap sample of participants.
 struct Curves {
-    /// For each concept: true positive rate against false positive rate, true positive rate against signals per 100
-    /// human presses, and useless signals against signals, both per 100 human presses.
+    /// By concept: tpr by fpr; tpr by signals, and useless signals by signals, both per 100 human presses.
     of: Vec<[Vec<(f64, f64)>; 3]>,
 }
 
@@ -231,7 +216,6 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
     })
 }
 
-/// A statistic of the curves with its percentile interval over the bootstrap resamples.
 fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
     let drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
@@ -257,7 +241,6 @@ fn band(curves: &Curves, resampled: &[Curves], concept: usize) -> Vec<[f64; 3]> 
 pub struct ConceptPreventionCounts {
     pub concept: ConceptName,
     pub parameter: f64,
-    /// Errors that the concept would have prevented, and signals that the concept would have sent.
     pub count: PreventionCounts,
 }
 
@@ -337,13 +320,11 @@ impl ConceptTotals {
         self.participants.len()
     }
 
-    /// Sum over all trials for every concept and parameter value; empty without trials.
     pub fn sum(&self) -> &[ConceptPreventionCounts] {
         &self.sum
     }
 
-    /// Sum over participants, each of whom counts as often as `times` says; only counts that are in the rates are
-    /// summed.
+    /// Each counts as often as `times` says; only counts that are in the rates are summed.
     pub fn resampled(&self, times: &[u32]) -> Vec<ConceptPreventionCounts> {
         let mut sum = emptied(&self.sum);
         for (participant, &times) in self.participants.iter().zip(times) {
@@ -355,7 +336,6 @@ impl ConceptTotals {
     }
 }
 
-/// The same concepts and parameter values, with counts of 0.
 fn emptied(counts: &[ConceptPreventionCounts]) -> Vec<ConceptPreventionCounts> {
     counts.iter().map(|one| ConceptPreventionCounts { count: PreventionCounts::default(), ..*one }).collect()
 }

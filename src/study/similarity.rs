@@ -14,7 +14,6 @@ use tomcom_session::watcher::SenderComparisonSettings;
 /// Matching windows that the option `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 
-/// Compares wizard and assistants in recordings, on all processors. `done` is called after each recording.
 pub fn watch(
     recordings: &GatheredRecordings,
     request: &SenderComparisonSettings,
@@ -23,7 +22,6 @@ pub fn watch(
     parallel::each(&recordings.paths, |recording| follow(recording, request), done).into_iter().collect()
 }
 
-/// Compares wizard and assistants in one recording, from beginning to end.
 fn follow(recording: &Path, request: &SenderComparisonSettings) -> FileResult<RecordingSenderComparison> {
     let mut log = LogReader::open(recording)?;
     let mut comparer = SenderComparer::new(log.session(), request);
@@ -35,10 +33,7 @@ fn follow(recording: &Path, request: &SenderComparisonSettings) -> FileResult<Re
     Ok(comparer.finish(recording.display().to_string(), standing))
 }
 
-/// Context of the unmatched communication with this number, as text.
-///
-/// # Errors
-/// There is no unmatched communication with this number, or there are several recordings.
+/// Errors: there is no unmatched communication with this number, or there are several recordings.
 pub fn open(watched: &[RecordingSenderComparison], number: usize) -> FileResult<String> {
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());

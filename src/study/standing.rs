@@ -19,19 +19,12 @@ pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
     Ok(None)
 }
 
-/// Whether the trial of a recording that was read to its end was aborted or excluded. A later decision in a file beside
-/// the log overrides the log.
-///
-/// # Errors
-/// The file beside the log is damaged.
+/// A later decision in a file beside the log overrides the log. Errors: that file is damaged.
 pub fn exclusion_status(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
     with_ruling(ExclusionStatus::at_console(session), log.folder())
 }
 
-/// Why analyses leave a recording out, in words; `None` for a recording that counts.
-///
-/// # Errors
-/// The recording cannot be read or replayed, or the file beside the log is damaged.
+/// In words; `None` for a recording that counts.
 pub fn left_out(recording: &Path) -> FileResult<Option<String>> {
     let mut log = LogReader::open(recording)?;
     let mut session = log.session();
@@ -41,11 +34,7 @@ pub fn left_out(recording: &Path) -> FileResult<Option<String>> {
     Ok(exclusion_status(&session, &log)?.left_out(&session, log.ending() == LogEnding::Running))
 }
 
-/// Whether the recording in this folder was aborted or excluded, given the status that the console recorded. A later
-/// decision in a file beside the log overrides that status.
-///
-/// # Errors
-/// The file beside the log is damaged.
+/// A later decision in a file in this folder overrides the status. Errors: that file is damaged.
 pub fn with_ruling(at_console: ExclusionStatus, folder: &Path) -> FileResult<ExclusionStatus> {
     Ok(match ruling(folder)? {
         Some(ExclusionRecord { excluded, reason, .. }) => {

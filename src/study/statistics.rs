@@ -3,10 +3,10 @@
 //! Probability distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy,
 //! pingouin and scikit-learn.
 
+use rand::RngExt;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-use super::pairwise_differences::PairwiseDifferences;
 use tomcom_core::base::rng::{shuffle, stream};
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -139,7 +139,6 @@ pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     Some(f64::from(extreme) / f64::from(SAMPLED_PERMUTATIONS + 1))
 }
 
-/// Binomial coefficient: n choose m, as a float.
 fn binomial(n: usize, m: usize) -> f64 {
     (0..m).map(|index| (n - index) as f64 / (index + 1) as f64).product()
 }
@@ -182,14 +181,12 @@ pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<ConfidenceInte
     Some(ConfidenceInterval { estimate: differences.median()?, low, high, level: 1.0 - 2.0 * below })
 }
 
-/// Number of differences that are omitted on each side of the interval, and the probability of each side: the largest
-/// of these cumulated probabilities that is at most `tail`.
+/// Number of differences left out on each side, and the probability of each side: at most `tail`.
 fn omitted(cumulated: impl Iterator<Item = f64>, tail: f64) -> (usize, f64) {
     cumulated.take_while(|p| *p <= tail).fold((0, 0.0), |(count, _), p| (count + 1, p))
 }
 
-/// P(U <= u) for u = 0, 1, …, m n / 2 by the normal approximation with continuity correction: U of two samples of these
-/// sizes from the same distribution.
+/// P(U <= u) for u = 0, 1, …, m n / 2 by the normal approximation with continuity correction.
 fn normal_cdf(m: usize, n: usize) -> impl Iterator<Item = f64> {
     let (pairs, values) = ((m * n) as f64, (m + n) as f64);
     let (mean, deviation) = (pairs / 2.0, (pairs * (values + 1.0) / 12.0).sqrt());
@@ -241,8 +238,7 @@ pub(crate) fn share_interval(part: u64, whole: u64, level: f64) -> Option<Confid
     wilson(part as f64 / whole as f64, whole as f64, level)
 }
 
-/// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of
-/// independent observations with the same variance. `None` if `n` is 0.
+/// `n` may be the fractional number of observations with the same variance. `None` if `n` is 0.
 pub(crate) fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     if n <= 0.0 {
         return None;
@@ -268,4 +264,118 @@ pub(crate) fn sample_sd(values: &[f64]) -> Option<f64> {
     let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
     let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
     Some((sum / (values.len() - 1) as f64).sqrt())
+}
+
+/// The differences between all values of two samples in their order, without storing them: two samples of 700 have
+/// 490,000 differences.
+/// The differences between all values of two samples in their order, without storing them: two samples of 700 have
+/// 490,000 differences.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairwiseDifferences {
+    a: Vec<f64>,
+    b: Vec<f64>,
+}
+
+impl PairwiseDifferences {
+    pub fn new(a: &[f64], b: &[f64]) -> PairwiseDifferences {
+        let [a, b] = [a, b].map(|values| {
+            let mut values = values.to_vec();
+            values.sort_by(f64::total_cmp);
+            values
+        });
+        PairwiseDifferences { a, b }
+    }
+
+    pub fn number(&self) -> usize {
+        self.a.len() * self.b.len()
+    }
+
+    /// The difference at this index in ascending order; the index must be below [`PairwiseDifferences::number`].
+    pub fn nth(&self, index: usize) -> f64 {
+        // Bisection over all floats in their order: the least float that more than `index` differences do not exceed.
+        let (mut low, mut high) = (0, u64::MAX);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.number_up_to(float_at(middle)) > index { high = middle } else { low = middle + 1 }
+        }
+        float_at(low)
+    }
+
+    pub fn median(&self) -> Option<f64> {
+        let (number, middle) = (self.number(), self.number() / 2);
+        match number {
+            0 => None,
+            odd if odd % 2 == 1 => Some(self.nth(middle)),
+            _ => Some((self.nth(middle - 1) + self.nth(middle)) / 2.0),
+        }
+    }
+
+    fn number_up_to(&self, limit: f64) -> usize {
+        // The larger a is, the larger must b be, since rounding keeps the order of differences.
+        let mut below = 0;
+        let of_one = |a: &f64| {
+            below += self.b[below..].iter().take_while(|b| (a - *b).total_cmp(&limit).is_gt()).count();
+            self.b.len() - below
+        };
+        self.a.iter().map(of_one).sum()
+    }
+}
+
+/// The float at this place in the order of `f64::total_cmp`.
+fn float_at(place: u64) -> f64 {
+    const SIGN: u64 = 1 << 63;
+    f64::from_bits(if place & SIGN == 0 { !place } else { place ^ SIGN })
+}
+
+const RESAMPLES: usize = 2000;
+const INTERVAL: [f64; 2] = [0.025, 0.975];
+
+/// Least number of units (such as participants) for an interval: resamples of fewer units are nearly all alike.
+const FEWEST: usize = 5;
+
+/// The 95 % interval. `seed`: of the random stream. Panics: there are no trials.
+pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {
+    let [interval] = intervals(trials, seed, |drawn| [statistic(drawn)]);
+    interval
+}
+
+/// The 95 % intervals of several statistics of the same resamples. Panics: there are no trials.
+pub fn intervals<T: Copy, const N: usize>(
+    trials: &[T],
+    seed: u64,
+    statistics: impl Fn(&[T]) -> [f64; N],
+) -> [[f64; 2]; N] {
+    let mut random = stream(seed, "bootstrap over trials", 0);
+    let resampled: Vec<[f64; N]> = (0..RESAMPLES)
+        .map(|_| {
+            let drawn: Vec<T> = trials.iter().map(|_| trials[random.random_range(0..trials.len())]).collect();
+            statistics(&drawn)
+        })
+        .collect();
+    std::array::from_fn(|index| percentiles(resampled.iter().map(|all| all[index]).collect(), INTERVAL))
+}
+
+/// `None` with fewer than five units, or if the statistic is undefined for more than half of the resamples.
+pub(crate) fn interval_where_known<T: Copy>(
+    units: &[T],
+    seed: u64,
+    statistic: impl Fn(&[T]) -> Option<f64>,
+) -> Option<[f64; 2]> {
+    if units.len() < FEWEST {
+        return None;
+    }
+    let mut random = stream(seed, "bootstrap over participants", 0);
+    let resampled: Vec<f64> = (0..RESAMPLES)
+        .filter_map(|_| {
+            let drawn: Vec<T> = units.iter().map(|_| units[random.random_range(0..units.len())]).collect();
+            statistic(&drawn)
+        })
+        .collect();
+    (2 * resampled.len() >= RESAMPLES).then(|| percentiles(resampled, INTERVAL))
+}
+
+/// The values at these shares of the sorted values, of which there is at least one.
+pub(crate) fn percentiles(mut values: Vec<f64>, shares: [f64; 2]) -> [f64; 2] {
+    values.sort_by(f64::total_cmp);
+    shares.map(|share| values[((values.len() - 1) as f64 * share).round() as usize])
 }

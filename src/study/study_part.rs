@@ -26,13 +26,11 @@ use crate::pass::reading::RecordedConsent;
 use crate::planned_trial::{PlannedTrialKey, RecordingCopy};
 use crate::tables::participants::TutorialQuestionRow;
 use crate::trial_statistics::{TrialDetails, TrialStatistics};
-use tomcom_session::header::CodeCorrection;
-use tomcom_session::header::RecordedFile;
+use tomcom_session::header::{CodeCorrection, RecordedFile};
 use tomcom_session::plan::PlanPosition;
 
 pub(crate) const PART_FORMAT: u32 = 5;
 
-/// Header of a study's part: the first line of its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartHeader {
@@ -108,7 +106,6 @@ impl AnalysedRecording {
 /// Why the parts of a study, or the shards of a pool, cannot be joined, or why lines make no pool.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShardMismatch {
-    /// Index of the part or line that does not fit.
     pub index: usize,
     pub found: String,
     pub remedy: String,
@@ -138,10 +135,8 @@ impl PartHeader {
     }
 }
 
-/// Checks that these parts make one whole study, analysed with the same options by this version of the program.
-///
-/// # Errors
-/// A part is of another program, study or number of parts, was analysed with other options, occurs twice, or is
+/// Checks that these parts make one whole study, analysed with the same options by this version of the program. Errors:
+/// a part is of another program, study or number of parts, was analysed with other options, occurs twice, or is
 /// missing.
 pub(crate) fn check_parts(parts: &[PartHeader]) -> Result<(), ShardMismatch> {
     let Some(first) = parts.first() else {

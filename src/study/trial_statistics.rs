@@ -12,8 +12,7 @@ use crate::roc::{ConceptPreventionCounts, ConceptTotals};
 use crate::statistics::{ConfidenceInterval, mean, share_interval};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, Similarity, WINDOW};
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::RaterPair;
+use tomcom_core::measures::raters::{BeliefSource, RaterPair};
 use tomcom_core::measures::sequences::BeliefErrorCounts;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::event::TrialEndReason;
@@ -23,7 +22,6 @@ use tomcom_session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibi
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::wall_display::RobotDepiction;
 
-/// Statistics of one trial of a study: conditions, counts, medians, answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialStatistics {
     /// Path of the recording's folder, relative to the folder given by the user.
@@ -31,7 +29,6 @@ pub struct TrialStatistics {
     /// Participant code, with the seed in front if several seeds have simulated participants with the same codes.
     pub participant: String,
     pub seed: u64,
-    /// Kind of participant: a person or a simulation.
     pub kind: ParticipantKind,
     /// Wall clock time at which the recording started; `None` for simulated trials.
     pub started: Option<String>,
@@ -39,12 +36,10 @@ pub struct TrialStatistics {
     /// Number of the trial in the participant's series, from 1.
     pub period: Option<u32>,
     pub is_planned: bool,
-    /// Condition of the trial: who could send signals.
     pub condition: Condition,
     pub study_arm: StudyArm,
     /// Study arm under which the trial counts: assigned by the plan or, without a plan, by the settings.
     pub planned_arm: StudyArm,
-    /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
     pub wizard_sees: WizardVisibility,
     /// Sender of the signals in a trial without a person as wizard.
@@ -89,7 +84,6 @@ pub struct TrialStatistics {
     /// The two raters with their codes, if these codes or the raters' consensus determine the causes of errors.
     pub raters: Option<RaterPair>,
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
-    /// The two raters whose consensus determines the causes of errors.
     pub settled_by: Option<[String; 2]>,
     /// Why the raters' consensus is not used: a rater's code changed after the raters settled it.
     pub stale_consensus: Option<String>,
@@ -97,19 +91,15 @@ pub struct TrialStatistics {
     pub probes: Option<ProbedTrialStatistics>,
 }
 
-/// Errors of a trial that follow from false beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FalseBeliefErrors {
-    /// Source of what the human believed: recorded beliefs, raters' codes or the belief estimate.
     pub basis: BeliefSource,
     pub errors: u64,
     pub of_two: u64,
-    /// Errors from false beliefs, counted by kind of state aspect.
     pub causes: BeliefErrorCounts,
     pub lengths: Vec<u32>,
     pub lengths_any_aspect: Vec<u32>,
-    /// For each error sequence that has ended, the time from its first error to the first correct press after its last
-    /// error, in seconds.
+    /// From the first error of each ended sequence to the first correct press after its last, in seconds.
     pub recovery_s: Vec<f64>,
     /// Number of false belief episodes with at least one error; `None` if beliefs are known from the estimate alone.
     pub episodes: Option<u64>,
@@ -124,11 +114,9 @@ pub struct QuestionnaireAnswer {
     /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
     pub kind: QuestionnaireItemKind,
-    /// The participant's answer; `None` if the participant skipped the item.
     pub answer: Option<AnswerValue>,
     /// Number of points of the item's rating scale; `None` for other kinds of item.
     pub points: Option<u8>,
-    /// The answer options of the item: id and text.
     pub options: Vec<ItemOption>,
     /// The answer on a scale or slider as a number from 0 to 1, reversed if the item is reverse coded.
     pub share: Option<f64>,
@@ -161,12 +149,10 @@ impl TrialStatistics {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
 
-    /// Mean number of errors in a sequence of errors from the same false belief.
     pub fn sequence_length(&self) -> Option<f64> {
         mean_length(&self.beliefs.as_ref()?.lengths)
     }
 
-    /// Mean time to recover from an error sequence, in seconds.
     pub fn recovery_s(&self) -> Option<f64> {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
@@ -212,7 +198,6 @@ fn simulated(trials: &[TrialStatistics]) -> impl Iterator<Item = &TrialStatistic
     trials.iter().filter(|trial| trial.started.is_none())
 }
 
-/// Name of the sender of a simulated trial's signals: a study arm's name, or a concept's.
 pub type SignalSenderName = &'static str;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -251,18 +236,15 @@ fn actor<'de, D: Deserializer<'de>>(input: D) -> Result<SignalSenderName, D::Err
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrialDetails {
-    /// Offers that a wizard could see; empty in recordings without offers.
     pub offers: Vec<TimedOffer>,
     /// In wizard trials: the communications that were sent, and those that the assistant would have sent.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
-    /// In unassisted trials with known beliefs: what each concept would have prevented, for each value of its
-    /// parameter.
+    /// Unassisted trials with known beliefs: what each concept would have prevented.
     pub swept: Vec<ConceptPreventionCounts>,
     /// Freeze probes of the trial with their questions and answers; `None` without probes.
     pub probes: Option<ProbedTrial>,
 }
 
-/// Sums and rates over trials of a study: presses, errors, sequences, signals, orders.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TrialTotals {
     pub actions: u64,
@@ -280,15 +262,11 @@ pub struct TrialTotals {
     /// Source of the participants' beliefs; null if beliefs are unknown in any trial.
     pub beliefs_from: Option<BeliefSource>,
     pub belief_related_errors: Option<u64>,
-    /// Errors from false beliefs, counted by kind of state aspect.
     pub belief_related_by_kind: Option<BeliefErrorCounts>,
     /// Share of the errors that follow from false beliefs, from 0 to 1.
     pub belief_related_share: Option<f64>,
-    /// 95 % interval of the share `belief_related_share`.
     pub belief_related_interval: Option<ConfidenceInterval>,
-    /// Number of error sequences whose errors follow from the same false belief.
     pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
     /// Sequences of errors from the same false belief, per 100 presses of the human.
     pub sequences_per_100: Option<f64>,
@@ -352,8 +330,7 @@ impl TrialTotals {
     }
 }
 
-/// The source of beliefs of these trials; the least reliable source if they differ. Trials without errors count only
-/// if all are: there was nothing to find out.
+/// The least reliable one. Trials without errors count only if all are: there was nothing to find out.
 fn source(trials: &[&TrialStatistics]) -> Option<BeliefSource> {
     let of = |trial: &&&TrialStatistics| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
     let with_errors = trials.iter().filter(|trial| trial.errors > 0).filter_map(|trial| of(&trial)).max();
@@ -374,11 +351,9 @@ pub struct WizardAssistantSimilarity {
 #[derive(Clone, Debug, Default)]
 pub struct DetailTotals {
     pub concepts: ConceptTotals,
-    /// Source of what participants believed in the trials for the comparison of concepts; of several sources, the least
-    /// reliable one.
+    /// Of the trials for the comparison of concepts; of several, the least reliable one.
     pub concepts_beliefs_from: Option<BeliefSource>,
-    /// Matches of the wizard's signals with those of the assistant, in trials in which the wizard saw no
-    /// recommendations; `None` without such trials.
+    /// Where the wizard saw no recommendations; `None` without such trials.
     pub without_advice: Option<MatchCounts>,
     pub with_advice: Option<MatchCounts>,
     pub similarity_by_trial: Vec<WizardAssistantSimilarity>,
@@ -387,8 +362,7 @@ pub struct DetailTotals {
 }
 
 impl DetailTotals {
-    /// Adds the details of a trial. Trials must be added in the order of [`super::trial_statistics::arrange`]; a trial
-    /// that the analysis does not count changes nothing.
+    /// In the order of [`arrange`]; a trial that the analysis does not count changes nothing.
     pub fn add(&mut self, trial: &TrialStatistics, details: TrialDetails) {
         if !trial.counts() {
             return;
@@ -425,7 +399,6 @@ fn of_trial(trial: &TrialStatistics, similarity: &Similarity) -> WizardAssistant
     }
 }
 
-/// Name of the kind of participant in tables.
 pub(crate) fn kind_name(kind: ParticipantKind) -> &'static str {
     match kind {
         ParticipantKind::Simulated => "simulated",

@@ -57,7 +57,7 @@ fn fits(schema: &Value, value: &Value) -> bool {
 #[test]
 fn every_event_is_a_message_at_its_session_time_and_as_its_schema_says() {
     let schemas: BTreeMap<&str, Value> =
-        McapChannel::ALL.into_iter().map(|channel| (channel.topic(), channel.schema())).collect();
+        McapChannel::ALL.into_iter().map(|channel| (channel.topic, channel.schema())).collect();
     for name in ["format-3-hand", "format-3-simulated", "format-3-offers"] {
         let folder = golden(name, "messages");
         let text = fs::read_to_string(folder.join("events.jsonl")).expect("the log");

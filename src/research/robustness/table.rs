@@ -14,7 +14,7 @@ use tomcom_core::measures::detection::{FalseBeliefDetection, TrialBeliefs, aspec
 use tomcom_core::measures::flags::{ThresholdChoice, chosen_thresholds};
 use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_study::analysis::likelihood::PressLogLikelihood;
-use tomcom_study::analysis::trial_bootstrap::intervals;
+use tomcom_study::statistics::intervals;
 use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.

@@ -26,8 +26,7 @@ const LISTED: usize = 20;
 /// Agreement of wizard and assistants in recordings: the output of `tomcom compare`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonSummary {
-    /// Agreement between the communications of each two senders (the sent signals, and each assistant's hypothetical
-    /// ones), over all recordings that count in the analysis.
+    /// Agreement of each two senders (the sent signals, each assistant's hypothetical ones) where recordings count.
     pub pairs: Vec<SenderPairSummary>,
     pub recordings: Vec<RecordingComparison>,
     pub training: Option<WizardTrainingSummary>,
@@ -35,15 +34,11 @@ pub struct ComparisonSummary {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SenderPairSummary {
-    /// Name of the first compared sender: who sent the signals ("wizard", "assistant" or "nobody"), or an assistant's
-    /// concept.
+    /// "wizard", "assistant" or "nobody" for the sent signals, or an assistant's concept.
     pub of: String,
-    /// Name of the second compared sender: an assistant's concept.
     pub with: String,
-    /// Number of the human's presses within which two communications can match; the estimate leaves out signals sent
-    /// within this window.
+    /// Presses of the human within which two communications can match.
     pub window_actions: u32,
-    /// Similarity of the two senders' communications: how many of them match.
     #[serde(flatten)]
     pub similarity: Similarity,
 }
@@ -66,7 +61,6 @@ pub struct RecordingComparison {
 pub struct SenderCommunicationList {
     /// Name of the sender: "wizard", or an assistant's concept as "tom-com".
     pub name: String,
-    /// The sender's communications, in the order of time.
     pub communications: Vec<ListedCommunication>,
 }
 
@@ -77,14 +71,12 @@ pub struct ListedCommunication {
     pub says: String,
 }
 
-/// A communication of one sender without a match by the other, with its context.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnmatchedCommunicationSummary {
     /// Number of the difference, from 1, as the option `--open` takes it.
     pub number: usize,
     pub headline: String,
     pub by: String,
-    /// Name of the sender without a matching communication.
     pub not_by: String,
     #[serde(skip)]
     pair: usize,
@@ -96,18 +88,15 @@ pub struct UnmatchedCommunicationSummary {
     pub knew: Option<CommunicationContextSummary>,
 }
 
-/// Context of a communication: beliefs, recommendation and the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommunicationContextSummary {
-    /// Estimated belief about every state aspect before the communication, as if the signals sent shortly before (within
-    /// the window in which communications of different senders match) had not been sent.
+    /// Estimated beliefs before it, as if the signals sent within the matching window before had not been sent.
     pub beliefs: Vec<ListedEstimatedBelief>,
     pub advice: Option<Recommendation>,
     /// Content of the wizard's screen then; null before the screen was first drawn, and without a wizard.
     pub screen: Option<WizardScreenContent>,
 }
 
-/// Estimated belief about one state aspect, beside the aspect's true value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedEstimatedBelief {
     pub aspect: String,
@@ -266,7 +255,6 @@ pub fn describe(figures: &ComparisonSummary, request: &SenderComparisonSettings)
     text
 }
 
-/// The command-line options that ask for the same comparison again.
 fn flags(request: &SenderComparisonSettings) -> String {
     let mut flags = String::new();
     if !request.with.is_empty() {
@@ -340,10 +328,7 @@ impl SenderComparer {
         SenderComparer { follower: SenderComparisonFollower::new(session, cost, request), wizard: WizardLog::default() }
     }
 
-    /// Applies the next event of the recording to the session and to the comparison.
-    ///
-    /// # Errors
-    /// The event is not possible in the session's present state.
+    /// Applies the next event of the recording. Errors: it is not possible in the session's present state.
     pub fn add(&mut self, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
         self.follower.apply(stamped)?;
         self.wizard.note(stamped, &self.follower.follower.session);
@@ -354,7 +339,6 @@ impl SenderComparer {
         &self.follower.follower.session
     }
 
-    /// The result of the comparison, once the last event was added. `recording`: name of the recording.
     pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> RecordingSenderComparison {
         self.follower.finish();
         let comparison = self.follower.comparison(true);
@@ -370,7 +354,6 @@ pub struct RecordingSenderComparison {
     pub follower: SenderComparisonFollower,
     pub standing: ExclusionStatus,
     pub comparison: SenderComparison,
-    /// Summary of the wizard's signals; `None` where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     pub offers: OfferSummary,
 }

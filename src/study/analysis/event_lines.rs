@@ -1,17 +1,14 @@
 //! A recording as text, with one line for each event, for pipes and plain terminals.
 
-use tomcom_core::base::text::count;
-use tomcom_core::base::text::printable;
+use tomcom_core::base::text::{count, printable};
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::OfferedAdvice;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::sequences::FALSE_BELOW;
-use tomcom_core::mind::{AspectBelief, RecordedBelief};
-use tomcom_core::mind::{AspectEstimate, RecordedEstimate};
+use tomcom_core::mind::{AspectBelief, AspectEstimate, RecordedBelief, RecordedEstimate};
 use tomcom_core::robot::SafetyMode;
-use tomcom_session::event::WizardScreenContent;
-use tomcom_session::event::{SignalEndReason, TrialEndReason};
+use tomcom_session::event::{SignalEndReason, TrialEndReason, WizardScreenContent};
 use tomcom_session::follower::SessionFollower;
 
 use tomcom_session::history::wording::{self, location as said};
@@ -135,7 +132,6 @@ fn on_screen(screen: &WizardScreenContent) -> String {
     format!("the wizard sees {} ({}{dialog})", screen.panels.join(", "), screen.room)
 }
 
-/// Judgement of the human's press that was just applied, in words; empty for other events.
 fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
     let judged = follower.judged.last().filter(|press| press.seq == stamped.seq);
     match (&stamped.event, judged) {

@@ -14,55 +14,36 @@ use tomcom_session::TimestampedEvent;
 use tomcom_session::event::Event;
 use tomcom_session::follower::SessionFollower;
 
-/// Channel of messages in an MCAP file (a recording format of robotics tools).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum McapChannel {
-    Joints,
-    Frames,
-    Arm,
-    Log,
-    /// Channel of the events as in the log, without gaze and arm samples.
-    Events,
-    Gaze,
-    Beliefs,
+/// A channel of an MCAP file: its topic, the name of the type of its messages, and the JSON Schema of that type without title.
+pub struct McapChannel {
+    pub topic: &'static str,
+    pub schema_name: &'static str,
+    untitled: fn() -> Value,
 }
+
+const JOINTS: &str = "/robot/joints";
+const FRAMES: &str = "/tf";
+const ARM: &str = "/robot/arm";
+const LOG: &str = "/log";
+/// As in the log, without gaze and arm samples.
+const EVENTS: &str = "/events";
+const GAZE: &str = "/gaze";
+const BELIEFS: &str = "/beliefs";
 
 impl McapChannel {
     pub const ALL: [McapChannel; 7] = [
-        McapChannel::Joints,
-        McapChannel::Frames,
-        McapChannel::Arm,
-        McapChannel::Log,
-        McapChannel::Events,
-        McapChannel::Gaze,
-        McapChannel::Beliefs,
+        McapChannel { topic: JOINTS, schema_name: "foxglove.JointStates", untitled: joints_schema },
+        McapChannel { topic: FRAMES, schema_name: "foxglove.FrameTransforms", untitled: frames_schema },
+        McapChannel { topic: ARM, schema_name: "tomcom.Arm", untitled: arm_schema },
+        McapChannel { topic: LOG, schema_name: "foxglove.Log", untitled: log_schema },
+        McapChannel { topic: EVENTS, schema_name: "tomcom.Event", untitled: event_schema },
+        McapChannel { topic: GAZE, schema_name: "tomcom.Gaze", untitled: gaze_schema },
+        McapChannel { topic: BELIEFS, schema_name: "tomcom.Beliefs", untitled: beliefs_schema },
     ];
 
-    /// Name (topic) of the channel, name of the type of its messages, and the JSON Schema of that type, which has no title.
-    fn declared(self) -> (&'static str, &'static str, fn() -> Value) {
-        match self {
-            McapChannel::Joints => ("/robot/joints", "foxglove.JointStates", joints_schema),
-            McapChannel::Frames => ("/tf", "foxglove.FrameTransforms", frames_schema),
-            McapChannel::Arm => ("/robot/arm", "tomcom.Arm", arm_schema),
-            McapChannel::Log => ("/log", "foxglove.Log", log_schema),
-            McapChannel::Events => ("/events", "tomcom.Event", event_schema),
-            McapChannel::Gaze => ("/gaze", "tomcom.Gaze", gaze_schema),
-            McapChannel::Beliefs => ("/beliefs", "tomcom.Beliefs", beliefs_schema),
-        }
-    }
-
-    pub fn topic(self) -> &'static str {
-        self.declared().0
-    }
-
-    pub fn schema_name(self) -> &'static str {
-        self.declared().1
-    }
-
-    pub fn schema(self) -> Value {
-        let (_, name, schema) = self.declared();
-        let mut schema = schema();
-        schema["title"] = name.into();
+    pub fn schema(&self) -> Value {
+        let mut schema = (self.untitled)();
+        schema["title"] = self.schema_name.into();
         schema
     }
 }
@@ -74,7 +55,7 @@ const WARNING: u8 = 3;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct McapMessage {
-    pub channel: McapChannel,
+    pub topic: &'static str,
     pub logged: SessionTime,
     pub published: SessionTime,
     pub content: Value,
@@ -94,7 +75,7 @@ impl Default for McapMessageConverter {
 impl McapMessageConverter {
     pub fn messages(&self, stamped: &TimestampedEvent, follower: &SessionFollower) -> Vec<McapMessage> {
         let now = stamped.time;
-        let message = |channel, content| McapMessage { channel, logged: now, published: now, content };
+        let message = |topic, content| McapMessage { topic, logged: now, published: now, content };
         match &stamped.event {
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.unwrap_or(now);
@@ -104,23 +85,20 @@ impl McapMessageConverter {
                 if let Some(device_ns) = sample.device_ns {
                     content["device_ns"] = json!(device_ns);
                 }
-                let logged = message(McapChannel::Gaze, content);
+                let logged = message(GAZE, content);
                 vec![McapMessage { published: taken, ..logged }]
             }
-            Event::RobotMoves(sample) => {
-                self.moves(now, sample).map(|(channel, content)| message(channel, content)).into()
-            }
+            Event::RobotMoves(sample) => self.moves(now, sample).map(|(topic, content)| message(topic, content)).into(),
             _ => {
-                let mut all = vec![message(McapChannel::Events, event(stamped))];
-                all.extend(beliefs(stamped).map(|content| message(McapChannel::Beliefs, content)));
-                all.extend(words(stamped, follower).map(|content| message(McapChannel::Log, content)));
+                let mut all = vec![message(EVENTS, event(stamped))];
+                all.extend(beliefs(stamped).map(|content| message(BELIEFS, content)));
+                all.extend(words(stamped, follower).map(|content| message(LOG, content)));
                 all
             }
         }
     }
 
-    /// The messages for an arm sample: joint angles, coordinate frames, and what the arm does.
-    fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(McapChannel, Value); 3] {
+    fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(&'static str, Value); 3] {
         let joint = |(name, angle): (&&str, &f64)| json!({ "name": name, "position": angle });
         let joints: Vec<Value> = JOINT_NAMES.iter().zip(&sample.joints).map(joint).collect();
         let links = self.arm.links.iter().zip(self.arm.forward(&sample.joints)).skip(1);
@@ -135,9 +113,9 @@ impl McapMessageConverter {
             "timestamp": time(now), "phase": sample.phase, "force_n": sample.force_n, "hand_away_m": sample.hand_away_m,
         });
         [
-            (McapChannel::Joints, json!({ "timestamp": time(now), "joints": joints })),
-            (McapChannel::Frames, json!({ "transforms": frames })),
-            (McapChannel::Arm, arm),
+            (JOINTS, json!({ "timestamp": time(now), "joints": joints })),
+            (FRAMES, json!({ "transforms": frames })),
+            (ARM, arm),
         ]
     }
 }
@@ -165,7 +143,6 @@ fn event(stamped: &TimestampedEvent) -> Value {
     json!({ "timestamp": time(stamped.time), "seq": stamped.seq, "kind": stamped.event.kind(), "event": fields })
 }
 
-/// The message about beliefs; `None` unless the event is one of the two kinds that record beliefs.
 fn beliefs(stamped: &TimestampedEvent) -> Option<Value> {
     let values = |values: &BTreeMap<String, f64>| -> Vec<Value> {
         values.iter().map(|(value, p)| json!({ "value": value, "p": p })).collect()
@@ -198,7 +175,6 @@ fn beliefs(stamped: &TimestampedEvent) -> Option<Value> {
     Some(content)
 }
 
-/// The message that says in words what the event is; `None` for events without words.
 fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<Value> {
     let line = event_lines::line(stamped, follower)?;
     let is_error = || follower.judged.last().is_some_and(|press| press.seq == stamped.seq && press.verdict.error);

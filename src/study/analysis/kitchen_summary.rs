@@ -1,20 +1,19 @@
 //! Summary of a kitchen: its size, its shortest plans, and the tags by which eye trackers find its display.
 
-use std::fmt::Write;
 use std::sync::Arc;
 
 use serde::Serialize;
 
 use tomcom_core::gaze::tags::{CELLS, DisplayTag, DisplayTags};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
+use tomcom_core::kitchen::{
+    Agent, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State,
+};
 
-/// Summary of a kitchen: size, shortest plans and display tags.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KitchenSummary {
     pub name: String,
-    /// Number of possible combinations of all state aspects' values, as a decimal text, since the number is too large
-    /// for JSON readers.
+    /// Number of combinations of all aspects' values, as text, since it is too large for JSON readers.
     pub states: String,
     pub aspects: Vec<AspectValueCount>,
     pub plans: Vec<ShortestPlanSummary>,
@@ -28,8 +27,7 @@ pub struct DisplayTagLayout {
     /// Length of the edges of the tags' black squares, in metres.
     pub edge_m: f64,
     pub tags: Vec<DisplayTagGeometry>,
-    /// Corners of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the
-    /// display.
+    /// Of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the display.
     pub surface: [[f64; 2]; 4],
 }
 
@@ -68,7 +66,6 @@ pub struct AspectValueCount {
     pub values: usize,
 }
 
-/// A shortest plan for a dish from an empty kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShortestPlanSummary {
     pub recipe: String,
@@ -93,7 +90,6 @@ impl KitchenSummary {
     }
 }
 
-/// The state of a kitchen that is empty except for one order of this dish.
 fn ordered(kitchen: &Kitchen, dish: DishId) -> State {
     let mut state = kitchen.empty_state();
     state.set_order(kitchen.orders[0], OrderContent::Dish(dish));
@@ -107,8 +103,7 @@ pub fn plan_lengths(kitchen: &Kitchen, cost: &mut CostToGo) -> Vec<u32> {
     (0..kitchen.dishes.len()).map(length).collect()
 }
 
-/// A shortest plan for a dish: follows best presses from an empty kitchen until the dish is served, and changes the
-/// pressing agent only where it has to.
+/// A shortest plan from an empty kitchen, which changes the pressing agent only where it has to.
 fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSummary {
     let recipes = kitchen.true_recipes();
     let mut state = ordered(kitchen, dish);
@@ -131,90 +126,61 @@ fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSum
 }
 
 pub fn describe(kitchen: &Kitchen, figures: &KitchenSummary) -> String {
-    let mut text = format!("{} ({})\n", kitchen.title, kitchen.name);
-    let written = write_locations(&mut text, kitchen)
-        .and_then(|()| write_buttons(&mut text, kitchen))
-        .and_then(|()| write_recipes(&mut text, kitchen, figures))
-        .and_then(|()| write_aspects(&mut text, figures))
-        .and_then(|()| write_tags(&mut text, kitchen));
-    written.expect("a string takes every text");
-    text
-}
-
-fn write_locations(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
-    writeln!(text, "\nLOCATIONS")?;
+    let mut text = format!("{} ({})\n\nLOCATIONS\n", kitchen.title, kitchen.name);
     for (index, location) in kitchen.locations.iter().enumerate() {
-        let id = tomcom_core::kitchen::LocationId(index as u8);
-        let accepts = match location.kind {
-            LocationKind::Order => "an order".to_string(),
-            _ => {
-                let taken: Vec<&str> = (1..kitchen.contents.len())
-                    .filter(|&content| kitchen.accepts(id, ContentId(content as u8)))
-                    .map(|content| kitchen.contents[content].name.as_str())
-                    .collect();
-                match taken.len() == kitchen.contents.len() - 1 {
-                    true => "anything".to_string(),
-                    false => taken.join(", "),
-                }
-            }
-        };
+        let id = LocationId(index as u8);
         let role = match id {
             id if id == kitchen.board => " (items are stacked here)",
             id if id == kitchen.plate => " (orders are served from here)",
             _ => "",
         };
-        let key = location.signal_key.map_or(' ', |key| key);
-        writeln!(text, "  {key}  {:<16} {accepts}{role}", location.name)?;
+        let key = location.signal_key.unwrap_or(' ');
+        text += &format!("  {key}  {:<16} {}{role}\n", location.name, accepted(kitchen, id));
     }
-    Ok(())
-}
-
-fn write_buttons(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
     for agent in Agent::BOTH {
-        writeln!(text, "\nBUTTONS OF THE {}", agent.name().to_uppercase())?;
+        text += &format!("\nBUTTONS OF THE {}\n", agent.name().to_uppercase());
         for button in &kitchen.buttons[agent.index()] {
-            let [x, y] = button.at_m;
-            let key = button.key.unwrap_or(' ');
-            writeln!(text, "  {key}  {:<16} at {x:>5.2} m, {y:>5.2} m", button.name)?;
+            let ([x, y], key) = (button.at_m, button.key.unwrap_or(' '));
+            text += &format!("  {key}  {:<16} at {x:>5.2} m, {y:>5.2} m\n", button.name);
         }
     }
-    Ok(())
-}
-
-fn write_recipes(text: &mut String, kitchen: &Kitchen, figures: &KitchenSummary) -> std::fmt::Result {
-    writeln!(text, "\nRECIPES")?;
+    text += "\nRECIPES\n";
     for (dish, plan) in kitchen.dishes.iter().zip(&figures.plans) {
         let items = |stack: ContentId| {
             let items = &kitchen.content(stack).items;
             items.iter().map(|item| kitchen.content(*item).name.as_str()).collect::<Vec<_>>().join(" + ")
         };
-        writeln!(text, "  {}: {}", dish.name, items(dish.stack()))?;
+        text += &format!("  {}: {}\n", dish.name, items(dish.stack()));
         for variant in &dish.variants[1..] {
-            writeln!(text, "      may be taken for {}", items(*variant))?;
+            text += &format!("      may be taken for {}\n", items(*variant));
         }
-        writeln!(text, "      {} presses: {}", plan.actions, plan.presses.join(", "))?;
+        text += &format!("      {} presses: {}\n", plan.actions, plan.presses.join(", "));
     }
-    Ok(())
-}
-
-fn write_aspects(text: &mut String, figures: &KitchenSummary) -> std::fmt::Result {
-    writeln!(text, "\nSTATE SPACE")?;
+    text += "\nSTATE SPACE\n";
     for aspect in &figures.aspects {
-        writeln!(text, "  {:<28} {:>4}", aspect.name, aspect.values)?;
+        text += &format!("  {:<28} {:>4}\n", aspect.name, aspect.values);
     }
-    writeln!(text, "  {:<28} {:>4}", "product", figures.states)
-}
-
-fn write_tags(text: &mut String, kitchen: &Kitchen) -> std::fmt::Result {
-    writeln!(text, "\nTAGS OF THE WALL DISPLAY")?;
+    text += &format!("  {:<28} {:>4}\n\nTAGS OF THE WALL DISPLAY\n", "product", figures.states);
     let tags = match DisplayTags::place(kitchen) {
         Ok(tags) => tags,
-        Err(error) => return writeln!(text, "  none: found {error}; right would be {}", error.remedy),
+        Err(error) => return text + &format!("  none: found {error}; right would be {}\n", error.remedy),
     };
     let [top_left, top_right, bottom_right, bottom_left] = tags.corners.map(|tag| tag.id);
-    writeln!(
-        text,
-        "  tag36h11 {top_left} top left, {top_right} top right, {bottom_right} bottom right, {bottom_left} bottom left"
-    )?;
-    writeln!(text, "  black edges of {:.3} m", tags.edge_m)
+    text + &format!(
+        "  tag36h11 {top_left} top left, {top_right} top right, {bottom_right} bottom right, {bottom_left} bottom left\n  \
+         black edges of {:.3} m\n",
+        tags.edge_m
+    )
+}
+
+fn accepted(kitchen: &Kitchen, location: LocationId) -> String {
+    if kitchen.location(location).kind == LocationKind::Order {
+        return "an order".to_string();
+    }
+    let ids = (1..kitchen.contents.len()).map(|content| ContentId(content as u8));
+    let taken: Vec<&str> = ids
+        .filter(|&content| kitchen.accepts(location, content))
+        .map(|content| kitchen.content(content).name.as_str())
+        .collect();
+    if taken.len() == kitchen.contents.len() - 1 { "anything".to_string() } else { taken.join(", ") }
 }

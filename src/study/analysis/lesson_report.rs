@@ -16,8 +16,7 @@ use tomcom_core::mind::RecordedBelief;
 use tomcom_session::Session;
 use tomcom_session::history::wording;
 
-/// With fewer false beliefs that led to errors than this, a share of hits is too uncertain: at 10, a share of 60 % is
-/// known to within 30 %.
+/// With fewer, a share of hits is too uncertain: at 10, a share of 60 % is known to within 30 %.
 const TELLING: u64 = 10;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,7 +71,6 @@ pub fn unheard(session: &Session, period: &FalseBeliefPeriod) -> HarmfulFalseBel
     }
 }
 
-/// Fills in the record what the participant believes now, and which signal would correct that belief.
 pub fn hear(belief: &mut HarmfulFalseBelief, session: &Session, aspect: AspectId, witness: &RecordedBelief) {
     let kitchen = &session.kitchen;
     let Some(told) = witness.aspects.get(aspect.index()) else { return };
@@ -120,8 +118,6 @@ pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
     ]
 }
 
-/// Result of a training session as lines of text: the score beside the criterion, and each false belief that led to
-/// errors.
 pub fn lines(recordings: &[&WatchedRecording], criterion: &TrainingCriterion) -> Vec<String> {
     let sum = WizardMeasures::sum(recordings.iter().map(|one| &one.measures));
     let mut lines = vec![held_against(&sum, criterion)];
@@ -157,8 +153,7 @@ fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
     )
 }
 
-/// A false belief as two lines of text: when it was held, what was believed, which signal would have corrected the
-/// belief, and what was sent meanwhile.
+/// When it was held, what was believed; then the right signal, and what was sent meanwhile.
 fn told(belief: &HarmfulFalseBelief, signals: &[JudgedSignal]) -> [String; 2] {
     let end = belief.corrected_ns.map_or("the end".to_string(), |end| end.to_string());
     let errors = count(belief.errors, "error", "errors");
@@ -200,7 +195,6 @@ pub fn describe(record: &WizardTrainingRecord, path: &Path) -> String {
     text
 }
 
-/// Agreement (Cohen's kappa) between a wizard's signals in two passes through the same recording.
 pub fn with_oneself(kitchen: &Kitchen, one: &WatchedRecording, other: &WatchedRecording) -> Option<f64> {
     let said = |signal: &JudgedSignal| {
         let kind = match signal.signal {
@@ -235,18 +229,15 @@ pub struct WizardTrainingRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WatchedRecording {
-    /// Name of the recording's folder; a recording that was simulated for the training has its length in front of the
-    /// name.
+    /// A recording that was simulated for the training has its length in front of its name.
     pub recording: String,
     pub complete: bool,
     pub presses: u32,
     pub signals: Vec<JudgedSignal>,
     /// False beliefs that led to errors, among those that began in the part that was watched.
     pub beliefs: Vec<HarmfulFalseBelief>,
-    /// Measures of the wizard's performance: hits and wrong signals.
     pub measures: WizardMeasures,
-    /// Cohen's kappa between the wizard's signals now and in the previous pass through the same recording; null without
-    /// a previous pass.
+    /// Cohen's kappa with the pass before through the same recording; null without one.
     pub kappa_with_oneself: Option<f64>,
 }
 

@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::fitting::response_surface::{REACH, surface};
-use super::trial_bootstrap::interval;
+use crate::statistics::interval;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen, WeightedWorlds, World};
 use tomcom_core::measures::detection::{BeliefsBeforePress, TrialBeliefs};
@@ -19,14 +19,12 @@ const STEPS: [f64; 2] = [0.5, 0.05];
 /// Largest number of surfaces of that fit.
 const MOST_SURFACES: usize = 60;
 
-/// Mean log probability of the human's presses under the model and two baselines, in nats per press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PressLogLikelihood {
     /// Mean log probability under the human model with the estimated belief before the press; null without an estimate.
     pub model: Option<f64>,
     /// Mean log probability under the baseline "informed human", who knows the true world, fitted to these presses.
     pub informed: Option<f64>,
-    /// Mean log probability under the baseline of a human who presses random buttons.
     pub uniform: Option<f64>,
     /// Difference of mean log probability between the human model and the informed human, in nats per press.
     pub gain: Option<f64>,
@@ -34,13 +32,11 @@ pub struct PressLogLikelihood {
     pub gain_interval: Option<[f64; 2]>,
     /// Value of the softmax parameter tau of the choice model, per press, that fits the informed human best.
     pub informed_tau: Option<f64>,
-    /// The lapse probability that fits the informed human best.
     pub informed_lapse: Option<f64>,
 }
 
 impl PressLogLikelihood {
-    /// Computes the log likelihoods of all presses of these trials; `participants` holds the index of the participant of
-    /// each trial, below their number. The bootstrap's random stream is seeded by `seed`.
+    /// `participants`: the participant of each trial, below their number. `seed`: of the bootstrap.
     pub fn from_trials(
         kitchen: &Kitchen,
         cost: &mut CostToGo,

@@ -16,5 +16,4 @@ pub mod probe_figures;
 pub mod probe_record;
 pub mod recording_summary;
 pub mod seen_contents;
-pub mod trial_bootstrap;
 pub mod trial_summary;

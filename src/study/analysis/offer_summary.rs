@@ -11,25 +11,19 @@ use tomcom_core::measures::median;
 use tomcom_session::Session;
 use tomcom_session::wizard_log::clock_at;
 
-/// An offer to the wizard, with its times on the trial's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimedOffer {
-    /// The offer as the session holds it.
     pub offer: Offer,
-    /// Time at which the offer opened, on the trial's clock in seconds.
     pub opened_s: f64,
     /// Duration for which the offer stood, in seconds; `None` if the recording was cut while the offer was open.
     pub stood_s: Option<f64>,
-    /// Why the offer to the wizard closed.
     pub reason: Option<OfferCloseReason>,
     /// Time at which the wizard sent the offered signal, on the trial's clock; `None` if the signal was not sent.
     pub sent: Option<SessionTime>,
-    /// Reaction time from the opening of the offer to the key that sent its signal, in seconds.
     pub reaction_s: Option<f64>,
 }
 
 impl TimedOffer {
-    /// All offers of a session so far, in order.
     pub fn all(session: &Session) -> Vec<TimedOffer> {
         let timed = |offer: &Offer, closed: Option<(f64, OfferCloseReason)>| {
             let opened_s = clock_at(session, offer.opened).as_secs_f64();
@@ -49,21 +43,16 @@ impl TimedOffer {
         closed.chain(session.offers.unclosed().map(|open| timed(open, None))).collect()
     }
 
-    /// The offers of a session that a wizard could see.
     pub fn visible(session: &Session) -> Vec<TimedOffer> {
         let all = TimedOffer::all(session).into_iter();
         all.filter(|one| one.offer.advice.visible).collect()
     }
 }
 
-/// Statistics of the time for which offers stood: number, median and shortest, in seconds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OfferDurations {
-    /// Number of offers whose durations are known.
     pub n: u64,
-    /// Median duration for which offers stood, in seconds; null without offers.
     pub median_s: Option<f64>,
-    /// Shortest duration of an offer, in seconds.
     pub shortest_s: Option<f64>,
 }
 
@@ -73,29 +62,23 @@ impl OfferDurations {
         OfferDurations { n: times.len() as u64, median_s: median(times), shortest_s }
     }
 
-    /// The durations of offers as one line of text; empty without offers.
     pub fn describe(&self) -> String {
         let (Some(median_s), Some(shortest_s)) = (self.median_s, self.shortest_s) else { return String::new() };
         format!("offers: {}, {median_s:.1} s in the median, {shortest_s:.1} s at least\n", self.n)
     }
 }
 
-/// Summary of offers: their number and durations, and how many the wizard used.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OfferSummary {
-    /// Durations of all closed offers.
     #[serde(flatten)]
     pub all: OfferDurations,
-    /// Durations of closed offers, by the reason of closing.
     pub by_reason: BTreeMap<OfferCloseReason, OfferDurations>,
     /// Number of offers whose signal was sent by the key that takes the offer (`enter`).
     pub taken: u64,
     /// Number of offers whose signal was sent by the signal's own key.
     pub by_own_key: u64,
-    /// Number of closed offers whose signal was not sent.
     pub not_taken: u64,
-    /// Median reaction time from the opening of an offer to the key that sent the offered signal, in seconds; null if
-    /// no offered signal was sent.
+    /// Median time from the opening to the key that sent the signal, in seconds; null if none was sent.
     pub reaction_s: Option<f64>,
 }
 
@@ -107,7 +90,6 @@ impl OfferSummary {
         tally.summary()
     }
 
-    /// The summary of offers as text; empty without offers.
     pub fn describe(&self) -> String {
         if self.all.n == 0 {
             return String::new();
@@ -118,7 +100,6 @@ impl OfferSummary {
     }
 }
 
-/// Numbers of the offers of one or several trials, which are added one by one.
 #[derive(Clone, Debug, Default)]
 pub struct OfferTally {
     /// Whether an offer was added, also one that is not counted.
@@ -147,12 +128,10 @@ impl OfferTally {
         } += 1;
     }
 
-    /// Whether no offer was added.
     pub fn is_empty(&self) -> bool {
         !self.is_any
     }
 
-    /// The summary of the added offers.
     pub fn summary(self) -> OfferSummary {
         let of_reason = |(reason, times)| (reason, OfferDurations::from_times(times));
         OfferSummary {

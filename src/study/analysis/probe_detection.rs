@@ -8,11 +8,9 @@
 use serde::Serialize;
 
 use crate::analysis::probe_record::{AspectAtFreeze, ProbeQuestionKind, ProbedQuestion, weighted_share};
-use tomcom_core::measures::detection::{CALIBRATED, CALIBRATION_BINS, FalseBeliefDetection};
-use tomcom_core::measures::detection::{Calibration, weighted_auc};
+use tomcom_core::measures::detection::{CALIBRATED, CALIBRATION_BINS, Calibration, FalseBeliefDetection, weighted_auc};
 use tomcom_core::mind::dirichlet::LEAST_MEAN;
 
-/// A probe question with its weight, and whether the participant's belief about the asked aspect is false.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedProbeBelief<'a> {
     pub question: &'a ProbedQuestion,
@@ -33,29 +31,23 @@ impl<'a> WeightedProbeBelief<'a> {
         Some(WeightedProbeBelief { is_wrong: believed.is_wrong(), ..self })
     }
 
-    /// This probe question with weight 1 instead of its own weight.
     pub fn unweighted(self) -> WeightedProbeBelief<'a> {
         WeightedProbeBelief { weight: 1.0, ..self }
     }
 }
 
-/// How well the estimate finds false beliefs, over weighted probe questions. Values are null where all beliefs, or
-/// none, are false.
+/// Over weighted probe questions. Values are null where all beliefs, or none, are false.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeDetection {
     pub wrong: Option<f64>,
     /// Mean of the areas under the ROC curves of locations and of recipes.
     pub auc: Option<f64>,
-    /// Area under the ROC curve over questions about locations.
     pub auc_locations: Option<f64>,
-    /// Area under the ROC curve over questions about recipes.
     pub auc_recipes: Option<f64>,
-    /// Area under the ROC curve of a baseline on locations, which knows only whether somebody else changed the location
-    /// since the participant last looked at it.
+    /// Of a baseline on locations: whether somebody else changed it since the participant last looked.
     pub auc_baseline: Option<f64>,
     /// Expected calibration error of the predicted probabilities of a false belief, within the range [`CALIBRATED`].
     pub ece: Option<f64>,
-    /// Predicted probabilities of a false belief in bins, beside the share of false beliefs in each bin.
     pub calibration: Calibration,
 }
 
@@ -73,7 +65,6 @@ impl ProbeDetection {
         }
     }
 
-    /// Compares the estimate with probe questions for which it is known whether the belief is false.
     pub fn from_beliefs(beliefs: &[WeightedProbeBelief]) -> ProbeDetection {
         let p_false = |one: &WeightedProbeBelief| Some(one.question.frozen.as_ref()?.estimate_p_false);
         let changed = |one: &WeightedProbeBelief| {
@@ -102,21 +93,17 @@ impl ProbeDetection {
     }
 }
 
-/// Weighted mean log probability of the answered values, in nats, for several predictors of answers; higher is better.
-/// The answer "I don't know" names no value and is left out.
+/// Weighted mean log probability of the answered values, in nats. "I don't know" is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ProbeLogScores {
     pub n: u64,
     /// Score of the belief estimate, which predicts beliefs and expects no mistaken answers.
     pub estimate: Option<f64>,
-    /// Score of the belief estimate mixed with a share of random answers; the share is fitted to the other
-    /// participants.
+    /// With a share of random answers, which is fitted to the other participants.
     pub estimate_with_slips: Option<f64>,
-    /// Score of predicting the content that the location had for the longest time so far.
     pub usual: Option<f64>,
     /// Score of predicting the content that the participant last saw, which is wrong if the content changed since.
     pub last_seen: Option<f64>,
-    /// Score of predicting the true content of the location.
     pub truth: Option<f64>,
 }
 
@@ -143,8 +130,7 @@ impl NamedAnswer<'_> {
 }
 
 impl ProbeLogScores {
-    /// Scores the predictors on the questions of the main results, each given with the index of its participant. How
-    /// often a baseline is right is learnt from the other participants.
+    /// `questions`: with the index of the participant. How often a baseline is right is learnt from the others.
     pub(crate) fn from_questions(questions: &[(usize, &ProbedQuestion)]) -> ProbeLogScores {
         let named: Vec<NamedAnswer> = questions.iter().filter_map(|&(of, question)| named(of, question)).collect();
         let mean = |log_p: &dyn Fn(&NamedAnswer) -> f64| {

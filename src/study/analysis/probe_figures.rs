@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::analysis::probe_detection::{ProbeDetection, ProbeLogScores, WeightedProbeBelief};
 use crate::analysis::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
-use crate::analysis::trial_bootstrap::interval_where_known;
+use crate::statistics::interval_where_known;
 use tomcom_core::base::text::{count, decimal, percent};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
@@ -14,37 +14,28 @@ use tomcom_session::study_arm::StudyArm;
 /// Seed of the bootstrap's random numbers: the same answers give the same intervals.
 const SEED: u64 = 1;
 
-/// Results of the freeze probes of a study. Main results are over scheduled questions about the present state (level 1)
-/// that were answered in time; the questions that the main results leave out are counted.
+/// Main results are over scheduled questions about the present state that were answered in time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeSummary {
-    /// Source of what participants believed: recorded beliefs, or answers to freeze probes.
     pub beliefs_from: BeliefSource,
     pub participants: u64,
-    /// Numbers of probes and questions, and how many questions the main results include.
     pub counts: ProbeCounts,
-    /// Accuracy of the belief estimate, measured by the answers to freeze probes.
     #[serde(flatten)]
     pub detection: ProbeDetection,
     /// 95 % interval of `detection.auc` by bootstrap over participants; null with fewer than five participants.
     pub auc_interval: Option<[f64; 2]>,
     /// 95 % interval of `detection.ece` by bootstrap over participants; null with fewer than five participants.
     pub ece_interval: Option<[f64; 2]>,
-    /// Area under the ROC curve without weights of questions, which is biased, since the estimate took part in the
-    /// choice of questions.
+    /// Without weights, and so biased: the estimate took part in the choice of questions.
     pub auc_unweighted: Option<f64>,
-    /// How well the answers to freeze probes are predicted by the estimate and by baselines.
     pub log_scores: ProbeLogScores,
     pub accuracy: ProbeAnswerAccuracy,
-    /// Share of right answers in groups of questions: by state aspect, by change of the location, by condition.
     pub accuracies: Vec<ProbeAnswerAccuracy>,
     /// Effect of assistance on situation awareness; null if no participant has answers with and without assistance.
     pub assistance: Option<SituationAwarenessEffect>,
-    /// Share of right answers to questions about what comes next (level 2 of situation awareness), which are not in the
-    /// main results.
+    /// What comes next (level 2 of situation awareness); not in the main results.
     pub level_2: Vec<ProbeAnswerAccuracy>,
-    /// For simulated participants, accuracy of the estimate measured by what the participants believed, at the same
-    /// probe questions; null for people.
+    /// Measured by what simulated participants believed at the same questions; null for people.
     pub by_true_beliefs: Option<RecordedBeliefComparison>,
 }
 
@@ -58,16 +49,13 @@ pub struct ProbeCounts {
     pub counted: u64,
     /// Number of questions in the main results that were answered with "I don't know".
     pub unsure: u64,
-    /// Number of questions left out because they were not answered in time.
     pub unanswered: u64,
     /// Number of questions left out because the wizard skipped the rest of the probe while they were shown.
     pub questions_skipped: u64,
     /// Number of answered questions left out because the wizard, not the schedule, started the probe.
     pub by_wizard: u64,
-    /// Number of answered questions left out because they ask what comes next.
     pub level_2: u64,
-    /// Effective sample size of the main results: the number of questions of equal weight that would be as informative
-    /// as the weighted questions (Kish 1965).
+    /// Number of questions of equal weight that would tell as much (Kish 1965).
     pub effective: f64,
 }
 
@@ -79,13 +67,11 @@ pub struct RecordedBeliefComparison {
     pub agreement: f64,
     #[serde(flatten)]
     pub detection: ProbeDetection,
-    /// Accuracy of the belief estimate at the same questions, measured by the participants' answers.
     pub by_answers: ProbeDetection,
 }
 
 impl ProbeSummary {
-    /// Results of the freeze probes of these trials, each given with its participant's code; `None` if no question was
-    /// shown.
+    /// Trials with their participant's code; `None` if no question was shown.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Option<ProbeSummary> {
         let participants = by_participant(trials);
         let counts = ProbeCounts::from_trials(participants.iter().flatten().copied());
@@ -192,16 +178,11 @@ impl RecordedBeliefComparison {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeAccuracyGrouping {
-    /// Questions are grouped by their kind: orders, recipes, other locations.
     Kind,
     Aspect,
-    /// Questions are grouped by the time since the last change of the location.
     Age,
-    /// Questions are grouped by whether the location changed since the participant last looked at it.
     Seen,
-    /// Questions are grouped by the condition of the trial: who could send signals.
     Condition,
-    /// Questions are grouped by whether the belief estimate took part in the choice of the questions.
     Choice,
     Confidence,
 }
@@ -223,7 +204,6 @@ pub struct SituationAwarenessEffect {
     pub participants: u64,
     /// Mean over the compared participants of accuracy with assistance minus accuracy without.
     pub difference: f64,
-    /// 95 % interval of the mean difference, by bootstrap over participants; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -270,8 +250,7 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
     groups
 }
 
-/// Accuracy in each group of each grouping, over the probe questions of the main results; `participants` holds the
-/// trials of each participant.
+/// Over the questions of the main results; `participants`: the trials of each.
 fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerAccuracy> {
     let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
@@ -326,8 +305,7 @@ fn accuracy(
     }
 }
 
-/// The effect of assistance on the accuracy of answers, within participants; `None` if no participant has answers in
-/// both assisted and unassisted trials.
+/// Within participants; `None` if none has answers in both assisted and unassisted trials.
 fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<SituationAwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
         let of = trials.iter().filter(|trial| (trial.planned_arm != StudyArm::None) == assisted);
@@ -381,8 +359,6 @@ pub fn describe(found: &ProbeSummary) -> String {
     text + &describe_accuracies(found)
 }
 
-/// Text about right answers to probes by group, the effect of assistance, questions about what comes next, and accuracy
-/// measured by recorded beliefs.
 fn describe_accuracies(found: &ProbeSummary) -> String {
     let mut text = String::new();
     // Groups by single state aspect and by the way of drawing questions are in the JSON output only.
@@ -422,7 +398,6 @@ fn describe_accuracies(found: &ProbeSummary) -> String {
     text
 }
 
-/// A confidence interval in brackets; empty if the interval is not known.
 fn interval_text(interval: Option<[f64; 2]>, scale: f64, digits: usize) -> String {
     interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
 }

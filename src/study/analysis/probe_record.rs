@@ -18,7 +18,8 @@ use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubjec
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum ProbeQuestionKind {
     Order,
     Recipe,
@@ -31,13 +32,7 @@ pub enum ProbeQuestionKind {
 
 impl ProbeQuestionKind {
     pub fn name(self) -> &'static str {
-        match self {
-            ProbeQuestionKind::Order => "order",
-            ProbeQuestionKind::Recipe => "recipe",
-            ProbeQuestionKind::Place => "place",
-            ProbeQuestionKind::NextOrder => "next_order",
-            ProbeQuestionKind::NextPress => "next_press",
-        }
+        self.into()
     }
 
     pub fn words(self) -> &'static str {
@@ -50,8 +45,7 @@ impl ProbeQuestionKind {
         }
     }
 
-    /// Whether the probe question asks what comes next (level 2 of situation awareness and above), not what is the case
-    /// now.
+    /// Whether it asks what comes next (level 2 of situation awareness), not what is the case now.
     pub fn is_level_2(self) -> bool {
         matches!(self, ProbeQuestionKind::NextOrder | ProbeQuestionKind::NextPress)
     }
@@ -66,7 +60,6 @@ pub enum ProbeResponse {
     Missing,
 }
 
-/// State aspect of a probe question at the time the trial froze: estimate, belief and history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectAtFreeze {
     pub values: usize,
@@ -77,11 +70,9 @@ pub struct AspectAtFreeze {
     pub estimate_p_false: f64,
     /// Recorded belief of a simulated participant; `None` for people.
     pub believed: Option<RecordedBeliefAtFreeze>,
-    /// Time since the last change of the asked location, without pauses, in seconds; `None` for recipes, and for
-    /// locations that have not changed in the trial.
+    /// Since the last change of the place, without pauses; `None` for recipes, and without a change in the trial.
     pub changed_s: Option<f64>,
-    /// Whether somebody else changed the asked location since the participant last looked at it or changed it; `None`
-    /// for recipes.
+    /// By somebody else, since the participant last looked at it or changed it; `None` for recipes.
     pub changed_unseen: Option<bool>,
     /// Name of the value that the asked location had for the longest time so far; for a recipe, the true value.
     pub usual: String,
@@ -102,7 +93,6 @@ impl RecordedBeliefAtFreeze {
     }
 }
 
-/// A probe question that a participant was shown, with truth, estimate and response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedQuestion {
     /// Number of the freeze probe in the trial, from 1.
@@ -111,7 +101,6 @@ pub struct ProbedQuestion {
     pub question: u32,
     pub time_s: f64,
     pub origin: ProbeOrigin,
-    /// Whether the belief estimate took part in the choice of the probe's questions.
     pub uses_estimate: bool,
     pub kind: ProbeQuestionKind,
     /// Name of the state aspect that the question is about; for questions of level 2, name of the kind of question.
@@ -128,14 +117,12 @@ pub struct ProbedQuestion {
 }
 
 impl ProbedQuestion {
-    /// Weight of the probe question in estimates over all state aspects at all probes: the inverse of its inclusion
-    /// probability (Horvitz and Thompson 1952).
+    /// The inverse of the inclusion probability (Horvitz and Thompson 1952).
     pub fn weight(&self) -> f64 {
         1.0 / self.inclusion
     }
 
-    /// Whether the answer to the probe question is wrong; "I don't know" counts as wrong. `None` without an answer in
-    /// time, or if the truth is unknown.
+    /// "I don't know" is wrong. `None` without an answer in time, or if the truth is unknown.
     pub fn is_wrong(&self) -> Option<bool> {
         let truth = self.truth.as_ref()?;
         match &self.response {
@@ -145,8 +132,7 @@ impl ProbedQuestion {
         }
     }
 
-    /// Whether the probe question is part of the main results: drawn by the schedule, about the present state, and
-    /// answered in time.
+    /// In the main results: drawn by the schedule, about the present state, answered in time.
     pub(crate) fn is_counted(&self) -> bool {
         self.origin == ProbeOrigin::Schedule && !self.kind.is_level_2() && self.is_wrong().is_some()
     }
@@ -189,7 +175,6 @@ impl ProbedTrial {
         self.questions.iter().filter(|question| question.is_counted())
     }
 
-    /// Weighted share of wrong answers among the probe questions of the main results; `None` without such questions.
     pub(crate) fn share_wrong(&self) -> Option<f64> {
         weighted_share(self.counted().filter_map(|one| Some((one.weight(), one.is_wrong()?))))
     }
@@ -284,7 +269,6 @@ impl ProbeCollector {
         Some((open.asked.get_mut(index)?, open.drawn.get_mut(index)?))
     }
 
-    /// Ends the open freeze probe and keeps the questions that were shown.
     fn close(&mut self) {
         let Some(open) = self.open.take() else { return };
         let shown = open.drawn.into_iter().zip(open.asked).filter(|(_, asked)| asked.is_some());
@@ -364,7 +348,6 @@ impl ProbeCollector {
         }
     }
 
-    /// The freeze probes of the recording, after the recording's last event has been noted.
     pub fn finish(mut self, session: &Session) -> ProbedTrial {
         self.close();
         let ProbeCollector { begun, dropped, skipped, questions, .. } = self;

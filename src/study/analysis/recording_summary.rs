@@ -23,11 +23,9 @@ pub struct RecordingSummary {
     pub errors: u64,
     /// Number of the human's presses that were races with the robot, which do not count as errors.
     pub races: u64,
-    /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: FalseBeliefErrorSummary,
     pub signals: u64,
-    /// Whether the wizard saw the assistants' recommendations beside the signals that the wizard sent.
     pub unblinded: bool,
     pub orders_served: u64,
     pub trial_s: f64,
@@ -84,31 +82,22 @@ impl RecordingSummary {
     }
 }
 
-/// Whether a recording is complete, cut, excluded, running or unreadable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum RecordingState {
-    /// Complete recording: the session was closed properly.
     Whole,
     /// Cut recording: it lacks its end event, and no session is writing to it.
     Cut,
-    /// Excluded recording: the trial was aborted or excluded, and the analysis leaves it out.
     Excluded,
     /// Running recording: the session is still writing to it.
     Running,
-    /// Unreadable recording: its log cannot be read.
     Unreadable,
 }
 
 impl RecordingState {
     pub fn name(self) -> &'static str {
-        match self {
-            RecordingState::Whole => "whole",
-            RecordingState::Cut => "cut",
-            RecordingState::Excluded => "excluded",
-            RecordingState::Running => "running",
-            RecordingState::Unreadable => "unreadable",
-        }
+        self.into()
     }
 }
 
@@ -117,18 +106,14 @@ pub struct ListedRecording {
     pub recording: String,
     /// The participant's code; null if the recording cannot be read.
     pub code: Option<String>,
-    /// Condition of the trial: who could send signals; null if the recording cannot be read.
     pub condition: Option<Condition>,
-    /// Study arm of the trial as it was carried out; null if the recording cannot be read.
     pub arm: Option<StudyArm>,
     /// Time at which the recording began (UTC, RFC 3339); null for a simulated trial.
     pub date: Option<String>,
     pub trial_s: Option<f64>,
     /// Number of the human's presses that were errors; null where errors are not counted.
     pub errors: Option<u64>,
-    /// State of the recording: complete, cut, excluded, running or unreadable.
     pub state: RecordingState,
-    /// Reason for the trial's exclusion, or why the recording cannot be read.
     pub reason: Option<String>,
 }
 
@@ -183,7 +168,6 @@ impl ListedRecording {
     }
 }
 
-/// Gaze quality of a recording: numbers of samples, faults and losses, and measured accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GazeQualitySummary {
     pub samples: u64,
@@ -198,10 +182,8 @@ pub struct GazeQualitySummary {
     pub fixations: u64,
     pub blinks: u64,
     pub losses: u64,
-    /// Gaze accuracy in the last accepted accuracy check, in degrees, after correction if the correction is in use;
-    /// null without a check.
+    /// In the last accepted check, after correction if that is in use; null without a check.
     pub accuracy_deg: Option<f64>,
-    /// Precision of the gaze in the last accepted accuracy check, in degrees.
     pub precision_deg: Option<f64>,
 }
 
@@ -231,12 +213,9 @@ fn describe_gaze_faults(session: &Session) -> Option<String> {
     (!kinds.is_empty()).then(|| format!("gaze: {samples}; {}", kinds.join(", ")))
 }
 
-/// Whether a trial was aborted or excluded; an analysis leaves out aborted and excluded trials.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ExclusionStatus {
-    /// Reason for aborting the trial; null if the trial was not aborted.
     pub aborted: Option<String>,
-    /// Reason for excluding the trial; null if the trial is not excluded.
     pub excluded: Option<String>,
 }
 
@@ -250,8 +229,7 @@ impl ExclusionStatus {
         self.aborted.is_none() && self.excluded.is_none()
     }
 
-    /// Why analyses leave out the trial of a session that was read as far as it is recorded, in words; `None` for a trial
-    /// that counts. `is_running`: a program is still recording the session.
+    /// Why analyses leave out a trial that was read to its end, in words. `is_running`: it is still recorded.
     pub fn left_out(self, session: &Session, is_running: bool) -> Option<String> {
         let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
         match self {
@@ -264,7 +242,6 @@ impl ExclusionStatus {
         }
     }
 
-    /// The exclusion status as text; empty for a trial that counts.
     pub fn describe(&self) -> String {
         let said = |word: &str, reason: &Option<String>| reason.as_ref().map(|reason| format!("{word}: {reason}"));
         let both = [said("aborted", &self.aborted), said("excluded", &self.excluded)];

@@ -68,7 +68,6 @@ impl LastSeenContents {
         }
     }
 
-    /// Whether somebody else changed a location since the participant last looked at it or changed it.
     pub fn is_changed_unseen(&self, place: LocationId) -> bool {
         self.locations[place.index()].is_changed_unseen
     }
@@ -77,8 +76,7 @@ impl LastSeenContents {
         self.locations[place.index()].seen
     }
 
-    /// Time since a location's last change, without pauses, in seconds; `None` if the location has not changed in the
-    /// trial.
+    /// In seconds, without pauses; `None` if the location has not changed in the trial.
     pub fn changed_s(&self, session: &Session, place: LocationId) -> Option<f64> {
         let location = &self.locations[place.index()];
         location.has_changed.then(|| session.trial_clock(session.time).secs_since(location.since))
@@ -101,8 +99,7 @@ impl LastSeenContents {
 /// Least duration of a look after which a location counts as seen, in seconds.
 const LOOK_S: f64 = 0.1;
 
-/// For each location, the time since which the gaze has been in the location's area without a change there. Times are
-/// those at which samples were taken.
+/// Since when the gaze has been at each location without a change there, by the times of samples.
 #[derive(Clone, Debug, Default)]
 pub struct LocationDwells {
     since: [Option<SessionTime>; MAX_LOCATIONS],
@@ -119,8 +116,7 @@ impl LocationDwells {
         self.since = Default::default();
     }
 
-    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen
-    /// the location's present content by now. A sample that was taken before the last change there is no look at it.
+    /// Notes a usable sample. Returns whether the present content was seen by now; older samples are no look at it.
     pub(crate) fn sampled(&mut self, session: &Session, location: LocationId) -> bool {
         let since = &mut self.since[location.index()];
         let taken = session.gaze.looked_at[location.index()].filter(|_| session.sees_present_content(location));

@@ -6,8 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::analysis::offer_summary::{OfferDurations, TimedOffer};
-use tomcom_core::base::text::PathText;
-use tomcom_core::base::text::{count, decimal};
+use tomcom_core::base::text::{PathText, count, decimal};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, ProofBudget};
 use tomcom_core::kitchen::{Agent, DishId, Kitchen, KitchenChange, LocationId};
@@ -19,7 +18,6 @@ use tomcom_session::study_arm::StudyArm;
 use tomcom_session::wizard_log::clock_at;
 use tomcom_session::{Event, Session, TimelineEvent, TimestampedEvent};
 
-/// Summary of one trial: presses, errors, signals, served orders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialSummary {
     pub human_actions: u64,
@@ -65,12 +63,10 @@ impl TrialSummary {
     }
 }
 
-/// Errors of one trial that follow from false beliefs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialFalseBeliefErrors {
     pub related: u64,
     pub related_to_pairs: u64,
-    /// Error sequences: successive errors that follow from the same false belief.
     pub sequences: Vec<ErrorSequence>,
     pub any_aspect: Vec<ErrorSequence>,
     pub episodes: u64,
@@ -96,13 +92,11 @@ impl TrialFalseBeliefErrors {
     }
 }
 
-/// Errors that follow from false beliefs, in one or several trials. Values are null where the participants' beliefs are
-/// not known.
+/// Values are null where the participants' beliefs are not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FalseBeliefErrorSummary {
     pub belief_related_errors: Option<u64>,
     pub errors_of_two_beliefs: Option<u64>,
-    /// Number of error sequences: successive errors that follow from the same false belief.
     pub sequences: Option<u64>,
     /// Mean number of errors in an error sequence; null also without sequences.
     pub mean_sequence_length: Option<f64>,
@@ -153,10 +147,8 @@ pub struct SimulationSummary {
     pub human_actions: u64,
     pub robot_actions: u64,
     pub errors: u64,
-    /// Number of the human's presses shortly after a change by the robot at the same location (races), which do not
-    /// count as errors.
+    /// Presses shortly after a change by the robot at the same location, which do not count as errors.
     pub races: u64,
-    /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: FalseBeliefErrorSummary,
     pub signals: u64,
@@ -172,8 +164,7 @@ pub struct SimulationSummary {
     pub excluded: u64,
     /// Number of complete recordings that already existed and were read instead of simulated anew.
     pub found: u64,
-    /// New paths of logs that end before the end of their header, as after a power failure; the trials of these logs
-    /// were simulated anew.
+    /// New paths of logs that end within their header, as after a power failure; simulated anew.
     pub moved: Vec<String>,
     pub arms: Vec<StudyArmTotals>,
     pub recordings: Vec<PathText>,
@@ -225,7 +216,6 @@ impl BeliefSums {
     }
 }
 
-/// Running mean of values; `None` while there are no values.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     count: u64,
@@ -248,8 +238,7 @@ impl Mean {
 pub struct SimulationSums {
     figures: SimulationSummary,
     beliefs: BeliefSums,
-    /// Histograms over served orders: of the presses per order, and of the least number of presses for the order's
-    /// dish.
+    /// Presses by the number of served orders that took them.
     presses_per_order: BTreeMap<u32, u64>,
     optimal_presses_per_order: BTreeMap<u32, u64>,
     /// Histogram of the times for which offers stood, in milliseconds.
@@ -300,7 +289,6 @@ impl SimulationSums {
     }
 }
 
-/// Median of a histogram, which is the mean of the middle two values for an even count; `None` for an empty histogram.
 fn median_of(counts: &BTreeMap<u32, u64>) -> Option<f64> {
     let all: u64 = counts.values().sum();
     let nth = |wanted: u64| {
@@ -364,7 +352,6 @@ pub struct SignalTimes {
 }
 
 impl SignalTimes {
-    /// Notes when the next event of the session makes a signal appear or vanish.
     pub fn note(&mut self, stamped: &TimestampedEvent) {
         match stamped.event {
             Event::SignalShown { .. } => self.changes.push((stamped.time, true)),
@@ -373,8 +360,7 @@ impl SignalTimes {
         }
     }
 
-    /// Time with a signal on the display, in seconds of the trial's clock, after the session's last event. At most one
-    /// signal is shown at a time: a new signal replaces the last one, and the end of the trial removes it.
+    /// On the trial's clock. One signal is shown at a time: a new one replaces it, the trial's end removes it.
     pub fn seconds(&self, session: &Session) -> f64 {
         let end = session.trial_clock(session.time);
         let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);

@@ -6,16 +6,14 @@ use std::path::{Path, PathBuf};
 
 use flate2::{Compression, GzBuilder};
 
-use crate::analysis::bids::dataset::{CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME};
-use crate::analysis::bids::sample_rows::{LongTableFacts, LongTableRow};
-use crate::analysis::bids::tsv::BidsFile;
+use crate::analysis::bids::BidsFile;
+use crate::analysis::bids::dataset::{CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS, PROGRAM_NAME};
+use crate::analysis::bids::recording_tables::{LongTableFacts, LongTableRow};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
 
-/// Advice in error messages when the data set cannot be written.
 const REMEDY: &str = "a new folder on a disk with free space";
 
-/// Root folder of a BIDS data set that is being written.
 #[derive(Debug)]
 pub struct BidsTree {
     root: PathBuf,
@@ -23,10 +21,7 @@ pub struct BidsTree {
 
 impl BidsTree {
     /// Creates the root folder of a data set. An existing folder has to be empty, so that the data set contains nothing
-    /// of an earlier export or of another program.
-    ///
-    /// # Errors
-    /// The folder is not empty, or cannot be created.
+    /// of an earlier export or of another program. Errors: the folder is not empty, or cannot be created.
     pub fn create(root: &Path) -> FileResult<BidsTree> {
         match fs::read_dir(root) {
             Ok(mut entries) => {
@@ -43,8 +38,7 @@ impl BidsTree {
         Ok(BidsTree { root: root.to_path_buf() })
     }
 
-    /// Writes a file of the data set; the file's name is the path below the root folder. Files whose name ends with
-    /// `.gz` are compressed.
+    /// `name` is the path below the root folder; what ends with `.gz` is compressed.
     pub fn write(&self, file: &BidsFile) -> FileResult<()> {
         let path = self.root.join(&file.name);
         let write = || {
@@ -72,10 +66,7 @@ pub struct LongTableFile {
 }
 
 impl BidsTree {
-    /// Begins a long table; `name` is the path of its file below the root folder, `heading` its first line.
-    ///
-    /// # Errors
-    /// No file can be written to the data set's folder.
+    /// `name`: path below the root folder. Errors: no file can be written to the data set's folder.
     pub fn begin(&self, name: &str, heading: String) -> FileResult<LongTableFile> {
         let file =
             tempfile::tempfile_in(&self.root).map_err(|reason| FileError::not_written(&self.root, reason, REMEDY))?;
@@ -86,7 +77,6 @@ impl BidsTree {
 }
 
 impl LongTableFile {
-    /// Adds a row.
     pub fn add(&mut self, row: LongTableRow) -> FileResult<()> {
         if row.time < self.newest {
             self.late.push((row.time, row.line));
@@ -157,7 +147,6 @@ impl LongTableFile {
     }
 }
 
-/// The next row of a temporary file, with its time; `None` at the end.
 fn read_row(rows: &mut impl BufRead) -> io::Result<Option<(SessionTime, Vec<u8>)>> {
     let mut time = [0; 8];
     if rows.fill_buf()?.is_empty() {
@@ -174,7 +163,7 @@ pub fn codes(root: &Path) -> Option<Vec<String>> {
     let description = read_regular(&root.join(DESCRIPTION_NAME)).ok()?;
     let description: serde_json::Value = serde_json::from_str(&description).ok()?;
     let is_ours = description["GeneratedBy"].as_array()?.iter().any(|by| by["Name"] == PROGRAM_NAME);
-    let people = is_ours.then(|| read_regular(&root.join(PARTICIPANTS_NAME)).unwrap_or_default())?;
+    let people = is_ours.then(|| read_regular(&root.join(format!("{PARTICIPANTS}.tsv"))).unwrap_or_default())?;
     let mut rows = people.lines().map(|line| line.split('\t'));
     let column = rows.next()?.position(|name| name == CODE_COLUMN)?;
     Some(rows.filter_map(|mut cells| cells.nth(column).map(str::to_string)).collect())

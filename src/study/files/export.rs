@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use crate::column::{CsvCell, CsvRow, CsvTable, columns};
+use crate::column::{CsvRow, CsvTable, TableCell, described};
 use crate::report;
 use crate::study_part::AnalysedRecording;
 use tomcom_core::base::text::without_formula;
@@ -18,18 +18,14 @@ use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::{self, Replacement};
 
 const REPORT_NAME: &str = "report.html";
-/// Name of the folder for temporary files of an analysis.
 const PARTS_NAME: &str = ".rows";
 const ANALYSED: &str = "analysed";
 
-/// An output file of an analysis that cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[error("{}: cannot be written: {reason}", path.display())]
 #[diagnostic(help("another folder with --out, on a disk with free space"))]
 pub struct AnalysisWriteError {
-    /// File or folder that cannot be written.
     pub path: PathBuf,
-    /// Why the output file cannot be written.
     pub reason: io::Error,
 }
 
@@ -58,7 +54,7 @@ impl<Out: Write> TableRows<Out> {
     fn write(&mut self, row: &impl CsvRow) -> io::Result<()> {
         let mut cells = row.cells();
         for cell in &mut cells {
-            if let CsvCell::Text(text) = cell
+            if let TableCell::Text(text) = cell
                 && let Cow::Owned(guarded) = without_formula(text)
             {
                 *text = Cow::Owned(guarded);
@@ -73,7 +69,6 @@ impl TableRows {
         self.write(row).expect("rows are flat, and written to memory");
     }
 
-    /// The table's rows as CSV in UTF-8, without a header line.
     pub fn into_bytes(self) -> Vec<u8> {
         self.rows.into_inner().expect("rows are written to memory")
     }
@@ -89,7 +84,6 @@ pub struct TableFile {
 }
 
 impl TableFile {
-    /// Writes a row of the table.
     pub fn add<Row: CsvRow>(&mut self, row: &Row) -> Result<(), AnalysisWriteError> {
         debug_assert_eq!(Row::TABLE, self.table, "a row of another table");
         self.has_rows = true;
@@ -111,11 +105,8 @@ pub struct AnalysisFolder {
 }
 
 impl AnalysisFolder {
-    /// Creates the output folder of an analysis if the folder does not exist.
-    ///
-    /// # Errors
-    /// The folder cannot be created or written to, or it contains files that have the names of tables or report but
-    /// that this program did not write.
+    /// Creates the output folder of an analysis if the folder does not exist. Errors: the folder cannot be created or
+    /// written to, or it contains files that have the names of tables or report but that this program did not write.
     pub fn create(folder: &Path) -> Result<AnalysisFolder, AnalysisWriteError> {
         let export = AnalysisFolder { folder: folder.to_path_buf() };
         export.check_replaced()?;
@@ -127,7 +118,7 @@ impl AnalysisFolder {
 
     fn check_replaced(&self) -> Result<(), AnalysisWriteError> {
         let written = at(&self.folder, ListedTables::read(&self.folder))?;
-        for table in CsvTable::ALL {
+        for &table in CsvTable::ALL {
             let path = self.folder.join(format!("{}.csv", table.name()));
             let is_own = |head: &[u8]| {
                 let mut header = csv::ByteRecord::new();
@@ -145,7 +136,6 @@ impl AnalysisFolder {
         self.folder.join(PARTS_NAME)
     }
 
-    /// Path of a temporary file: an analysed recording, or its event rows for a table.
     fn part(&self, index: usize, what: &str) -> PathBuf {
         self.parts().join(format!("{index}-{what}"))
     }
@@ -159,30 +149,23 @@ impl AnalysisFolder {
         Ok(())
     }
 
-    /// Stores an analysed recording in a temporary file.
     pub fn keep_analysed(&self, index: usize, recording: &AnalysedRecording) -> Result<(), AnalysisWriteError> {
         let path = self.part(index, ANALYSED);
         let written = serde_json::to_vec(recording).map_err(io::Error::from).and_then(|text| fs::write(&path, text));
         at(&path, written)
     }
 
-    /// The stored analysed recording with this number.
     pub fn kept_analysed(&self, index: usize) -> Result<AnalysedRecording, AnalysisWriteError> {
         let path = self.part(index, ANALYSED);
         let read = fs::read(&path).and_then(|text| serde_json::from_slice(&text).map_err(io::Error::from));
         at(&path, read)
     }
 
-    /// Removes the temporary files of the analysis.
-    ///
-    /// # Errors
-    /// The folder for temporary files cannot be changed.
     pub fn remove_kept(&self) -> Result<(), AnalysisWriteError> {
         let path = self.parts();
         at(&path, remove_parts(&path))
     }
 
-    /// Begins a table of the analysis with its header line.
     pub fn begin(&self, table: CsvTable) -> Result<TableFile, AnalysisWriteError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
         let rows = TableRows::new(at(&path, begin_table(&path, table))?);
@@ -199,8 +182,7 @@ impl AnalysisFolder {
         table.finish()
     }
 
-    /// Writes the tables of events from the stored rows of these recordings, in this order. Returns the tables that
-    /// have rows.
+    /// From the stored rows of these recordings, in this order. Returns the tables that have rows.
     pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<CsvTable>, AnalysisWriteError> {
         let mut filled = Vec::new();
         for table in CsvTable::OF_EVENTS {
@@ -218,7 +200,6 @@ impl AnalysisFolder {
         Ok(filled)
     }
 
-    /// Writes the analysis report and returns its path.
     pub fn report(&self, page: &str) -> Result<PathBuf, AnalysisWriteError> {
         let path = self.folder.join(REPORT_NAME);
         at(&path, replace_file::replace(&path, page.as_bytes()))?;
@@ -228,13 +209,12 @@ impl AnalysisFolder {
 
 fn begin_table(path: &Path, table: CsvTable) -> io::Result<Replacement> {
     let mut out = Replacement::begin(path)?;
-    let names: Vec<Cow<str>> = columns(table).into_iter().map(|column| column.column).collect();
+    let names: Vec<Cow<str>> = described(table).into_iter().map(|column| column.column).collect();
     writeln!(out, "{}", names.join(","))?;
     Ok(out)
 }
 
-/// Removes the folder of temporary files that an analysis has left. Files that this program did not write stay, and
-/// then the folder stays, too.
+/// Files that this program did not write stay, and then the folder stays, too.
 fn remove_parts(folder: &Path) -> io::Result<()> {
     if fs::symlink_metadata(folder).is_ok_and(|data| !data.is_dir()) {
         return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is no folder, but a link or a file"));
@@ -265,10 +245,7 @@ pub struct ListedTables {
 }
 
 impl ListedTables {
-    /// Reads the data dictionary in a folder, if the folder has one.
-    ///
-    /// # Errors
-    /// The data dictionary exists but cannot be read.
+    /// Errors: the data dictionary exists but cannot be read.
     pub fn read(folder: &Path) -> io::Result<ListedTables> {
         let mut tables = ListedTables::default();
         let dictionary = records(&folder.join("dictionary.csv"))?;
@@ -284,7 +261,6 @@ impl ListedTables {
         Ok(tables)
     }
 
-    /// Whether the folder has a data dictionary that this program wrote.
     pub fn is_listed(&self) -> bool {
         !self.columns.is_empty()
     }
@@ -297,11 +273,11 @@ impl ListedTables {
 }
 
 pub fn table_named(name: &str) -> Option<CsvTable> {
-    CsvTable::ALL.into_iter().find(|table| table.name() == name)
+    CsvTable::ALL.iter().copied().find(|table| table.name() == name)
 }
 
 fn has_columns_of(header: &ByteRecord, table: CsvTable) -> bool {
-    header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
+    header.iter().eq(described(table).iter().map(|row| row.column.as_bytes()))
 }
 
 /// A CSV reader of all records including the header, which accepts any number of cells and any bytes.
@@ -309,10 +285,7 @@ pub fn reader<R: io::Read>(table: R) -> csv::Reader<R> {
     ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table)
 }
 
-/// All records of a CSV table; empty if the file does not exist.
-///
-/// # Errors
-/// The file exists but cannot be read.
+/// All records of a CSV table; empty if the file does not exist. Errors: the file exists but cannot be read.
 pub fn records(path: &Path) -> io::Result<Vec<ByteRecord>> {
     match path.symlink_metadata() {
         Ok(data) if data.is_file() => Ok(reader(File::open(path)?).into_byte_records().collect::<csv::Result<_>>()?),

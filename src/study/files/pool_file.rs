@@ -9,7 +9,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
-use crate::drawn_study::SignificanceTestMethod;
 use crate::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 use crate::pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 use crate::power::{PowerSummary, SampleSizePower, TestPower};
@@ -20,10 +19,8 @@ use tomcom_session::files::{overwrite, replace_file};
 const MAX_POOL: u64 = 1 << 30;
 const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
 
-/// Reads the parts of a pool of simulated participants and joins them.
-///
-/// # Errors
-/// A file cannot be read, is no pool of this format, or the parts do not belong to one pool.
+/// Reads the parts of a pool of simulated participants and joins them. Errors: a file cannot be read, is no pool of
+/// this format, or the parts do not belong to one pool.
 pub fn read_pool(paths: &[PathBuf]) -> FileResult<SimulationPool> {
     let parts = paths.iter().map(|path| read_part(path)).collect::<FileResult<Vec<_>>>()?;
     SimulationPool::joined(parts).map_err(|wrong| {
@@ -66,20 +63,15 @@ fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
 }
 
 /// Checks that a pool with this header can be written to this path. A pool takes long to simulate, so a file with
-/// another pool is not overwritten.
-///
-/// # Errors
-/// There is a file at the path that is not this pool.
+/// another pool is not overwritten. Errors: there is a file at the path that is not this pool.
 pub fn check_pool(path: &Path, header: &PoolHeader) -> FileResult<()> {
     let own = line(header);
     let is_own = |head: &[u8]| overwrite::first_line(head) == own.trim_end().as_bytes();
     overwrite::check(path, "the same pool", is_own).map_err(|reason| FileError::unwritable(path, reason))
 }
 
-/// Writes the file of a pool of simulated participants, completely or not at all.
-///
-/// # Errors
-/// There is a file at the path that is not this pool, or the folder cannot be written to.
+/// Writes the file of a pool of simulated participants, completely or not at all. Errors: there is a file at the path
+/// that is not this pool, or the folder cannot be written to.
 pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
     check_pool(path, &pool.header)?;
     let mut text = line(&pool.header);
@@ -94,12 +86,11 @@ fn line(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default() + "\n"
 }
 
-/// A column of the table of statistical power: its name, and the function that computes its value for a row.
 type PowerColumn = (&'static str, fn(&SampleSizePower, &TestPower) -> String);
 
 const COLUMNS: [PowerColumn; 12] = [
     ("participants", |size, _| size.participants.to_string()),
-    ("method", |_, one| method(one.test.method).to_string()),
+    ("method", |_, one| <&str>::from(one.test.method).to_string()),
     ("arm", |_, one| one.test.arm.name().to_string()),
     ("against", |_, one| one.test.against.name().to_string()),
     ("studies", |_, one| one.found.studies.to_string()),
@@ -112,24 +103,13 @@ const COLUMNS: [PowerColumn; 12] = [
     ("least_ratio", |_, one| one.least_ratio.map_or(String::new(), |ratio| format!("{ratio:.4}"))),
 ];
 
-fn method(method: SignificanceTestMethod) -> &'static str {
-    match method {
-        SignificanceTestMethod::MixedAnova => "mixed_anova",
-        SignificanceTestMethod::LinearMixedModel => "linear_mixed_model",
-    }
-}
-
-/// Checks that the table of statistical power can be written to this path.
-///
-/// # Errors
-/// There is a file at the path that this program did not write.
+/// Errors: there is a file at the path that this program did not write.
 pub fn check_table(path: &Path) -> FileResult<()> {
     let names = COLUMNS.map(|(name, _)| name).join(",");
     overwrite::check(path, "a table of power", |head| overwrite::first_line(head) == names.as_bytes())
         .map_err(|reason| FileError::unwritable(path, reason))
 }
 
-/// Writes the table of statistical power (CSV): a row for each number of participants and each test.
 pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
     let write = || -> io::Result<()> {
         let mut table = csv::Writer::from_writer(Vec::new());
@@ -150,10 +130,7 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
 const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";
 const FROZEN_REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchanged";
 
-/// Writes a frozen plan and returns its digest.
-///
-/// # Errors
-/// A file of that name exists already, or the folder cannot be written to.
+/// Returns its digest. Errors: the file exists already, or the folder cannot be written to.
 pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
     // Writing JSON cannot fail here, since a plan contains only string keys and finite numbers.
     let body = serde_json::to_string_pretty(frozen).unwrap_or_default() + "\n";
@@ -169,10 +146,7 @@ pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
     Ok(digest)
 }
 
-/// Reads a frozen plan with its digest.
-///
-/// # Errors
-/// The file cannot be read, is not a frozen plan, or was changed after it was frozen.
+/// With its digest. Errors: it cannot be read, is no frozen plan, or was changed after it was frozen.
 pub fn read_frozen(path: &Path) -> FileResult<(String, FrozenPlan)> {
     let text = read_text(path)?;
     let wrong = |place, found: String, remedy: &str| FileError::at(path, &text, Some(place), found, remedy.to_string());

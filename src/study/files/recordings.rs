@@ -17,10 +17,8 @@ use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom_session::{Event, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
-/// count as one recording, and copies of a log once. Simulated recordings and other files do not count.
-///
-/// # Errors
-/// The folder or a recording in it cannot be read.
+/// count as one recording, and copies of a log once. Simulated recordings and other files do not count. Errors: the
+/// folder or a recording in it cannot be read.
 pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     let mut found = BTreeMap::new();
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder with the recordings, as --out");
@@ -35,7 +33,7 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
         if let Some(mut part) = Part::read(&path.join(LOG_NAME), plan)? {
             // A later decision in the file `exclusion.toml` beside the log takes precedence over the log.
             if let Some(ruling) = ruling(&path)? {
-                part.excluded = Some(ruling.excluded.then_some(ruling.reason));
+                part.told.excluded = Some(ruling.excluded.then_some(ruling.reason));
             }
             found.insert(name, part);
         }
@@ -46,8 +44,7 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
 }
 
-/// Removes the copies of recordings, such as those that a file manager makes: a copy of a cut recording would be offered
-/// to be continued, instead of the recording.
+/// A copy of a cut recording would be offered to be continued, instead of the recording.
 fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResult<()> {
     let mut logs = Vec::new();
     for (name, part) in &*found {
@@ -57,7 +54,7 @@ fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResul
     let keys: Vec<(&Path, &str)> = logs.iter().map(|(_, key, log)| (log.as_path(), key.as_str())).collect();
     let continued: BTreeSet<String> = found.values().filter_map(|part| part.continues.clone()).collect();
     for same in SameLogs::of(&keys)? {
-        let is_excluded = |name: &String| matches!(found[name].excluded, Some(Some(_)));
+        let is_excluded = |name: &String| matches!(found[name].told.excluded, Some(Some(_)));
         let rank = |name: &&String| (!continued.contains(*name), is_excluded(name));
         let names: Vec<&String> = same.all().map(|log| &logs[log].0).collect();
         let kept = names.iter().copied().min_by_key(rank);
@@ -67,8 +64,7 @@ fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResul
     Ok(())
 }
 
-/// Recordings that a path means: the recording itself, or all recordings in the folder, sorted by name. Of a recording
-/// with several parts, only the last part is listed.
+/// The recording itself, or all in the folder, sorted by name; of several parts, the last.
 pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     let remedy = "the folder of a recording, or one with recordings in it";
     let unreadable = |reason: io::Error| {
@@ -120,6 +116,13 @@ struct Part {
     recorded_as: Option<String>,
     step: PlanPosition,
     continues: Option<String>,
+    running: bool,
+    told: PartProgress,
+}
+
+/// What the events of a part tell.
+#[derive(Debug, Default)]
+struct PartProgress {
     consent: bool,
     instructed: bool,
     phase: usize,
@@ -131,7 +134,27 @@ struct Part {
     /// Whether an event excludes the recording from the analysis or includes it again, and the reason of an exclusion.
     excluded: Option<Option<String>>,
     ended: bool,
-    running: bool,
+}
+
+impl PartProgress {
+    fn follow(&mut self, event: &Event) {
+        match event {
+            Event::Press { .. } => self.presses += 1,
+            Event::TrialEnded { .. } => self.trial_over = true,
+            Event::TrialAborted { reason } => self.aborted = Some(reason.clone()),
+            Event::TrialExcluded { reason } => self.excluded = Some(Some(reason.clone())),
+            Event::TrialIncluded => self.excluded = Some(None),
+            Event::SessionEnded => self.ended = true,
+            Event::Protocol(ProtocolEvent::ConsentGiven { .. }) => self.consent = true,
+            Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
+                self.phase = *number;
+                self.instructed |= !matches!(phase, StudyPhase::Instruction | StudyPhase::Tutorial);
+            }
+            Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
+            Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,
+            _ => {}
+        }
+    }
 }
 
 impl Part {
@@ -168,45 +191,17 @@ impl Part {
             recorded_as: header.correction.map(|correction| correction.before),
             step,
             continues: header.continues.map(|before| before.recording),
-            consent: false,
-            instructed: false,
-            phase: 0,
-            presses: 0,
-            trial_over: false,
-            criterion_failed: false,
-            criterion_waived: false,
-            aborted: None,
-            excluded: None,
-            ended: false,
             running: path.parent().is_some_and(|folder| RecordingLock::holder(folder).is_some()),
+            told: PartProgress::default(),
         };
         while next(&mut line)? {
             if !is_sample(&line)
                 && let Ok(stamped) = serde_json::from_slice::<TimestampedEvent>(&line)
             {
-                part.follow(&stamped.event);
+                part.told.follow(&stamped.event);
             }
         }
         Ok(Some(part))
-    }
-
-    fn follow(&mut self, event: &Event) {
-        match event {
-            Event::Press { .. } => self.presses += 1,
-            Event::TrialEnded { .. } => self.trial_over = true,
-            Event::TrialAborted { reason } => self.aborted = Some(reason.clone()),
-            Event::TrialExcluded { reason } => self.excluded = Some(Some(reason.clone())),
-            Event::TrialIncluded => self.excluded = Some(None),
-            Event::SessionEnded => self.ended = true,
-            Event::Protocol(ProtocolEvent::ConsentGiven { .. }) => self.consent = true,
-            Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
-                self.phase = *number;
-                self.instructed |= !matches!(phase, StudyPhase::Instruction | StudyPhase::Tutorial);
-            }
-            Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
-            Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,
-            _ => {}
-        }
     }
 
     fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> PlanRecording {
@@ -218,15 +213,15 @@ impl Part {
             }
             all.push(before);
         }
-        let any = |is: fn(&Part) -> bool| all.iter().any(|part| is(part));
-        let phase = all.iter().map(|part| part.phase).max().unwrap_or(0);
+        let any = |is: fn(&PartProgress) -> bool| all.iter().any(|part| is(&part.told));
+        let phase = all.iter().map(|part| part.told.phase).max().unwrap_or(0);
         // The last part of the recording that contains a decision about exclusion counts.
-        let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
-        let aborted = all.iter().find_map(|part| part.aborted.as_ref());
+        let excluded = all.iter().find_map(|part| part.told.excluded.clone()).flatten();
+        let aborted = all.iter().find_map(|part| part.told.aborted.as_ref());
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
-        let outcome = if !self.ended && self.running {
+        let outcome = if !self.told.ended && self.running {
             RecordingOutcome::Running
-        } else if !self.ended {
+        } else if !self.told.ended {
             RecordingOutcome::Open
         } else if let Some(reason) = aborted {
             void(&format!("aborted ({reason})"))
@@ -244,13 +239,12 @@ impl Part {
             step: self.step.clone(),
             consent: any(|part| part.consent),
             instructed: any(|part| part.instructed),
-            presses: all.iter().map(|part| part.presses).sum(),
+            presses: all.iter().map(|part| part.told.presses).sum(),
             outcome,
         }
     }
 }
 
-/// Whether the first line of a file names the format of this program's logs.
 fn is_log(line: &[u8]) -> bool {
     line.windows(FORMAT.len()).any(|part| part == FORMAT.as_bytes())
 }

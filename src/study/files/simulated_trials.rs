@@ -24,21 +24,16 @@ use tomcom_session::settings::{Condition, SessionSpec};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{LogHeader, TimestampedEvent, headless};
 
-/// Trials to simulate, as `tomcom simulate` does.
 #[derive(Clone, Debug)]
 pub struct SimulationRequest {
-    /// Settings of the session, with the files that they name.
     pub files: SessionSetup,
     /// Total number of trials, over all shards of the simulation.
     pub trials: u64,
-    /// Shard (part) of the trials that is simulated here.
     pub shard: SimulationShard,
-    /// Folder in which the recordings are made.
     pub out: PathBuf,
 }
 
 impl SimulationRequest {
-    /// Indices of the trials of this shard, in order.
     pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
         let SimulationShard { number, of } = self.shard;
         (number - 1..self.trials).step_by(of as usize)
@@ -50,8 +45,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Number of trials whose results are held in memory before they are summed up.
 const BLOCK: usize = 256;
 
-/// Settings of a simulated trial without a study plan. Without a scripted wizard, the wizard condition becomes
-/// unassisted. Every trial has a participant of its own with a code of its own.
+/// Without a scripted wizard, the wizard condition becomes unassisted. Every trial has a participant of its own.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
     if spec.unattended(spec.trial.condition) != spec.trial.condition {
@@ -62,13 +56,9 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     spec
 }
 
-/// A simulated trial with its recording and summary.
 pub struct SimulatedTrial {
-    /// Folder of the recording.
     pub folder: PathBuf,
-    /// Study arm of the simulated trial, as it was carried out.
     pub arm: StudyArm,
-    /// Summary of the simulated trial.
     pub figures: TrialSummary,
     /// Whether the trial's recording existed before, or another program made it in the meantime.
     pub found: bool,
@@ -77,11 +67,8 @@ pub struct SimulatedTrial {
 }
 
 /// Simulates the trials on all processors and passes the trials to `take` one by one, in order. Trials that another
-/// program is simulating in this folder are waited for after all others.
-///
-/// # Errors
-/// A recording cannot be written, its folder holds another recording, or an exclusion file is damaged; the first error of
-/// `take`.
+/// program is simulating in this folder are waited for after all others. Errors: a recording cannot be written, its
+/// folder holds another recording, or an exclusion file is damaged; the first error of `take`.
 pub fn each_trial(
     simulation: &SimulationRequest,
     done: impl Fn() + Sync,
@@ -125,7 +112,6 @@ pub fn each_trial(
     }
 }
 
-/// Waits until another program has finished at least one of these trials.
 fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
     let folders: Vec<PathBuf> = trials.iter().map(|&trial| folder_of(simulation, trial)).collect();
     while folders.iter().all(|folder| RecordingLock::holder(folder).is_some()) {
@@ -140,8 +126,7 @@ fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
     out.join(format!("seed{}-{}{period}", spec.seed, spec.participant.code))
 }
 
-/// Header of a simulated trial's recording. With a study plan, trials are ordered by participant; without a plan, each
-/// trial has a participant of its own.
+/// With a study plan, trials are ordered by participant; without one, each trial has a participant of its own.
 fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> LogHeader {
     let files = &simulation.files.kitchen;
     let (spec, trial) = match simulation.files.study() {
@@ -187,7 +172,6 @@ fn simulate_trial(
     Ok(SimulatedTrial { folder, arm, figures, found, moved })
 }
 
-/// One line of text for each log that was moved out of the way, since it ends before the end of its header.
 pub fn describe_moved(moved: &[String]) -> String {
     let line = |log: &String| {
         format!("a log that ended before the end of its header was moved to {log}; its trial was simulated again\n")

@@ -26,10 +26,8 @@ pub struct PartWriter {
 }
 
 impl PartWriter {
-    /// Begins the file of a part. An earlier file with the same part of the study is replaced.
-    ///
-    /// # Errors
-    /// There is a file at the path that is not this part, or the folder cannot be written to.
+    /// Begins the file of a part. An earlier file with the same part of the study is replaced. Errors: there is a file
+    /// at the path that is not this part, or the folder cannot be written to.
     pub fn create(path: &Path, header: &PartHeader, kitchen: &PartKitchen) -> FileResult<PartWriter> {
         let unwritable = |reason| FileError::unwritable(path, reason);
         let is_own = |head: &[u8]| {
@@ -44,7 +42,6 @@ impl PartWriter {
         Ok(part)
     }
 
-    /// Adds an analysed recording, with its rows of the tables of events.
     pub fn add(&mut self, recording: &AnalysedRecording, rows: &[Vec<u8>; 5]) -> FileResult<()> {
         self.line(recording)?;
         // Rows of tables are always UTF-8.
@@ -59,7 +56,6 @@ impl PartWriter {
         self.file.write_all(&line).map_err(|reason| FileError::unwritable(&self.path, reason))
     }
 
-    /// Completes the part's file and gives it its name.
     pub fn finish(self) -> FileResult<()> {
         let PartWriter { path, file } = self;
         file.finish().map_err(|reason| FileError::unwritable(&path, reason))
@@ -68,9 +64,7 @@ impl PartWriter {
 
 #[derive(Debug)]
 pub struct PartReader {
-    /// First line of the part's file: its header.
     pub header: PartHeader,
-    /// Second line of the part's file: the kitchen.
     pub kitchen: PartKitchen,
     path: PathBuf,
     lines: BufReader<File>,
@@ -78,10 +72,7 @@ pub struct PartReader {
 }
 
 impl PartReader {
-    /// Opens the file of a part and reads its first two lines.
-    ///
-    /// # Errors
-    /// The file cannot be read, or is no study part of this format.
+    /// Errors: the file cannot be read, or is no study part of this format.
     pub fn open(path: &Path) -> FileResult<PartReader> {
         let mut lines =
             BufReader::new(open_regular(path).map_err(|reason| FileError::unreadable(path, reason, REMEDY))?);
@@ -108,10 +99,8 @@ impl PartReader {
         &self.path
     }
 
-    /// The next analysed recording with its rows of the tables of events; `None` after the last recording.
-    ///
-    /// # Errors
-    /// A line is not that of a part, or there are more or fewer recordings than the header says.
+    /// The next analysed recording with its rows of the tables of events; `None` after the last recording. Errors: a
+    /// line is not that of a part, or there are more or fewer recordings than the header says.
     pub(crate) fn next_recording(&mut self) -> FileResult<Option<(AnalysedRecording, [Vec<u8>; 5])>> {
         let (read, all) = ((self.number as u64 - 2) / 2, self.header.recordings);
         let is_whole = read == all;
@@ -141,8 +130,7 @@ impl PartReader {
     }
 }
 
-/// The next line of the file without its line end; `None` at the end of the file. A last line without a line end was
-/// cut.
+/// Without the line end; `None` at the end of the file. A last line without a line end was cut.
 fn next_line(path: &Path, lines: &mut BufReader<File>, number: &mut usize) -> FileResult<Option<String>> {
     let mut text = String::new();
     lines.by_ref().take(MAX_LINE).read_line(&mut text).map_err(|reason| FileError::unreadable(path, reason, REMEDY))?;

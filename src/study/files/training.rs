@@ -8,7 +8,6 @@ use crate::analysis::lesson_report::WizardTrainingRecord;
 use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
 use tomcom_session::files::replace_file;
 
-/// Writes a training record to a new file in the folder and returns its path.
 pub fn write(folder: &Path, record: &WizardTrainingRecord) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let text = serde_json::to_string_pretty(record).map_err(io::Error::other)? + "\n";
@@ -23,10 +22,7 @@ pub fn write(folder: &Path, record: &WizardTrainingRecord) -> io::Result<PathBuf
     Err(io::Error::other("too many files"))
 }
 
-/// The training records of a wizard in the folder, in the order of time; empty if the folder does not exist.
-///
-/// # Errors
-/// A file cannot be read or is not a training record.
+/// In the order of time; empty without the folder. Errors: a file cannot be read or is no training record.
 pub fn read(folder: &Path, wizard: &str) -> FileResult<Vec<WizardTrainingRecord>> {
     let remedy = "a training record of tomcom, or another folder";
     let mut records = Vec::new();

@@ -41,11 +41,9 @@ use tomcom_session::replay::SameKitchenCheck;
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StudyError {
-    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// A table cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Export(#[from] AnalysisWriteError),
@@ -76,8 +74,7 @@ pub struct NamedRecordings {
 }
 
 impl NamedRecordings {
-    /// Finds the recordings at these paths, each once, ordered by name, so that the order does not depend on how
-    /// recordings are spread over folders.
+    /// Each once, ordered by name, so that the order does not depend on how they are spread over folders.
     pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
         let GatheredRecordings { paths, copies } = GatheredRecordings::find(paths)?;
         let mut found: Vec<(PathBuf, String)> = paths.into_iter().map(|path| (path.clone(), name(&path))).collect();
@@ -93,11 +90,8 @@ impl NamedRecordings {
     }
 
     /// The two raters whose codes an analysis of these recordings uses: those whom the user names, or the only two who
-    /// have coded errors. `None`: each recording's most complete codes. A trial without errors has no codes by which its
-    /// raters could be told.
-    ///
-    /// # Errors
-    /// A rater whom the user names has no codes; or codes cannot be read.
+    /// have coded errors. `None`: each recording's most complete codes. A trial without errors has no codes by which
+    /// its raters could be told. Errors: a rater whom the user names has no codes; or codes cannot be read.
     fn raters(&self, analysis: &AnalysisRequest) -> Result<Option<[String; 2]>, FileError> {
         let mut raters = BTreeSet::new();
         for (path, _) in &self.found {
@@ -121,10 +115,8 @@ fn name(recording: &Path) -> String {
     typed.unwrap_or_else(|| recording.display().to_string())
 }
 
-/// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path.
-///
-/// # Errors
-/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be
+/// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path. Errors: a
+/// recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be
 /// written.
 pub fn study(
     analysis: &AnalysisRequest,
@@ -150,8 +142,7 @@ fn frozen(analysis: &AnalysisRequest) -> Result<Option<(String, FrozenPlan)>, Fi
     analysis.frozen.as_ref().map(|file| read_frozen(file)).transpose()
 }
 
-/// Analyses one recording. `first` is a recording of the study with its kitchen. Returns also the recording's rows of
-/// the tables of events.
+/// `first`: a recording of the study with its kitchen. Returns also the rows of the tables of events.
 fn analyse(
     (path, name): &(PathBuf, String),
     (extent, raters): (AnalysisScope, Option<&[String; 2]>),
@@ -220,8 +211,7 @@ impl CollectedRecordings {
     }
 }
 
-/// Computes the summary, the tables and the report from all recordings of a study, which are kept under the numbers
-/// below `number`, and from which `copies` were left out.
+/// `number`: the recordings are kept under the numbers below it; `copies` were left out of them.
 fn conclude(
     number: usize,
     export: &AnalysisFolder,
@@ -260,8 +250,7 @@ fn conclude(
     Ok((figures, path))
 }
 
-/// Writes the tables that follow from the details of trials, trial by trial. Returns the sums over the details, and the
-/// tables that have rows.
+/// Trial by trial. Returns the sums over the details, and the tables that have rows.
 fn tables_of_details(
     trials: &[TrialStatistics],
     kept: &BTreeMap<String, usize>,

@@ -28,8 +28,9 @@ use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
 use tomcom_core::measures::matching::{CommunicationEvent, WINDOW};
 use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::sequences::BeliefErrorCounts;
-use tomcom_core::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect};
+use tomcom_core::measures::sequences::{
+    BeliefErrorCounts, ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect,
+};
 use tomcom_core::measures::{JudgedPress, median};
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
@@ -60,14 +61,12 @@ pub struct AnalysisScope {
     pub events: bool,
 }
 
-/// Attributes people's errors to causes by means of the estimated beliefs.
 struct ByEstimate {
     attributor: ErrorAttributor,
     causes: Vec<(u64, ErrorCause)>,
 }
 
 impl ByEstimate {
-    /// Attributes a press that was just applied to a cause, if the press was an error.
     fn note(
         &mut self,
         stamped: &TimestampedEvent,
@@ -98,10 +97,8 @@ fn expected(kitchen: &Kitchen, state: tomcom_core::kitchen::State, estimate: &Di
 }
 
 /// Analyses the recording, which tables call by `name`; `None` for a practice recording. `raters`: the two raters whose
-/// codes are used, if the user named them. `kept`: the cost to go that the next recording takes over.
-///
-/// # Errors
-/// The recording cannot be read or replayed, or it is not clear which two raters' codes to use.
+/// codes are used, if the user named them. `kept`: the cost to go that the next recording takes over. Errors: the
+/// recording cannot be read or replayed, or it is not clear which two raters' codes to use.
 pub fn read(
     recording: &Path,
     name: &str,
@@ -195,7 +192,6 @@ pub fn read(
     Ok(Some((kitchen, RecordingAnalysis { trial, details, facts, rows })))
 }
 
-/// Details of the trial of a replayed recording. `lanes`: the communications of each sender.
 fn details(
     pass: &ReplayPass,
     judged: &[JudgedPress],
@@ -220,8 +216,7 @@ fn details(
     }
 }
 
-/// Communications of each sender, with the sender's name: the communications that were sent and, in a wizard trial,
-/// those that the assistant would have sent.
+/// By sender: those that were sent and, in a wizard trial, those that the assistant would have sent.
 fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
     if let ReplayPass::Beside(watcher) = pass {
         watcher.finish();
@@ -233,7 +228,6 @@ fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
     vec![(name.to_string(), sent(session))]
 }
 
-/// Number of pieces of content of a signal on the timeline; 0 for other entries of the timeline.
 fn contents(entry: &TimelineEntry) -> u64 {
     match &entry.what {
         TimelineEvent::Signal { signal, .. } => signal.contents() as u64,
@@ -257,8 +251,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     sent
 }
 
-/// The participant's false beliefs, from recorded beliefs or from codes that raters share; `None` if only the estimate
-/// is known.
+/// From recorded beliefs, or codes that raters share; `None` if only the estimate is known.
 fn known_beliefs(
     follower: &SessionFollower,
     judged: &[JudgedPress],
@@ -417,8 +410,7 @@ fn score(questionnaire: &Questionnaire, protocol: &StudyProtocolState) -> Option
     }
 }
 
-/// The participant's answers in a log of which nothing was read yet; `name` is the recording's name in tables. None if
-/// the recording has no tutorial.
+/// `log`: nothing was read of it yet; `name`: as in tables. Empty without a tutorial.
 pub(super) fn tutorial_answers(mut log: LogReader, name: &str) -> FileResult<Vec<TutorialQuestionRow>> {
     let spec = log.header.session.clone();
     let Some(mut answers) = TutorialAnswerCollector::new(name, &spec) else { return Ok(Vec::new()) };
@@ -430,7 +422,6 @@ pub(super) fn tutorial_answers(mut log: LogReader, name: &str) -> FileResult<Vec
 
 #[derive(Debug)]
 pub enum ReplayPass {
-    /// Replay without hypothetical signals.
     Plain(Box<SessionFollower>),
     Beside(Box<SenderComparisonFollower>),
     Swept(Box<ConceptSweep>),
@@ -453,10 +444,7 @@ impl ReplayPass {
         }
     }
 
-    /// Applies the next event of the recording.
-    ///
-    /// # Errors
-    /// The event does not fit the session.
+    /// Applies the next event of the recording. Errors: the event does not fit the session.
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         match self {
             ReplayPass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
@@ -482,8 +470,7 @@ impl ReplayPass {
     }
 }
 
-/// The consent with which the recording begins (in its first part); `None` if the recording does not begin with a
-/// consent.
+/// That with which the recording begins (in its first part).
 pub(crate) fn consent(recording: &Path) -> FileResult<Option<RecordedConsent>> {
     let mut log = LogReader::open(recording)?;
     let participant = log.header.session.participant.code.clone();

@@ -13,12 +13,11 @@ use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange, LocationId, 
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCriterion, matched};
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
-use tomcom_core::measures::raters::{RaterChoice, RaterPair};
+use tomcom_core::measures::raters::{
+    BeliefSource, CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterChoice, RaterCodes, RaterPair,
+};
 use tomcom_core::measures::sequences::ErrorSequence;
-use tomcom_core::mind::RecordedBelief;
-use tomcom_core::mind::RecordedEstimate;
+use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::log::{LogReader, consensus_file, rater_codes};
@@ -83,7 +82,6 @@ impl<'a> TrialPressAnalyses<'a> {
 }
 
 impl RowCollector {
-    /// A collector for the recording that tables call by this name, without rows yet.
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),
@@ -187,8 +185,7 @@ impl RowCollector {
         self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 
-    /// The CSV rows, in the order of [`CsvTable::OF_EVENTS`]. `lanes`: communications that were sent, and
-    /// communications that the assistant would have sent.
+    /// In the order of [`CsvTable::OF_EVENTS`]. `lanes`: by sender, sent and hypothetical communications.
     pub fn finish(
         mut self,
         session: &Session,
@@ -235,10 +232,8 @@ pub struct CodedErrors {
 }
 
 impl CodedErrors {
-    /// Reads the codes beside a log. `named`: the two raters whose codes shall be used, if the user names them.
-    ///
-    /// # Errors
-    /// A file with codes is damaged; or more than two raters have coded every error of a person, and the user did not
+    /// Reads the codes beside a log. `named`: the two raters whose codes shall be used, if the user names them. Errors:
+    /// a file with codes is damaged; or more than two raters have coded every error of a person, and the user did not
     /// name two of these raters.
     pub fn read(log: &LogReader, follower: &SessionFollower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
         let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);

@@ -42,10 +42,8 @@ impl RecordingPlace {
 }
 
 /// Analyses a shard of these recordings and writes the result to the file `analysis.out`. `begun` is called with the
-/// number of the shard's recordings, which is also returned, and `done` after each recording.
-///
-/// # Errors
-/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the file cannot be written.
+/// number of the shard's recordings, which is also returned, and `done` after each recording. Errors: a recording
+/// cannot be read or replayed, or belongs to another kitchen than the first; or the file cannot be written.
 pub fn analyse_shard(
     analysis: &AnalysisRequest,
     recordings: NamedRecordings,
@@ -104,11 +102,9 @@ pub fn analyse_shard(
 }
 
 /// Joins the parts of a study, the files `analysis.paths`: the results are those of one analysis of all recordings, to
-/// the last byte. Returns the summary and the path of the report.
-///
-/// # Errors
-/// A file is no part of a study; the parts do not make one study; a recording is in two parts, or in none although a part
-/// saw it; there is no recording at all; or the results cannot be written.
+/// the last byte. Returns the summary and the path of the report. Errors: a file is no part of a study; the parts do
+/// not make one study; a recording is in two parts, or in none although a part saw it; there is no recording at all; or
+/// the results cannot be written.
 pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), StudyError> {
     let frozen = frozen(analysis)?;
     let mut parts = analysis.paths.iter().map(|path| PartReader::open(path)).collect::<FileResult<Vec<_>>>()?;

@@ -18,8 +18,7 @@ use crate::prevention::{HypotheticalSignal, TrialGroundTruth};
 use crate::roc::{CONCEPTS, ConceptPreventionCounts, LEAST_COST, parameters};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
-use tomcom_core::communication::concept::TomConcept;
-use tomcom_core::communication::concept::{Concept, ConceptName};
+use tomcom_core::communication::concept::{Concept, ConceptName, TomConcept};
 use tomcom_core::communication::planner::Planner;
 use tomcom_core::communication::recommendation::{SignalOption, aspects_told};
 use tomcom_core::communication::settings::AssistantSpec;
@@ -29,8 +28,7 @@ use tomcom_core::kitchen::{Agent, AspectId, KitchenChange};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 use tomcom_session::admit::is_external;
-use tomcom_session::advisor::AdviceRequest;
-use tomcom_session::advisor::leads_to_advice;
+use tomcom_session::advisor::{AdviceRequest, leads_to_advice};
 use tomcom_session::apply::ApplyError;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::file_error::FileResult;
@@ -85,7 +83,6 @@ impl ConceptSweep {
         }
     }
 
-    /// Applies one event of the replayed session.
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         if self.pending.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.evaluate();
@@ -177,7 +174,6 @@ impl SignalScope {
     }
 }
 
-/// A signal of the trial, with the errors of the twin that continues without it.
 struct TwinResult {
     time: SessionTime,
     scope: SignalScope,
@@ -209,8 +205,7 @@ pub(super) fn useful_signals(recording: &Path, cost: CostToGo) -> FileResult<Opt
     Ok(Some(twins.iter().filter(is_useful).count() as u64))
 }
 
-/// Runs the session up to a recorded event, and a twin for every signal before that event. Recommendations are taken
-/// from the recording.
+/// Runs up to a recorded event, and a twin for every signal before it. Recommendations are taken from the log.
 fn run_to(
     again: &mut SessionEngine,
     recorded: &TimestampedEvent,
@@ -245,8 +240,7 @@ fn run_to(
     events
 }
 
-/// Runs a twin (the trial continued without further signals) until the false beliefs that a signal at `time` is about
-/// have ended.
+/// Continues without further signals until the false beliefs that the signal is about have ended.
 fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinResult {
     let scope = SignalScope::of_signal(engine.session(), signal);
     let presses = engine.judged().len();
@@ -270,7 +264,6 @@ fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinRe
     TwinResult { time, scope, errors }
 }
 
-/// False belief episodes about these state aspects that were open at this time.
 fn open_at<'a>(
     follower: &'a SessionFollower,
     time: SessionTime,
@@ -291,8 +284,7 @@ fn errors_after(follower: &SessionFollower, time: SessionTime, scope: &SignalSco
     }
 }
 
-/// Number of errors after this time that follow from false beliefs, held at this time, about the aspects in `told`;
-/// errors are counted until each belief is corrected.
+/// From false beliefs held at this time about the aspects in `told`, until each is corrected.
 fn belief_errors_after(follower: &SessionFollower, time: SessionTime, told: &[AspectId]) -> u64 {
     let kitchen = &follower.session.kitchen;
     let open: Vec<&FalseBeliefEpisode> = open_at(follower, time, told).collect();

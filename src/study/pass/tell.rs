@@ -188,8 +188,7 @@ fn of_live(arms: &[SignalSenderResults]) -> String {
     text
 }
 
-/// Similarity of wizard and assistant at each of its three levels, as text. The paper does not say to which level its
-/// 74 % belong.
+/// At three levels. The paper does not say to which its 74 % belong.
 fn of_similarity(who: &str, found: &Similarity) -> String {
     let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));
     format!(
@@ -240,7 +239,6 @@ fn of_effect(effect: &AssistanceEffect) -> String {
     )
 }
 
-/// Participants whom a test leaves out, as the end of a line.
 fn left_out_of(left_out: &[LeftOutParticipant]) -> String {
     left_out_in_words(left_out).map_or(String::new(), |who| format!("; left out: {who}"))
 }

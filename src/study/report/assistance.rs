@@ -16,7 +16,6 @@ use crate::report::elements::{
 use crate::statistics::FTest;
 use crate::trial_statistics::TrialStatistics;
 
-/// Section of the report on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
@@ -125,7 +124,6 @@ fn experience(figures: &StudySummary) -> Markup {
     }
 }
 
-/// Table of statistical tests, with one row per compared measure, and the participants whom the tests leave out.
 fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 13] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),
@@ -167,13 +165,11 @@ fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
     }
 }
 
-/// Sentence on the participants whom the tests of something leave out; empty if nobody is left out.
 fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
     let Some(who) = left_out_in_words(left_out) else { return nothing() };
     html! { p class="note" { "Left out of the tests of " (what) ": " (who) "." } "\n" }
 }
 
-/// Table of the mixed analysis of variance, in both codings of the factors.
 fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     let row = |what: &dyn Render, test: Option<FTest>| {
         cells([
@@ -203,8 +199,6 @@ fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     }
 }
 
-/// Section with the arms' rates, their contrasts, the non-inferiority of the assistant to the wizard, and the deviations
-/// from the planned arms.
 pub(super) fn arms(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let content = html! {
         @if let Some(found) = &figures.arms { (comparison(captions, found)) }
@@ -213,7 +207,6 @@ pub(super) fn arms(captions: &mut Captions, figures: &StudySummary) -> Markup {
     section("How do the conditions compare?", content)
 }
 
-/// The deviations from the planned arms, and the analysis by the arms as carried out.
 fn carried_out(captions: &mut Captions, deviations: &[ArmDeviation], found: &ArmAnalysis) -> Markup {
     html! {
         h3 { "Deviations from the plan" } "\n"

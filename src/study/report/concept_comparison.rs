@@ -2,15 +2,14 @@
 
 use maud::{Markup, Render, html};
 
-use super::elements::{Captions, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
+use super::elements::{Captions, PageColumn, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
 use crate::charts::{self, MOST_SIGNALS};
 use crate::figures::StudySummary;
 use crate::live_arms::SignalSenderResults;
-use crate::roc::EQUAL_SIGNALS;
+use crate::roc::{BootstrapInterval, ConceptRocCurve, EQUAL_SIGNALS};
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
 
-/// Section of the report that compares communication concepts by the errors that they prevent.
 pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = html! {
@@ -38,7 +37,6 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     section("Which concept prevents more?", content)
 }
 
-/// Sentence on how the chart of concepts shows confidence bands.
 fn bands(figures: &StudySummary) -> String {
     let drawn = figures.roc.iter().filter(|roc| !roc.points.is_empty());
     let without: Vec<&str> = drawn.clone().filter(|roc| roc.band.is_empty()).map(|roc| roc.concept.title()).collect();
@@ -52,7 +50,6 @@ fn bands(figures: &StudySummary) -> String {
     }
 }
 
-/// Sentence on points of the chart that lie beyond the end of the axis.
 fn cut_off(figures: &StudySummary) -> String {
     let points = figures.roc.iter().flat_map(|roc| &roc.points);
     match points.filter(|point| point.signals_per_100_actions > MOST_SIGNALS).count() as u64 {
@@ -61,40 +58,23 @@ fn cut_off(figures: &StudySummary) -> String {
     }
 }
 
-/// Table of the concepts that sent signals by themselves, with the predictions from the analysis of unassisted trials.
 fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let parameter =
-        |arm: &SignalSenderResults| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
-    let rows = figures.live.iter().map(|arm| {
-        let values = [
-            number(arm.belief_related_per_100, 2),
-            number(arm.sequences_per_100, 2),
-            number(arm.mean_sequence_length, 2),
-            arm.orders.to_string(),
-            number(arm.orders_per_minute, 2),
-            number(arm.interruptions_per_100, 2),
-            number(arm.contents_per_100, 2),
-            number(arm.useless_per_100, 2),
-            number(arm.prevented, 2),
-            number(arm.prevented_offline, 2),
-            number(arm.interruptions_per_100_offline, 2),
-        ];
-        let name = format!("{}{}", arm.arm.concept, parameter(arm)).render();
-        std::iter::once(name).chain(values.iter().map(Render::render)).collect::<Vec<Markup>>()
-    });
-    let heads = [
-        "concept, parameter",
-        "belief related errors per 100 presses",
-        "sequences per 100 presses",
-        "errors per sequence",
-        "orders",
-        "orders per minute",
-        "signals per 100 presses",
-        "their contents",
-        "useless",
-        "fewer belief related errors",
-        "prevented, offline",
-        "signals per 100, offline",
+    let columns: [PageColumn<SignalSenderResults>; 12] = [
+        ("concept, parameter", |one| {
+            let parameter = one.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
+            format!("{}{parameter}", one.arm.concept).render()
+        }),
+        ("belief related errors per 100 presses", |one| number(one.belief_related_per_100, 2).render()),
+        ("sequences per 100 presses", |one| number(one.sequences_per_100, 2).render()),
+        ("errors per sequence", |one| number(one.mean_sequence_length, 2).render()),
+        ("orders", |one| one.orders.render()),
+        ("orders per minute", |one| number(one.orders_per_minute, 2).render()),
+        ("signals per 100 presses", |one| number(one.interruptions_per_100, 2).render()),
+        ("their contents", |one| number(one.contents_per_100, 2).render()),
+        ("useless", |one| number(one.useless_per_100, 2).render()),
+        ("fewer belief related errors", |one| number(one.prevented, 2).render()),
+        ("prevented, offline", |one| number(one.prevented_offline, 2).render()),
+        ("signals per 100, offline", |one| number(one.interruptions_per_100_offline, 2).render()),
     ];
     let trials = figures.live.first().map_or(0, |arm| arm.trials);
     let caption = format!(
@@ -105,31 +85,26 @@ fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
          related errors: share per press of the human, against no signals. Offline: what the analysis of unassisted trials says for \
          the same parameter; a replayed signal changes nothing that follows."
     );
-    captions.table(caption, &heads, &rows.collect::<Vec<_>>())
+    captions.table_of_columns(caption, &columns, figures.live.iter())
 }
 
 fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let banded = |value: Option<f64>, low: Option<f64>, high: Option<f64>| {
         with_interval(value, low.zip(high).map(|(low, high)| [low, high]), 2)
     };
-    let concepts = figures.roc.iter().map(|roc| {
-        let mut row = vec![roc.concept.title().render()];
-        row.extend(roc.at_equal_signals.iter().map(|one| banded(one.value, one.low, one.high)));
-        row.push(banded(roc.auc, roc.auc_low, roc.auc_high));
-        row
-    });
-    let behind = figures.roc.iter().skip(1).map(|roc| {
-        let mut row = vec![format!("ToM-Com is ahead of {} by", roc.concept.title()).render()];
-        row.extend(roc.behind_first.iter().map(|one| banded(one.value, one.low, one.high)));
-        row.push(nothing());
-        row
-    });
-    let useless = figures.roc.iter().map(|roc| {
-        let mut row = vec![format!("useless signals of {}", roc.concept.title()).render()];
-        row.extend(roc.useless_at_equal_signals.iter().map(|one| banded(one.value, one.low, one.high)));
-        row.push(nothing());
-        row
-    });
+    let row = |head: String, values: &[BootstrapInterval], area: Markup| -> Vec<Markup> {
+        let values = values.iter().map(|one| banded(one.value, one.low, one.high));
+        std::iter::once(head.render()).chain(values).chain([area]).collect()
+    };
+    let title = |roc: &ConceptRocCurve| roc.concept.title().to_string();
+    let area = |roc: &ConceptRocCurve| banded(roc.auc, roc.auc_low, roc.auc_high);
+    let concepts = figures.roc.iter().map(|roc| row(title(roc), &roc.at_equal_signals, area(roc)));
+    let behind = figures.roc.iter().skip(1);
+    let behind = behind.map(|roc| row(format!("ToM-Com is ahead of {} by", title(roc)), &roc.behind_first, nothing()));
+    let useless = figures
+        .roc
+        .iter()
+        .map(|roc| row(format!("useless signals of {}", title(roc)), &roc.useless_at_equal_signals, nothing()));
     let signals = EQUAL_SIGNALS.iter().map(|signals| format!("at {signals:.0} signals"));
     let heads: Vec<String> =
         std::iter::once("prevented".to_string()).chain(signals).chain(["partial area".to_string()]).collect();

@@ -2,13 +2,11 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::svg::minus;
+use crate::charts::minus;
 use tomcom_session::settings::ArmKind;
 
-/// Text in place of an unknown value: a dash.
 pub(super) const UNKNOWN: &str = "\u{2013}";
 
-/// Numbers the report's charts and tables in the order of the page.
 #[derive(Debug, Default)]
 pub(super) struct Captions {
     figures: u32,
@@ -26,14 +24,12 @@ impl Captions {
         }
     }
 
-    /// A numbered table with its caption; the first column is text, all others are numbers. Notes belong in the
-    /// caption, because page breaks never separate a caption from its table.
+    /// First column text, all others numbers. Notes belong in the caption: page breaks never separate the two.
     pub(super) fn table(&mut self, caption: impl Render, heads: &[impl Render], rows: &[Vec<Markup>]) -> Markup {
         self.table_of_class(None, caption, heads, rows)
     }
 
-    /// A table with one row per element of `rows`; each column has a heading and a function that makes the column's
-    /// cells.
+    /// One row per element of `rows`.
     pub(super) fn table_of_columns<'r, Row: 'r>(
         &mut self,
         caption: impl Render,
@@ -75,7 +71,6 @@ impl Captions {
     }
 }
 
-/// Column of a table on the report's page: its heading, and the function that makes its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
 pub(super) fn nothing() -> Markup {

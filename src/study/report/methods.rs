@@ -10,7 +10,6 @@ use tomcom_core::base::text;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
 
-/// Section of the report on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(figures, facts)) } "\n"

@@ -18,11 +18,9 @@ use crate::planned_trial::{copies_in_words, in_words};
 use crate::report::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
 use crate::trial_statistics::TrialStatistics;
 use tomcom_core::base::text;
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::RaterAgreement;
+use tomcom_core::measures::raters::{BeliefSource, RaterAgreement};
 use tomcom_session::event::TrialEndReason;
 
-/// Style sheet of the report's page and its charts.
 pub const STYLE: &str = include_str!("style.css");
 
 pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &RecordingFacts, tables: &[CsvTable]) -> String {
@@ -72,7 +70,6 @@ fn metadata(trials: &[TrialStatistics]) -> [(&'static str, String); 3] {
     [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]
 }
 
-/// Name of the metadata field that contains program and version.
 const GENERATOR: &str = "generator";
 const PARTICIPANTS: &str = "participants";
 const PROGRAM: &str = "tomcom ";
@@ -187,7 +184,6 @@ fn card(value: &str, what: &str) -> Markup {
 
 const MOST_TRIALS: usize = 60;
 
-/// Section of the report with all trials, and with the reasons for excluding some of them.
 fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let content = html! {
         div class="scroll long" { (counting(captions, trials)) } "\n"
@@ -248,7 +244,6 @@ fn definitions() -> Markup {
     section("Definitions", content)
 }
 
-/// Section of the report that lists the non-empty tables beside the report.
 fn files(tables: &[CsvTable]) -> Markup {
     let content = html! {
         p {

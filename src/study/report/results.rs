@@ -67,7 +67,6 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     section("Comparison with the paper", captions.table(caption, &["", "here", "paper"], &rows))
 }
 
-/// Shares of errors from false beliefs about orders, recipes, an order or its recipe, and other locations, as text.
 fn kinds(figures: &StudySummary) -> String {
     let found = figures.totals.belief_related_by_kind;
     found.map_or(UNKNOWN.to_string(), |kinds| {
@@ -87,7 +86,6 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
     section("Wizard and assistant", content)
 }
 
-/// Caption of the table of the wizard's performance, which names the source of the false beliefs.
 fn performance(figures: &StudySummary) -> String {
     let unknown = "; false beliefs that led to no error are not known";
     match figures.wizard_beliefs_from {
@@ -214,13 +212,11 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
     section("Questionnaires", content)
 }
 
-/// Words for when answers were given: after trials of a condition, or before the trials.
 fn asked_after(after: Option<StudyArm>) -> String {
     after.map_or_else(|| "before the trials".to_string(), |after| after.title().to_string())
 }
 
-/// Table of answers by questionnaire item. Answers in words are only counted, since they can identify their author; the
-/// CSV table has these answers.
+/// Answers in words are only counted, since they can identify their author.
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
         let mean = match (item.points, item.kind) {
@@ -300,7 +296,6 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     section("The robot", captions.table(caption, &heads, &rows))
 }
 
-/// Section of the report on what participants knew; empty without freeze probes.
 pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.probes else { return nothing() };
     let content = html! {
@@ -356,7 +351,6 @@ fn asked(counts: &ProbeCounts, participants: u64) -> Markup {
     }
 }
 
-/// Sentence on the probe questions that the main results leave out, and why.
 fn left_out(counts: &ProbeCounts) -> Markup {
     let one = |n: u64, what: &str| (n > 0).then(|| format!("{n} {what}"));
     let questions: Vec<String> = [

@@ -2,8 +2,7 @@
 //! offers, gaze, beliefs; and of the errors that concepts would have prevented.
 
 use crate::analysis::offer_summary::TimedOffer;
-use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use crate::prevention::PreventionCounts;
+use crate::column::{CsvRow, CsvTable, TableColumn, columns};
 use crate::roc::ConceptPreventionCounts;
 use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_core::base::time::SessionTime;
@@ -12,15 +11,12 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
 use tomcom_core::kitchen::{Kitchen, LocationId};
 use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind};
-use tomcom_core::mind::AspectBelief;
-use tomcom_core::mind::{AspectEstimate, rounded};
+use tomcom_core::mind::{AspectBelief, AspectEstimate, rounded};
 
-/// Row of the table of communications: a communication that was sent, or that a concept would have sent.
 #[derive(Clone, Copy, Debug)]
 pub struct CommunicationRow<'a> {
     pub recording: &'a str,
     pub kitchen: &'a Kitchen,
-    /// Sender of the communication: wizard, assistant, or the concept of a hypothetical communication.
     pub lane: &'a str,
     pub sent: &'a CommunicationEvent,
     /// Sequence number of the offer that the communication took or met; `None` if the wizard could see no such offer.
@@ -40,28 +36,22 @@ fn kind_name(kind: CommunicationKind) -> &'static str {
 impl CsvRow for CommunicationRow<'_> {
     const TABLE: CsvTable = CsvTable::Communications;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let lane = "sender (wizard, assistant), or concept of a hypothetical signal (tom-com)";
-        let offer = "the offer that it took or met, as in offers; empty: none was visible";
-        let matched = "whether the other lane has the same signal within the window; empty: no other lane";
-        vec![
-            Self::column("recording", "", "as in trials", |row| row.recording.into()),
-            Self::column("lane", "", lane, |row| row.lane.into()),
-            Self::column("time_s", "s", "time on the trial's clock", |row| {
-                rounded(row.sent.clock.as_secs_f64()).into()
-            }),
-            Self::column("press", "presses", "number of human presses before it", |row| row.sent.press.into()),
-            Self::column("kind", "", "recipe, highlight or proposal", |row| kind_name(row.sent.content.kind).into()),
-            Self::column("target", "", "location that the communication is about", |row| {
-                row.sent.content.target.map(|location| &row.kitchen.location(location).name).into()
-            }),
-            Self::column("matched", "", matched, |row| row.matched.into()),
-            Self::column("offer", "", offer, |row| row.offer.into()),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "as in trials" => row.recording;
+            "lane", "", "sender (wizard, assistant), or concept of a hypothetical signal (tom-com)" => row.lane;
+            "time_s", "s", "time on the trial's clock" => rounded(row.sent.clock.as_secs_f64());
+            "press", "presses", "number of human presses before it" => row.sent.press;
+            "kind", "", "recipe, highlight or proposal" => kind_name(row.sent.content.kind);
+            "target", "", "location that the communication is about"
+                => row.sent.content.target.map(|location| &row.kitchen.location(location).name);
+            "matched", "", "whether the other lane has the same signal within the window; empty: no other lane"
+                => row.matched;
+            "offer", "", "the offer that it took or met, as in offers; empty: none was visible" => row.offer;
+        }
     }
 }
 
-/// Row of the table of offers: an offer to the wizard in a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct OfferRow<'a> {
     pub recording: &'a str,
@@ -99,38 +89,27 @@ fn offer_key_name(how: OfferKeyKind) -> &'static str {
 impl CsvRow for OfferRow<'_> {
     const TABLE: CsvTable = CsvTable::Offers;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let worth = "presses; for tom a probability";
-        let closed = "reason of the close: taken, own_key, impossible, fell (no longer worth it), replaced, trial_ended; \
-                      empty: the recording was cut";
-        let key = "key that sent the offered signal while it could be taken: enter or own (the signal's own key); empty: not sent";
-        vec![
-            Self::column("recording", "", "as in trials", |row| row.recording.into()),
-            Self::column("offer", "", "sequence number of offer_opened in the log", |row| row.timed.offer.seq.into()),
-            Self::column("time_s", "s", "time of its opening on the trial's clock", |row| {
-                rounded(row.timed.opened_s).into()
-            }),
-            Self::column("kind", "", "recipe, highlight or proposal", |row| offer_kind_name(row.act()).into()),
-            Self::column("target", "", "location of the signal, or the proposed presses", |row| row.target().into()),
-            Self::column("benefit", worth, "expected saving at the opening; for tom the belief deviation", |row| {
-                row.timed.offer.advice.worth.map(|worth| worth.benefit).into()
-            }),
-            Self::column("net", worth, "benefit minus the cost of communication or the threshold", |row| {
-                row.timed.offer.advice.worth.map(|worth| worth.net).into()
-            }),
-            Self::column("stood_s", "s", "time for which it was open, without pauses", |row| {
-                row.timed.stood_s.map(rounded).into()
-            }),
-            Self::column("closed", "", closed, |row| row.timed.reason.map(OfferCloseReason::name).into()),
-            Self::column("key", "", key, |row| row.timed.offer.used.map(|used| offer_key_name(used.how)).into()),
-            Self::column("reaction_s", "s", "time from the opening to that key, without pauses", |row| {
-                row.timed.reaction_s.map(rounded).into()
-            }),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "as in trials" => row.recording;
+            "offer", "", "sequence number of offer_opened in the log" => row.timed.offer.seq;
+            "time_s", "s", "time of its opening on the trial's clock" => rounded(row.timed.opened_s);
+            "kind", "", "recipe, highlight or proposal" => offer_kind_name(row.act());
+            "target", "", "location of the signal, or the proposed presses" => row.target();
+            "benefit", "presses; for tom a probability", "expected saving at the opening; for tom the belief deviation"
+                => row.timed.offer.advice.worth.map(|worth| worth.benefit);
+            "net", "presses; for tom a probability", "benefit minus the cost of communication or the threshold"
+                => row.timed.offer.advice.worth.map(|worth| worth.net);
+            "stood_s", "s", "time for which it was open, without pauses" => row.timed.stood_s.map(rounded);
+            "closed", "", "reason of the close: taken, own_key, impossible, fell (no longer worth it), replaced, trial_ended; \
+                empty: the recording was cut" => row.timed.reason.map(OfferCloseReason::name);
+            "key", "", "key that sent the offered signal while it could be taken: enter or own (the signal's own \
+                key); empty: not sent" => row.timed.offer.used.map(|used| offer_key_name(used.how));
+            "reaction_s", "s", "time from the opening to that key, without pauses" => row.timed.reaction_s.map(rounded);
+        }
     }
 }
 
-/// Row of the table of concepts: a concept with one value of its parameter in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
     trial: &'a TrialStatistics,
@@ -144,54 +123,34 @@ pub fn concepts<'a>(trial: &'a TrialStatistics, details: &'a TrialDetails) -> im
 impl CsvRow for ConceptRow<'_> {
     const TABLE: CsvTable = CsvTable::Concepts;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let count = |name, unit, meaning, count: fn(&PreventionCounts) -> u64| {
-            Self::column(name, unit, meaning, move |row| count(&row.swept.count).into())
-        };
-        let parameter = "cost of communication in presses (tom-com), threshold (tom), presses proposed (dev)";
-        vec![
-            Self::column("recording", "", "as in trials; unassisted trials that count", |row| {
-                (&row.trial.recording).into()
-            }),
-            Self::column("participant", "", "as in participants", |row| (&row.trial.participant).into()),
-            Self::column("concept", "", "tom-com, tom or dev", |row| row.swept.concept.name().into()),
-            Self::column("parameter", "", parameter, |row| CsvCell::Number(row.swept.parameter)),
-            count("presses", "presses", "human presses in the trial", |count| count.presses),
-            count("signals", "signals", "hypothetical signals; for dev, proposals", |count| count.signals),
-            count("related", "errors", "belief related", |count| count.related),
-            count("prevented", "errors", "belief related errors that the signals would have prevented", |count| {
-                count.prevented
-            }),
-            count("outside", "presses", "human presses outside of false belief episodes", |count| count.outside),
-            count("false_presses", "presses", "human presses with a useless signal right before them", |count| {
-                count.false_presses
-            }),
-            count("false_inside", "signals", "useless signals during a false belief episode", |count| {
-                count.false_inside
-            }),
-            Self::column(
-                "harmless",
-                "signals",
-                "signals about a false belief that led to no error; empty where such beliefs are not known, as with people",
-                |row| row.swept.count.harmless.into(),
-            ),
-            count("contents", "contents", "as signals; for dev, proposed presses", |count| count.contents),
-            count(
-                "useless",
-                "signals",
-                "signals that are not the first about a false belief with errors to follow",
-                |count| count.useless,
-            ),
-            Self::column("beliefs_from", "", "as in trials: recorded, consensus or raters", |row| {
-                row.trial.beliefs.as_ref().map(|beliefs| beliefs.basis.name()).into()
-            }),
-            Self::column(
-                "lead_s",
-                "s",
-                "mean time from a useful signal to the first error that it would have prevented; empty without useful signals, and for dev",
-                |row| row.swept.count.lead_s().filter(|_| row.swept.concept != ConceptName::Dev).into(),
-            ),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "as in trials; unassisted trials that count" => &row.trial.recording;
+            "participant", "", "as in participants" => &row.trial.participant;
+            "concept", "", "tom-com, tom or dev" => row.swept.concept.name();
+            "parameter", "", "cost of communication in presses (tom-com), threshold (tom), presses proposed (dev)"
+                => row.swept.parameter;
+            "presses", "presses", "human presses in the trial" => row.swept.count.presses;
+            "signals", "signals", "hypothetical signals; for dev, proposals" => row.swept.count.signals;
+            "related", "errors", "belief related" => row.swept.count.related;
+            "prevented", "errors", "belief related errors that the signals would have prevented"
+                => row.swept.count.prevented;
+            "outside", "presses", "human presses outside of false belief episodes" => row.swept.count.outside;
+            "false_presses", "presses", "human presses with a useless signal right before them"
+                => row.swept.count.false_presses;
+            "false_inside", "signals", "useless signals during a false belief episode"
+                => row.swept.count.false_inside;
+            "harmless", "signals", "signals about a false belief that led to no error; empty where such beliefs are \
+                not known, as with people" => row.swept.count.harmless;
+            "contents", "contents", "as signals; for dev, proposed presses" => row.swept.count.contents;
+            "useless", "signals", "signals that are not the first about a false belief with errors to follow"
+                => row.swept.count.useless;
+            "beliefs_from", "", "as in trials: recorded, consensus or raters"
+                => row.trial.beliefs.as_ref().map(|beliefs| beliefs.basis.name());
+            "lead_s", "s", "mean time from a useful signal to the first error that it would have prevented; empty \
+                without useful signals, and for dev"
+                => row.swept.count.lead_s().filter(|_| row.swept.concept != ConceptName::Dev);
+        }
     }
 }
 
@@ -213,7 +172,6 @@ impl GazeRun {
     }
 }
 
-/// Row of the table of gaze: a gaze run with its recording.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRow<'a> {
     pub recording: &'a str,
@@ -225,34 +183,22 @@ pub struct GazeRow<'a> {
 impl CsvRow for GazeRow<'_> {
     const TABLE: CsvTable = CsvTable::Gaze;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let time = "time of the run's first sample on the trial's clock";
-        vec![
-            Self::column("recording", "", "as in trials", |row| row.recording.into()),
-            Self::column("time_s", "s", time, |row| rounded(row.time_s).into()),
-            Self::column("duration_s", "s", "time from the first to the last sample of the run", |row| {
-                rounded(row.run.last.secs_since(row.run.began)).into()
-            }),
-            Self::column("location", "", "location at the gaze point; empty: none, or unusable samples", |row| {
-                row.run.location.map(|location| &row.kitchen.location(location).name).into()
-            }),
-            Self::column("x", "width of the display", "mean horizontal gaze position, from the left", |row| {
-                row.run.mean(0).into()
-            }),
-            Self::column("y", "height of the display", "mean vertical gaze position, from the top", |row| {
-                row.run.mean(1).into()
-            }),
-            Self::column("confidence", "0 to 1", "mean confidence that the eye tracker reported", |row| {
-                row.run.mean(2).into()
-            }),
-            Self::column("samples", "samples", "number of samples in the run; events.jsonl has every sample", |row| {
-                row.run.samples.into()
-            }),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "as in trials" => row.recording;
+            "time_s", "s", "time of the run's first sample on the trial's clock" => rounded(row.time_s);
+            "duration_s", "s", "time from the first to the last sample of the run"
+                => rounded(row.run.last.secs_since(row.run.began));
+            "location", "", "location at the gaze point; empty: none, or unusable samples"
+                => row.run.location.map(|location| &row.kitchen.location(location).name);
+            "x", "width of the display", "mean horizontal gaze position, from the left" => row.run.mean(0);
+            "y", "height of the display", "mean vertical gaze position, from the top" => row.run.mean(1);
+            "confidence", "0 to 1", "mean confidence that the eye tracker reported" => row.run.mean(2);
+            "samples", "samples", "number of samples in the run; events.jsonl has every sample" => row.run.samples;
+        }
     }
 }
 
-/// Row of the table of beliefs: estimated and recorded belief about one state aspect before a press of the human.
 #[derive(Clone, Copy, Debug)]
 pub struct BeliefRow<'a> {
     pub recording: &'a str,
@@ -266,35 +212,22 @@ pub struct BeliefRow<'a> {
 impl CsvRow for BeliefRow<'_> {
     const TABLE: CsvTable = CsvTable::Beliefs;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let seq = "log number of the human press that follows, as in actions";
-        let believed = "probability of the true value in a simulated participant's belief";
-        vec![
-            Self::column("recording", "", "as in trials", |row| row.recording.into()),
-            Self::column("seq", "", seq, |row| row.seq.into()),
-            Self::column("aspect", "", "state aspect: a location's content, or a dish's recipe", |row| {
-                (&row.estimate.aspect).into()
-            }),
-            Self::column("truth", "", "true value of the aspect", |row| row.truth.into()),
-            Self::column("estimate", "", "most probable value in the estimated belief", |row| {
-                (&row.estimate.believes).into()
-            }),
-            Self::column(
-                "estimate_p_truth",
-                "probability",
-                "probability of the true value in the estimated belief",
-                |row| row.estimate.p_truth.into(),
-            ),
-            Self::column(
-                "estimate_precision",
-                "",
-                "precision of the estimate: sum of the Dirichlet parameters",
-                |row| row.estimate.precision.into(),
-            ),
-            Self::column("believed", "", "most probable value in a simulated participant's belief", |row| {
-                row.believed.map(|own| &own.believes).into()
-            }),
-            Self::column("believed_p_truth", "probability", believed, |row| row.believed.map(|own| own.p_truth).into()),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "as in trials" => row.recording;
+            "seq", "", "log number of the human press that follows, as in actions" => row.seq;
+            "aspect", "", "state aspect: a location's content, or a dish's recipe" => &row.estimate.aspect;
+            "truth", "", "true value of the aspect" => row.truth;
+            "estimate", "", "most probable value in the estimated belief" => &row.estimate.believes;
+            "estimate_p_truth", "probability", "probability of the true value in the estimated belief"
+                => row.estimate.p_truth;
+            "estimate_precision", "", "precision of the estimate: sum of the Dirichlet parameters"
+                => row.estimate.precision;
+            "believed", "", "most probable value in a simulated participant's belief"
+                => row.believed.map(|own| &own.believes);
+            "believed_p_truth", "probability", "probability of the true value in a simulated participant's belief"
+                => row.believed.map(|own| own.p_truth);
+
+        }
     }
 }

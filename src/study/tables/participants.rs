@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::column::{CsvRow, CsvTable, TableCell, TableColumn, columns};
 use crate::effect::{StudyMeasure, TrialPair, pairs};
 use crate::pass::reading::RecordedConsent;
-use crate::tables::trials::{HEADLINE, measures};
+use crate::tables::trials::{HEADLINE, MEASURES};
 use crate::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 use tomcom_core::base::text::GUARDED;
 use tomcom_core::base::time::SessionTime;
@@ -19,8 +19,7 @@ use tomcom_session::{Event, SessionSpec, TimestampedEvent};
 #[derive(Clone, Copy, Debug)]
 pub struct ParticipantRow<'a>(&'a [TrialStatistics], Option<&'a RecordedConsent>);
 
-/// Participants of these trials, which must be ordered by participant, with their consents, which must be ordered by
-/// time.
+/// `trials`: ordered by participant; `consents`: by time.
 pub fn participants<'a>(
     trials: &'a [TrialStatistics],
     consents: &'a [RecordedConsent],
@@ -31,8 +30,7 @@ pub fn participants<'a>(
 }
 
 impl ParticipantRow<'_> {
-    /// The participant's compared pair of trials for a measure; `None` unless two trials of the participant count and
-    /// have the measure.
+    /// `None` unless two trials of the participant count and have the measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
         pairs(self.0, measure).pairs.pop()
     }
@@ -41,45 +39,41 @@ impl ParticipantRow<'_> {
 impl CsvRow for ParticipantRow<'_> {
     const TABLE: CsvTable = CsvTable::Participants;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let code = "participant code; prefixed by the seed if several seeds are analysed together";
-        let kind = "kind of participant: simulated, keyboard (at the console) or display (at the wall display)";
-        let group = "starting group in the study plan; AB: conditions in the plan's order";
-        let second = "whether the second trial is the assisted one; empty without a pair of trials that count";
-        let mut columns: Vec<CsvColumn<Self>> = vec![
-            Self::column("participant", "", code, |row| (&row.0[0].participant).into()),
-            Self::column("kind", "", kind, |row| row.0[0].kind_name().into()),
-            Self::column("group", "", group, |row| row.0[0].group.as_ref().into()),
-            Self::column("trials", "trials", "number of recorded trials", |row| (row.0.len() as u64).into()),
-            Self::column("trials_counted", "trials", "number of trials that are not left out", |row| {
-                (row.0.iter().filter(|trial| trial.counts()).count() as u64).into()
-            }),
-            Self::column("assisted_second", "", second, |row| {
-                row.pair(HEADLINE).map(|pair| pair.assisted_second).into()
-            }),
-        ];
-        for measure in measures() {
+    fn columns() -> Vec<TableColumn<Self>> {
+        let mut columns: Vec<TableColumn<Self>> = columns! { |row: Self|
+            "participant", "", "participant code; prefixed by the seed if several seeds are analysed together"
+                => &row.0[0].participant;
+            "kind", "", "kind of participant: simulated, keyboard (at the console) or display (at the wall display)"
+                => row.0[0].kind_name();
+            "group", "", "starting group in the study plan; AB: conditions in the plan's order"
+                => row.0[0].group.as_ref();
+            "trials", "trials", "number of recorded trials" => row.0.len() as u64;
+            "trials_counted", "trials", "number of trials that are not left out"
+                => row.0.iter().filter(|trial| trial.counts()).count() as u64;
+            "assisted_second", "", "whether the second trial is the assisted one; empty without a pair of trials that \
+                count" => row.pair(HEADLINE).map(|pair| pair.assisted_second);
+        };
+        for measure in MEASURES {
             for (index, period) in ["first", "second"].into_iter().enumerate() {
                 let name = format!("{}_{}", measure.name, index + 1);
                 let meaning = measure.meaning_in.replace("{}", period);
-                columns.push(Self::column(name, measure.unit, meaning, move |row| {
+                columns.push(TableColumn::new(name, measure.unit, meaning, move |row: &Self| {
                     row.pair(measure).map(|pair| pair.values[index]).into()
                 }));
             }
         }
-        let on = "where consent was given: held on the display, or confirmed by the wizard on the console; empty: not recorded";
-        let at = "wall clock time (UTC) at which the recording that begins with the consent began";
-        let digest = "digest of the text that was agreed to, as the recording has it beside the text";
-        columns.extend([
-            Self::column("consent_on", "", on, |row| row.1.map(RecordedConsent::place).into()),
-            Self::column("consent_at", "", at, |row| row.1.and_then(|consent| consent.started.as_ref()).into()),
-            Self::column("consent_digest", "", digest, |row| row.1.map(|consent| &consent.digest).into()),
-        ]);
+        columns.extend(columns! { |row: Self|
+            "consent_on", "", "where consent was given: held on the display, or confirmed by the wizard on the \
+                console; empty: not recorded" => row.1.map(RecordedConsent::place);
+            "consent_at", "", "wall clock time (UTC) at which the recording that begins with the consent began"
+                => row.1.and_then(|consent| consent.started.as_ref());
+            "consent_digest", "", "digest of the text that was agreed to, as the recording has it beside the text"
+                => row.1.map(|consent| &consent.digest);
+        });
         columns
     }
 }
 
-/// Row of the table of questionnaires: an answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]
 pub struct AnswerRow<'a> {
     trial: &'a TrialStatistics,
@@ -93,46 +87,33 @@ pub fn answers(trial: &TrialStatistics) -> impl Iterator<Item = AnswerRow<'_>> {
 impl CsvRow for AnswerRow<'_> {
     const TABLE: CsvTable = CsvTable::Questionnaires;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let given = format!(
-            "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, words, \
-             or ids of options separated by spaces; empty: skipped; {GUARDED}"
-        );
-        let score = "score of the whole questionnaire at this occasion, the same at all its items; empty: it has none, or an item \
-                     was skipped";
-        vec![
-            Self::column("recording", "", "as in trials", |row| (&row.trial.recording).into()),
-            Self::column("participant", "", "as in participants", |row| (&row.trial.participant).into()),
-            Self::column(
-                "condition",
-                "",
-                "condition of the trial before it, or of the first trial if it was asked before that",
-                |row| row.trial.condition.name().into(),
-            ),
-            Self::column("questionnaire", "", "name", |row| (&row.answer.questionnaire).into()),
-            Self::column("item", "", "id of the item", |row| (&row.answer.item).into()),
-            Self::column("about", "", "construct that the item measures", |row| row.answer.about.as_ref().into()),
-            Self::column("reversed", "", "whether agreement counts against the construct", |row| {
-                row.answer.reversed.into()
-            }),
-            Self::column("answer", "", given, |row| match &row.answer.answer {
-                Some(AnswerValue::Number(number)) => (*number).into(),
-                Some(answer) => answer.cell().into(),
-                None => CsvCell::Unknown,
-            }),
-            Self::column("points", "points", "number of points of the scale; empty: no scale", |row| {
-                row.answer.points.into()
-            }),
-            Self::column("kind", "", "scale, choice, number, text or slider", |row| row.answer.kind.name().into()),
-            Self::column("asked", "", "before the first trial, or after the trial", |row| {
-                if row.answer.before { "before" } else { "after" }.into()
-            }),
-            Self::column("score", "", score, |row| row.answer.score.into()),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "as in trials" => &row.trial.recording;
+            "participant", "", "as in participants" => &row.trial.participant;
+            "condition", "", "condition of the trial before it, or of the first trial if it was asked before that"
+                => row.trial.condition.name();
+            "questionnaire", "", "name" => &row.answer.questionnaire;
+            "item", "", "id of the item" => &row.answer.item;
+            "about", "", "construct that the item measures" => row.answer.about.as_ref();
+            "reversed", "", "whether agreement counts against the construct" => row.answer.reversed;
+            "answer", "", format!(
+                "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, \
+                words, or ids of options separated by spaces; empty: skipped; {GUARDED}"
+            ) => row.answer.answer.as_ref().map(|answer| match answer {
+                AnswerValue::Number(number) => TableCell::Whole(*number),
+                answer => answer.cell().into(),
+            });
+            "points", "points", "number of points of the scale; empty: no scale" => row.answer.points;
+            "kind", "", "scale, choice, number, text or slider" => row.answer.kind.name();
+            "asked", "", "before the first trial, or after the trial"
+                => (if row.answer.before { "before" } else { "after" });
+            "score", "", "score of the whole questionnaire at this occasion, the same at all its items; empty: it has none, or an \
+                item was skipped" => row.answer.score;
+        }
     }
 }
 
-/// Row of the table of tutorials: a question of a tutorial with the participant's answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TutorialQuestionRow {
     pub recording: String,
@@ -240,22 +221,20 @@ impl<'a> TutorialAnswerCollector<'a> {
 impl CsvRow for TutorialQuestionRow {
     const TABLE: CsvTable = CsvTable::Tutorial;
 
-    fn columns() -> Vec<CsvColumn<Self>> {
-        let right = "whether the last answer was right; empty: not answered";
-        let seconds = "from the question's first appearance to the right answer";
-        vec![
-            Self::column("recording", "", "name of the recording", |row| (&row.recording).into()),
-            Self::column("participant", "", "as in participants", |row| (&row.participant).into()),
-            Self::column("tutorial", "", "name of the tutorial", |row| (&row.tutorial).into()),
-            Self::column("step", "", "id of the step", |row| (&row.step).into()),
-            Self::column("question", "", "as the participant read it", |row| (&row.question).into()),
-            Self::column("first_answer", "", format!("the first choice; empty: not answered; {GUARDED}"), |row| {
-                row.first_answer.as_ref().into()
-            }),
-            Self::column("right", "", right, |row| row.right.into()),
-            Self::column("tries", "", "number of answers, the right one included", |row| row.tries.into()),
-            Self::column("seconds", "s", seconds, |row| row.seconds.into()),
-        ]
+    fn columns() -> Vec<TableColumn<Self>> {
+        columns! { |row: Self|
+            "recording", "", "name of the recording" => &row.recording;
+            "participant", "", "as in participants" => &row.participant;
+            "tutorial", "", "name of the tutorial" => &row.tutorial;
+            "step", "", "id of the step" => &row.step;
+            "question", "", "as the participant read it" => &row.question;
+            "first_answer", "", format!("the first choice; empty: not answered; {GUARDED}")
+                => row.first_answer.as_ref();
+            "right", "", "whether the last answer was right; empty: not answered" => row.right;
+            "tries", "", "number of answers, the right one included" => row.tries;
+            "seconds", "s", "from the question's first appearance to the right answer" => row.seconds;
+
+        }
     }
 }
 

@@ -6,8 +6,7 @@ use tomcom_core::measures::raters::{AgreementTable, ErrorCauseCode, ErrorCauseKi
 use tomcom_core::measures::raters::{RaterConsensus, unsettled};
 use tomcom_session::log::rater_codes::{read_all, write};
 use tomcom_session::log::{RecordingError, RecordingLock, consensus_file};
-use tomcom_study::code_exchange::{self, export};
-use tomcom_study::codes::{CodedRecording, InterRaterSummary, describe};
+use tomcom_study::codes::{self, CodedRecording, InterRaterSummary, describe, export};
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::pass::reading::{self, AnalysisScope};
 
@@ -95,7 +94,7 @@ fn the_two_raters_who_coded_most_errors_are_taken_and_none_by_name() {
 
 /// Imports a table whose new raters are meant.
 fn import(coded: &mut [CodedRecording], table: &Path) -> Result<u64, RecordingError> {
-    code_exchange::read(coded, table)?.import(coded)
+    codes::read(coded, table)?.import(coded)
 }
 
 /// A row of a table that is wrong is named with what would be right, and nothing of the table is taken over.
@@ -386,7 +385,7 @@ fn new_raters_in_a_table_are_known_before_it_is_imported() {
     assert_eq!(import(&mut coded, &table).expect("imported"), 1);
     coded = vec![CodedRecording::open(&recording).expect("a recording")];
     put(&["R1", "R2", "R1+R2"]);
-    let codes = code_exchange::read(&coded, &table).expect("readable");
+    let codes = codes::read(&coded, &table).expect("readable");
     assert_eq!((codes.new_raters.join(" "), codes.known_raters.join(" ")), ("R2".to_string(), "R1".to_string()));
     codes.import(&mut coded).expect("imported");
     assert!(codes.changed.is_empty(), "{:?}", codes.changed);
@@ -394,14 +393,14 @@ fn new_raters_in_a_table_are_known_before_it_is_imported() {
     let rows = [("R1", "race"), ("R1+R2", "slip"), ("R2", "slip")]
         .map(|(rater, cause)| format!("{name},{rater},{press},{cause},\n"));
     fs::write(&table, format!("recording,rater,press,cause,aspect\n{}", rows.concat())).expect("written");
-    let codes = code_exchange::read(&coded, &table).expect("readable");
+    let codes = codes::read(&coded, &table).expect("readable");
     assert_eq!(codes.changed, [("R1".to_string(), 1)].into());
     // A file that is no export is not replaced, and the message is about that file.
     fs::write(&table, "mine").expect("written");
     let told = export(&coded, &table).expect_err("refused").to_string();
     assert!(told.contains("codes.csv: cannot be written: a file is there that is not an export"), "{told}");
     put(&["r2"]);
-    let told = code_exchange::read(&[CodedRecording::open(&recording).expect("a recording")], &table);
+    let told = codes::read(&[CodedRecording::open(&recording).expect("a recording")], &table);
     let told = told.expect_err("refused").to_string();
     assert!(told.contains("codes.csv:2:") && told.contains("the rater \"r2\", beside the rater R2"), "{told}");
 }

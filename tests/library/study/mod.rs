@@ -104,7 +104,7 @@ fn with_details(trials: &[TrialStatistics], details: DetailTotals) -> StudySumma
 
 /// The report with these figures, beside all tables.
 fn page(figures: &StudySummary, trials: &[TrialStatistics]) -> String {
-    tomcom_study::report::page(figures, trials, &RecordingFacts::default(), &CsvTable::ALL)
+    tomcom_study::report::page(figures, trials, &RecordingFacts::default(), CsvTable::ALL)
 }
 
 /// Participants with errors in the first and in the second trial; those of the first list are assisted in the second one.

@@ -198,7 +198,7 @@ mod differences {
     use rand::RngExt;
     use tomcom_core::base::rng::stream;
     use tomcom_core::measures::median;
-    use tomcom_study::pairwise_differences::PairwiseDifferences;
+    use tomcom_study::statistics::PairwiseDifferences;
 
     #[test]
     fn the_order_is_that_of_the_sorted_list_of_all_differences() {
@@ -221,7 +221,7 @@ mod differences {
 }
 
 mod ticks {
-    use tomcom_study::svg::PlotAxis;
+    use tomcom_study::charts::PlotAxis;
 
     fn labels(low: f64, high: f64) -> Vec<String> {
         PlotAxis::between("", low, high).ticks.into_iter().map(|(_, label)| label).collect()
@@ -237,7 +237,7 @@ mod ticks {
 }
 
 mod cells {
-    use tomcom_study::analysis::bids::tsv::line;
+    use tomcom_study::analysis::bids::line;
 
     #[test]
     fn what_somebody_typed_is_one_cell_that_no_spreadsheet_computes() {

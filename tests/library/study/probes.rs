@@ -19,7 +19,8 @@ use tomcom_study::analysis::probe_record::{
 use tomcom_study::column::CsvRow;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::report;
-use tomcom_study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
+use tomcom_study::tables::probe_table::{ProbeRow, probes};
+use tomcom_study::tables::trials::PROBES_WRONG;
 use tomcom_study::trial_statistics::DetailTotals;
 use tomcom_study::trial_statistics::TrialDetails;
 

@@ -13,7 +13,7 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_study::analysis::offer_summary::TimedOffer;
 use tomcom_study::codes::CodedRecording;
-use tomcom_study::column::{CsvCell, CsvRow, CsvTable};
+use tomcom_study::column::{TableCell, CsvRow, CsvTable};
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::kept_cost::KeptCost;
@@ -133,7 +133,7 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
     let columns = TrialStatistics::columns();
     let cell = |name: &str| columns.iter().find(|column| column.name == name).expect("a column").cell(&trial);
     for unknown in ["contacts", "peak_force_n", "reduced_s", "given_up_no_click"] {
-        assert_eq!(cell(unknown), CsvCell::Unknown, "{unknown}");
+        assert_eq!(cell(unknown), TableCell::Unknown, "{unknown}");
     }
     assert_eq!(["ended", "arm", "given_up_skipped"].map(cell), ["presses".into(), "timed".into(), 1u64.into()]);
 }
@@ -166,7 +166,7 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     let mut details = DetailTotals::default();
     let swept = vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 1.0, count }];
     details.add(&trials[0], TrialDetails { swept, ..TrialDetails::default() });
-    let page = report(&trials, details, &CsvTable::ALL);
+    let page = report(&trials, details, CsvTable::ALL);
     assert!(page.contains("4 after the set number of presses, 1 after the set time, 1 early by the wizard."));
     assert!(page.contains("timed in 5 trials and simulated with contact forces in 1 trial; the statistics pool them."));
     assert!(page.contains("the hypothetical signals of each concept were recomputed"));

@@ -5,8 +5,8 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
-use tomcom_study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
-use tomcom_study::column::{DataDictionaryRow, columns, dictionary};
+use tomcom_study::column::{TableCell, TableColumn, CsvRow, CsvTable};
+use tomcom_study::column::{DataDictionaryRow, described, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
 use tomcom_study::frozen_plan::RecordedPlan;
 use tomcom_study::kept_cost::KeptCost;
@@ -18,7 +18,7 @@ use tomcom_study::tables::participants::TutorialSummary;
 use tomcom_study::tables::participants::participants;
 use tomcom_study::tables::participants::{AnswerRow, answers as answers_of};
 use tomcom_study::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
-use tomcom_study::tables::trials::{HEADLINE, measures};
+use tomcom_study::tables::trials::{HEADLINE, MEASURES};
 use tomcom_study::trial_statistics::TrialDetails;
 use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
@@ -108,7 +108,7 @@ fn pair() -> [TrialStatistics; 2] {
     [first, second]
 }
 
-fn cell<'a, Row: CsvRow>(row: &'a Row, name: &str) -> CsvCell<'a> {
+fn cell<'a, Row: CsvRow>(row: &'a Row, name: &str) -> TableCell<'a> {
     let columns = Row::columns();
     let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no column {name}"));
     column.cell(row)
@@ -118,7 +118,7 @@ fn cell<'a, Row: CsvRow>(row: &'a Row, name: &str) -> CsvCell<'a> {
 fn published_columns_keep_their_names_and_places() {
     for (table, published) in PUBLISHED {
         let published: Vec<&str> = published.split(' ').collect();
-        let columns = columns(table);
+        let columns = described(table);
         let names: Vec<&str> = columns.iter().map(|column| column.column.as_ref()).collect();
         assert!(names.len() >= published.len(), "{}: {names:?}", table.name());
         assert_eq!(names[..published.len()], published, "{}", table.name());
@@ -127,15 +127,15 @@ fn published_columns_keep_their_names_and_places() {
 
 #[test]
 fn columns_have_names_of_their_own_that_need_no_quotes() {
-    for table in CsvTable::ALL {
-        let columns = columns(table);
+    for &table in CsvTable::ALL {
+        let columns = described(table);
         let names: BTreeSet<&str> = columns.iter().map(|column| column.column.as_ref()).collect();
         assert_eq!(names.len(), columns.len(), "{}", table.name());
         let is_plain = |name: &&str| name.chars().all(|sign| matches!(sign, 'a'..='z' | '0'..='9' | '_'));
         assert_eq!(names.iter().find(|name| !is_plain(name)), None, "{}", table.name());
     }
     let described: BTreeSet<CsvTable> = dictionary().map(|row| row.table).collect();
-    assert_eq!(described, BTreeSet::from(CsvTable::ALL));
+    assert_eq!(described, CsvTable::ALL.iter().copied().collect());
 }
 
 /// A statistic that is compared is declared once, and is then a column of trials and two of participants.
@@ -145,18 +145,18 @@ fn statistics_stand_in_both_tables_with_the_same_values() {
         pair().map(|trial| TrialStatistics { probes: Some(one_right_answer(trial.condition).statistics()), ..trial });
     let rows: Vec<_> = participants(&trials, &[]).collect();
     let [participant] = &rows[..] else { panic!("one participant") };
-    assert_eq!(cell(participant, "assisted_second"), CsvCell::Flag(true));
-    assert_eq!(measures()[0], HEADLINE);
-    let names: BTreeSet<&str> = measures().iter().map(|measure| measure.name).collect();
-    assert_eq!(names.len(), measures().len());
-    for measure in measures() {
+    assert_eq!(cell(participant, "assisted_second"), TableCell::Flag(true));
+    assert_eq!(MEASURES[0], HEADLINE);
+    let names: BTreeSet<&str> = MEASURES.iter().map(|measure| measure.name).collect();
+    assert_eq!(names.len(), MEASURES.len());
+    for measure in MEASURES {
         let values = trials.each_ref().map(|trial| cell(trial, measure.name));
         assert_eq!(values.clone(), trials.each_ref().map(|trial| (measure.value)(trial).into()), "{}", measure.name);
         for (value, period) in values.into_iter().zip(1..) {
-            assert_ne!(value, CsvCell::Unknown, "{}", measure.name);
+            assert_ne!(value, TableCell::Unknown, "{}", measure.name);
             assert_eq!(cell(participant, &format!("{}_{period}", measure.name)), value, "{}", measure.name);
         }
-        let meanings = columns(CsvTable::Participants).into_iter().filter(|row| row.column.starts_with(measure.name));
+        let meanings = described(CsvTable::Participants).into_iter().filter(|row| row.column.starts_with(measure.name));
         let said: Vec<String> = meanings.map(|row| row.meaning.into_owned()).collect();
         assert!(said.iter().any(|text| text.contains("first")), "{said:?}");
         assert!(said.iter().all(|text| !text.contains("{}")), "{said:?}");
@@ -226,7 +226,7 @@ fn tables_are_written_as_they_are_declared() {
     let of_trials: Vec<String> = fields(&folder, CsvTable::Dictionary, "table");
     let of_trials = of_trials.iter().zip(described).filter(|(table, _)| *table == "trials").map(|(_, column)| column);
     let heads: Vec<String> =
-        TrialStatistics::columns().into_iter().map(|CsvColumn { name, .. }| name.into_owned()).collect();
+        TrialStatistics::columns().into_iter().map(|TableColumn { name, .. }| name.into_owned()).collect();
     assert_eq!(of_trials.collect::<Vec<_>>(), heads);
 }
 
@@ -358,7 +358,7 @@ fn a_row_tells_the_first_answer_the_tries_and_the_time_to_the_right_one() {
         ]
     );
     let unanswered = rows[2].cells();
-    assert_eq!(unanswered[5..7], [CsvCell::Unknown, CsvCell::Unknown], "a question that was left out is not wrong");
+    assert_eq!(unanswered[5..7], [TableCell::Unknown, TableCell::Unknown], "a question that was left out is not wrong");
     let summary = TutorialSummary::from_answers(&rows);
     assert_eq!(summary, Some(TutorialSummary { participants: 1, questions: 2, right_at_once: 1 }));
 }

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
-use crate::analysis::bids::events;
-use crate::analysis::bids::tsv::{self, BidsColumn, BidsFile, YES_NO, or_nothing, seconds, yes};
+use crate::analysis::bids::{BidsFile, NOTHING, YES_NO, described, events, line, row, seconds};
+use crate::column::{Levels, TableColumn, columns};
 use tomcom_core::base::text::GUARDED;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::event::TrialEndReason;
@@ -13,48 +13,38 @@ use tomcom_session::plan::{AnswerFormat, PlanPosition, Questionnaire, Questionna
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::{LogHeader, Session};
 
-/// Name of the file that describes the BIDS data set.
 pub(crate) const DESCRIPTION_NAME: &str = "dataset_description.json";
-pub(crate) const PARTICIPANTS_NAME: &str = "participants.tsv";
+pub(crate) const PARTICIPANTS: &str = "participants";
 pub(crate) const CODE_COLUMN: &str = "code";
-/// Program that the description of the BIDS data set names as its generator.
 pub(crate) const PROGRAM_NAME: &str = "tomcom";
 /// Version of BIDS that the data set follows; BIDS has eye-tracking data since 1.10.
 const BIDS_VERSION: &str = "1.10.1";
 
-const KINDS: &[(&str, &str)] = &[
+const KINDS: Levels = &[
     ("simulated", "A simulated participant"),
     ("keyboard", "A person at the keyboard of the console"),
     ("display", "A person at the participant's display"),
 ];
 
-const CONSENTS: &[(&str, &str)] = &[
+const CONSENTS: Levels = &[
     ("console", "Told to the wizard, who confirmed it on the console"),
     ("display", "The participant held a button on the display"),
 ];
 
-const PARTICIPANT_COLUMNS: [BidsColumn<BidsParticipant>; 8] = [
-    BidsColumn::new("participant_id", "The participant: sub- and the letters and digits of the code", |row| {
-        format!("sub-{}", row.label)
-    }),
-    BidsColumn::new(CODE_COLUMN, "The participant's code in the recordings", |row| row.code.clone()),
-    BidsColumn::of_levels("kind", KINDS, "Who took part", |row| row.kind.clone()),
-    BidsColumn::new("group", "Starting group of the plan: the order of conditions", |row| {
-        or_nothing(row.group.as_deref())
-    }),
-    BidsColumn::new("recordings", "Number of recordings", |row| row.recordings.to_string()),
-    BidsColumn::of_levels("consent_on", CONSENTS, "Where consent was given", |row| {
-        or_nothing(row.consent[0].as_deref())
-    }),
-    BidsColumn::new(
-        "consent_at",
-        "Wall clock time (UTC) at which the recording that begins with the consent began",
-        |row| or_nothing(row.consent[1].as_deref()),
-    ),
-    BidsColumn::new("consent_digest", "Digest of the text that was agreed to", |row| {
-        or_nothing(row.consent[2].as_deref())
-    }),
-];
+fn participant_columns() -> Vec<TableColumn<BidsParticipant>> {
+    columns! { |row: BidsParticipant|
+        "participant_id", "", "The participant: sub- and the letters and digits of the code"
+            => format!("sub-{}", row.label);
+        CODE_COLUMN, "", "The participant's code in the recordings" => &row.code;
+        "kind", KINDS, "Who took part" => &row.kind;
+        "group", "", "Starting group of the plan: the order of conditions" => row.group.as_deref();
+        "recordings", "", "Number of recordings" => row.recordings as u64;
+        "consent_on", CONSENTS, "Where consent was given" => row.consent[0].as_deref();
+        "consent_at", "", "Wall clock time (UTC) at which the recording that begins with the consent began"
+            => row.consent[1].as_deref();
+        "consent_digest", "", "Digest of the text that was agreed to" => row.consent[2].as_deref();
+    }
+}
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BidsParticipant {
@@ -67,8 +57,7 @@ pub struct BidsParticipant {
     pub consent: [Option<String>; 3],
 }
 
-/// The files at the root of the data set: its description, the table of participants, a README. `plans`: the names of
-/// the studies' plans.
+/// The files at the root of the data set. `plans`: the names of the studies' plans.
 pub(crate) fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_words: bool) -> Vec<BidsFile> {
     let name = if plans.is_empty() { "tomcom recordings".to_string() } else { plans.join(", ") };
     let description = json!({
@@ -81,13 +70,11 @@ pub(crate) fn dataset_files(plans: &[String], participants: &[BidsParticipant], 
             "Description": "tomcom export --bids",
         }],
     });
-    let rows: String = participants.iter().map(|one| tsv::row(&PARTICIPANT_COLUMNS, one)).collect();
-    vec![
-        BidsFile::json(DESCRIPTION_NAME, &description),
-        BidsFile::new(PARTICIPANTS_NAME, tsv::line(tsv::names(&PARTICIPANT_COLUMNS)) + &rows),
-        BidsFile::json("participants.json", &tsv::described(&PARTICIPANT_COLUMNS).into()),
-        BidsFile::new("README.md", readme(&name, participants.len(), with_words)),
-    ]
+    let columns = participant_columns();
+    let rows: String = participants.iter().map(|one| row(&columns, one)).collect();
+    let [table, about] = BidsFile::table(PARTICIPANTS, &columns, &rows, described(&columns));
+    let readme = BidsFile::new("README.md", readme(&name, participants.len(), with_words));
+    vec![BidsFile::json(DESCRIPTION_NAME, &description), table, about, readme]
 }
 
 fn readme(name: &str, participants: usize, with_words: bool) -> String {
@@ -116,12 +103,12 @@ fn readme(name: &str, participants: usize, with_words: bool) -> String {
     )
 }
 
-const CONDITIONS: &[(&str, &str)] = &[
+const CONDITIONS: Levels = &[
     ("none", "Nobody sent signals"),
     ("wizard", "The wizard could send signals"),
     ("assistant", "The assistant sent signals by itself"),
 ];
-const ENDS: &[(&str, &str)] = &[
+const ENDS: Levels = &[
     ("presses", "The set number of presses was reached"),
     ("time", "The set time was reached"),
     ("orders", "The set number of orders was served"),
@@ -129,17 +116,13 @@ const ENDS: &[(&str, &str)] = &[
     ("aborted", "It was aborted and does not count"),
 ];
 
-/// A recording that was read to its end, in the table of sessions.
 pub(crate) struct BidsSession<'a> {
-    /// BIDS label of the session.
     pub label: &'a str,
-    /// Name of the recording's folder.
     pub recording: &'a str,
     pub header: &'a LogHeader,
     pub session: &'a Session,
     pub ended: Option<TrialEndReason>,
     pub is_complete: bool,
-    /// Whether analyses include the trial.
     pub counts: bool,
 }
 
@@ -148,77 +131,46 @@ impl BidsSession<'_> {
         self.session.spec.step.as_ref()
     }
 
-    /// The line of the session in the table of sessions.
     pub(crate) fn line(&self) -> String {
-        tsv::row(&session_columns(), self)
+        row(&session_columns(), self)
     }
 }
 
-fn session_columns<'a>() -> [BidsColumn<BidsSession<'a>>; 21] {
-    [
-        BidsColumn::new("session_id", "The recording's session", |row| format!("ses-{}", row.label)),
-        BidsColumn::new("acq_time", "When the recording began (UTC); n/a: simulated", |row| {
-            or_nothing(row.header.started.clone())
-        }),
-        BidsColumn::new("recording", "Name of the recording's folder", |row| row.recording.to_string()),
-        BidsColumn::new("kitchen", "Name of the kitchen", |row| row.session.kitchen.name.clone()),
-        BidsColumn::of_levels("condition", CONDITIONS, "Who could send signals", |row| {
-            row.session.spec.trial.condition.name().to_string()
-        }),
-        BidsColumn::new("concept", "Communication concept of the assistant", |row| {
-            row.session.spec.assistant.concept.name().to_string()
-        }),
-        BidsColumn::new(
-            "study_arm",
-            "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
-            |row| row.session.study_arm().name().to_string(),
-        ),
-        BidsColumn::new(
-            "planned_arm",
-            "Arm under which the trial counts: that of the plan, without a plan that of the settings",
-            |row| row.session.planned_arm().name().to_string(),
-        ),
-        BidsColumn::of_levels("practice", YES_NO, "Whether it is practice, which no analysis takes", |row| {
-            yes(row.step().is_some_and(|step| step.period.is_none()))
-        }),
-        BidsColumn::new("period", "Number of the trial in the plan, from 1", |row| {
-            or_nothing(row.step().and_then(|step| step.period))
-        }),
-        BidsColumn::new("attempt", "Number of the attempt, from 1", |row| {
-            or_nothing(row.step().map(|step| step.attempt))
-        }),
-        BidsColumn::new("gaze", "Where gaze came from", |row| events::name(&row.session.spec.participant.gaze)),
-        BidsColumn::new("arm", "Kind of the robot's arm", |row| events::name(&row.session.spec.robot.arm)),
-        BidsColumn::of_unit("trial_time", "s", "Length of the trial by its own clock", |row| {
-            or_nothing(
-                Some(row.session.trial_clock(row.session.time)).filter(|clock| *clock > SessionTime::ZERO).map(seconds),
-            )
-        }),
-        BidsColumn::of_levels("ended", ENDS, "Why the trial ended; n/a: it did not", |row| {
-            or_nothing(row.ended.map(TrialEndReason::name))
-        }),
-        BidsColumn::of_levels("complete", YES_NO, "Whether the recording has its end", |row| yes(row.is_complete)),
-        BidsColumn::of_levels(
-            "excluded",
-            YES_NO,
-            "Whether the trial was aborted or is left out of the analysis; the reason is in the recording",
-            |row| yes(!row.counts),
-        ),
-        BidsColumn::new("seed", "Seed of all random numbers", |row| row.session.seed().to_string()),
-        BidsColumn::new("trial", "Index of the trial: with the same seed, another index gives other orders", |row| {
-            row.header.trial.to_string()
-        }),
-        BidsColumn::new("log_version", "Version of the log's format", |row| row.header.version.to_string()),
-        BidsColumn::new("program", "Version of tomcom that made the recording", |row| row.header.program.clone()),
-    ]
+fn session_columns<'a>() -> Vec<TableColumn<BidsSession<'a>>> {
+    columns! { |row: BidsSession<'a>|
+        "session_id", "", "The recording's session" => format!("ses-{}", row.label);
+        "acq_time", "", "When the recording began (UTC); n/a: simulated" => row.header.started.as_ref();
+        "recording", "", "Name of the recording's folder" => row.recording;
+        "kitchen", "", "Name of the kitchen" => &row.session.kitchen.name;
+        "condition", CONDITIONS, "Who could send signals" => row.session.spec.trial.condition.name();
+        "concept", "", "Communication concept of the assistant" => row.session.spec.assistant.concept.name();
+        "study_arm", "", "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), \
+            tom-com, tom or dev" => row.session.study_arm().name();
+        "planned_arm", "", "Arm under which the trial counts: that of the plan, without a plan that of the settings"
+            => row.session.planned_arm().name();
+        "practice", YES_NO, "Whether it is practice, which no analysis takes"
+            => row.step().is_some_and(|step| step.period.is_none());
+        "period", "", "Number of the trial in the plan, from 1" => row.step().and_then(|step| step.period);
+        "attempt", "", "Number of the attempt, from 1" => row.step().map(|step| step.attempt);
+        "gaze", "", "Where gaze came from" => events::name(&row.session.spec.participant.gaze);
+        "arm", "", "Kind of the robot's arm" => events::name(&row.session.spec.robot.arm);
+        "trial_time", "s", "Length of the trial by its own clock"
+            => Some(row.session.trial_clock(row.session.time)).filter(|clock| *clock > SessionTime::ZERO).map(seconds);
+        "ended", ENDS, "Why the trial ended; n/a: it did not" => row.ended.map(TrialEndReason::name);
+        "complete", YES_NO, "Whether the recording has its end" => row.is_complete;
+        "excluded", YES_NO, "Whether the trial was aborted or is left out of the analysis; the reason is in the \
+            recording" => !row.counts;
+        "seed", "", "Seed of all random numbers" => row.session.seed();
+        "trial", "", "Index of the trial: with the same seed, another index gives other orders" => row.header.trial;
+        "log_version", "", "Version of the log's format" => row.header.version;
+        "program", "", "Version of tomcom that made the recording" => &row.header.program;
+    }
 }
 
 pub(crate) fn sessions_files(participant: &str, rows: &[String]) -> [BidsFile; 2] {
     let path = format!("sub-{participant}/sub-{participant}_sessions");
     let columns = session_columns();
-    let text = tsv::line(tsv::names(&columns)) + &rows.concat();
-    let about = tsv::described(&columns);
-    [BidsFile::new(format!("{path}.tsv"), text), BidsFile::json(format!("{path}.json"), &about.into())]
+    BidsFile::table(&path, &columns, &rows.concat(), described(&columns))
 }
 
 /// The letters and digits of a name; a BIDS label may contain nothing else.
@@ -227,8 +179,7 @@ pub(crate) fn letters_and_digits(name: &str) -> String {
     if kept.is_empty() { "x".to_string() } else { kept }
 }
 
-/// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be the same folder on some
-/// disks.
+/// Labels that differ only in capitals count as alike, since they would be the same folder on some disks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BidsLabelMap(BTreeMap<String, String>);
 
@@ -269,8 +220,7 @@ fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> String {
     tried(number)
 }
 
-/// The session label of a recording of a participant: its place in the study plan, or else its number. `taken` are the
-/// session labels of the participant's earlier recordings.
+/// The place in the study plan, or else the number. `taken`: labels of the participant's earlier recordings.
 pub fn session_label(step: Option<&PlanPosition>, taken: &mut BTreeSet<String>) -> String {
     let attempt = |step: &PlanPosition| match step.attempt {
         0 | 1 => String::new(),
@@ -294,13 +244,11 @@ struct FilledIn {
     answers: BTreeMap<String, AnswerValue>,
 }
 
-/// All questionnaires that participants filled in, in the order of the recordings, for BIDS phenotype tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuestionnairePhenotypes(Vec<FilledIn>);
 
 impl QuestionnairePhenotypes {
-    /// Adds the questionnaire that the participant has just confirmed. `participant`, `session_label`: BIDS labels of
-    /// the participant and the session.
+    /// Adds the questionnaire that was just confirmed. `participant`, `session_label`: BIDS labels.
     pub fn note(&mut self, participant: &str, session_label: &str, session: &Session) {
         let (Some(asked), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return };
         let given =
@@ -313,8 +261,7 @@ impl QuestionnairePhenotypes {
         });
     }
 
-    /// The phenotype tables with their sidecar files. `with_words`: whether answers in the participants' own words are
-    /// exported, too.
+    /// `with_words`: whether answers in the participants' own words are exported, too.
     pub fn files(&self, with_words: bool) -> Vec<BidsFile> {
         let mut tables: BTreeMap<(&str, usize), Vec<&FilledIn>> = BTreeMap::new();
         for (index, filled) in self.0.iter().enumerate() {
@@ -332,8 +279,7 @@ impl QuestionnairePhenotypes {
     }
 }
 
-/// One phenotype table with its sidecar file: the participants' answers when they answered the questionnaire for the
-/// `time`th time.
+/// The answers of the participants who answered the questionnaire for the `time`th time.
 fn phenotype_table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [BidsFile; 2] {
     let mut columns: Vec<&str> = Vec::new();
     let mut about = Map::new();
@@ -353,11 +299,11 @@ fn phenotype_table(name: &str, time: usize, filled: &[&FilledIn], with_words: bo
         }
     }
     let head = ["participant_id", "session_id"].into_iter().chain(columns.iter().copied());
-    let mut text = tsv::line(head);
+    let mut text = line(head);
     for one in filled {
-        let cell = |id: &&str| one.answers.get(*id).map_or_else(|| tsv::NOTHING.to_string(), AnswerValue::cell);
+        let cell = |id: &&str| one.answers.get(*id).map_or_else(|| NOTHING.to_string(), AnswerValue::cell);
         let ids = [format!("sub-{}", one.participant), format!("ses-{}", one.session)];
-        text += &tsv::line(ids.into_iter().chain(columns.iter().map(cell)));
+        text += &line(ids.into_iter().chain(columns.iter().map(cell)));
     }
     let path = format!("phenotype/{name}");
     [BidsFile::new(format!("{path}.tsv"), text), BidsFile::json(format!("{path}.json"), &about.into())]

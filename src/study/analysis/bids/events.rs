@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use crate::analysis::bids::recording_tables::PressOutcome;
-use crate::analysis::bids::tsv::{BidsColumn, YES_NO, or_nothing, seconds, yes};
+use crate::analysis::bids::{YES_NO, seconds};
+use crate::column::{Levels, TableColumn, columns};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
@@ -17,106 +18,68 @@ use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::wall_display::DisplayEvent;
 
-/// Values of the column that says who did something (wizard, participant, robot), with their meanings.
-const AGENTS: &[(&str, &str)] = &[
+const AGENTS: Levels = &[
     ("human", "The participant"),
     ("participant", "The participant, in the tutorial"),
     ("robot", "The robot that cooks with the participant"),
     ("wizard", "The person at the console, or the script in its place"),
     ("assistant", "The communication concept that acts by itself"),
 ];
-const SIGNALS: &[(&str, &str)] = &[
+const SIGNALS: Levels = &[
     ("show_recipe", "The recipe of the dish that the order at the place wants"),
     ("highlight", "Directs attention to the place and what lies there"),
     ("propose", "Proposes the next presses of the participant"),
 ];
 
-pub(super) const EVENT_COLUMNS: [BidsColumn<EventRow>; 21] = [
-    BidsColumn::of_unit(
-        "onset",
-        "s",
-        "Session time: since the beginning of the recording, by a monotonic clock",
-        |row| seconds(row.onset),
-    ),
-    BidsColumn::of_unit(
-        "duration",
-        "s",
-        "Until what the event began is over; 0 for what happens at a moment; n/a where the recording ends before",
-        |row| {
-            or_nothing(row.duration.map(|time| if time == SessionTime::ZERO { "0".to_string() } else { seconds(time) }))
-        },
-    ),
-    BidsColumn::of_levels("trial_type", LEVELS, "Kind of the event, as in the log", |row| row.kind.to_string()),
-    BidsColumn::new("seq", "Number of the event in the log, from 0", |row| row.seq.to_string()),
-    BidsColumn::of_unit(
-        "trial_time",
-        "s",
-        "The trial's clock, which stands still in pauses; n/a before and after the trial",
-        |row| or_nothing(row.trial_time.map(seconds)),
-    ),
-    BidsColumn::new("what", "What exactly happened, for kinds that have several", |row| row.cells.what.clone()),
-    BidsColumn::of_levels("agent", AGENTS, "Who did it", |row| row.cells.agent.clone()),
-    BidsColumn::new(
-        "button",
-        "Name of the button; several are separated by commas: proposed ones, or those of the participant for which the robot waits",
-        |row| row.cells.button.clone(),
-    ),
-    BidsColumn::of_levels("effective", YES_NO, "Presses: whether the button did anything", |row| {
-        or_nothing(row.outcome.map(|outcome| yes(outcome.effective)))
-    }),
-    BidsColumn::of_levels(
-        "error",
-        YES_NO,
-        "Presses of the participant in the trial: whether the press was an error, by the number of presses that it loses",
-        |row| or_nothing(row.outcome.and_then(|outcome| outcome.error).map(yes)),
-    ),
-    BidsColumn::new("location", "The place that it is about, by its name in the layout", |row| {
-        row.cells.location.clone()
-    }),
-    BidsColumn::new("dish", "The wanted dish, or the one whose recipe a probe asks for", |row| row.cells.dish.clone()),
-    BidsColumn::new("content", "What lies at the place", |row| row.cells.content.clone()),
-    BidsColumn::of_levels("signal", SIGNALS, "Kind of the signal that is shown, offered or recommended", |row| {
-        row.cells.signal.clone()
-    }),
-    BidsColumn::new("refers_to", "Number (seq) of the event that this one is about, answers or follows from", |row| {
-        or_nothing(row.cells.refers_to)
-    }),
-    BidsColumn::of_unit(
-        "at",
-        "s",
-        "Session time that the event tells: when the button went down at the display, when the robot will touch the button, when \
-         the display drew it, when a fixation began",
-        |row| or_nothing(row.cells.at.map(seconds)),
-    ),
-    BidsColumn::of_unit("force", "N", "Contact force", |row| or_nothing(row.cells.force_n)),
-    BidsColumn::new(
-        "item",
-        "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the display, probe and question as in 2.1",
-        |row| row.cells.item.clone(),
-    ),
-    BidsColumn::new(
-        "answer",
-        "Answer to the item: a number, or the ids of the chosen options; of a probe the value, or unsure",
-        |row| row.cells.answer.clone(),
-    ),
-    BidsColumn::new(
-        "value",
-        "The number that the event tells: of robot_safety the faulty joint, clock_jumped milliseconds, tracker seconds or dropped \
-         samples (fixations: milliseconds), calibration targets or accuracy in degrees, belief_estimated the log probability of the \
-         press, advised and offer_opened the net benefit in presses, probe the number of questions, or how sure an answer is from 1 to 3",
-        |row| or_nothing(row.cells.value),
-    ),
-    BidsColumn::new("reason", "Why, as the log names it", |row| row.cells.reason.clone()),
-];
+/// `with_words`: with the text that somebody typed.
+pub(super) fn event_columns(with_words: bool) -> Vec<TableColumn<EventRow>> {
+    let mut columns = columns! { |row: EventRow|
+        "onset", "s", "Session time: since the beginning of the recording, by a monotonic clock"
+            => seconds(row.onset);
+        "duration", "s", "Until what the event began is over; 0 for what happens at a moment; n/a where the \
+            recording ends before"
+            => row.duration.map(|time| if time == SessionTime::ZERO { "0".to_string() } else { seconds(time) });
+        "trial_type", LEVELS, "Kind of the event, as in the log" => row.kind;
+        "seq", "", "Number of the event in the log, from 0" => row.seq;
+        "trial_time", "s", "The trial's clock, which stands still in pauses; n/a before and after the trial"
+            => row.trial_time.map(seconds);
+        "what", "", "What exactly happened, for kinds that have several" => &row.cells.what;
+        "agent", AGENTS, "Who did it" => &row.cells.agent;
+        "button", "", "Name of the button; several are separated by commas: proposed ones, or those of the \
+            participant for which the robot waits" => &row.cells.button;
+        "effective", YES_NO, "Presses: whether the button did anything"
+            => row.outcome.map(|outcome| outcome.effective);
+        "error", YES_NO, "Presses of the participant in the trial: whether the press was an error, by the number \
+            of presses that it loses" => row.outcome.and_then(|outcome| outcome.error);
+        "location", "", "The place that it is about, by its name in the layout" => &row.cells.location;
+        "dish", "", "The wanted dish, or the one whose recipe a probe asks for" => &row.cells.dish;
+        "content", "", "What lies at the place" => &row.cells.content;
+        "signal", SIGNALS, "Kind of the signal that is shown, offered or recommended" => &row.cells.signal;
+        "refers_to", "", "Number (seq) of the event that this one is about, answers or follows from"
+            => row.cells.refers_to;
+        "at", "s", "Session time that the event tells: when the button went down at the display, when the robot \
+            will touch the button, when the display drew it, when a fixation began" => row.cells.at.map(seconds);
+        "force", "N", "Contact force" => row.cells.force_n;
+        "item", "", "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the \
+            display, probe and question as in 2.1" => &row.cells.item;
+        "answer", "", "Answer to the item: a number, or the ids of the chosen options; of a probe the value, or \
+            unsure" => &row.cells.answer;
+        "value", "", "The number that the event tells: of robot_safety the faulty joint, clock_jumped \
+            milliseconds, tracker seconds or dropped samples (fixations: milliseconds), calibration targets or \
+            accuracy in degrees, belief_estimated the log probability of the press, advised and offer_opened the \
+            net benefit in presses, probe the number of questions, or how sure an answer is from 1 to 3"
+            => row.cells.value;
+        "reason", "", "Why, as the log names it" => &row.cells.reason;
+    };
+    if with_words {
+        columns.extend(columns! { |row: EventRow|
+            "words", "", "Words that somebody typed, or that a device calls itself by; a ' stands before words that \
+                begin with = + - or @, so that no spreadsheet computes them" => &row.cells.words;
+        });
+    }
+    columns
+}
 
-/// Column with text that somebody typed, for exports that include such text.
-pub(super) const WORDS: BidsColumn<EventRow> = BidsColumn::new(
-    "words",
-    "Words that somebody typed, or that a device calls itself by; a ' stands before words that begin with = + - or @, so that no spreadsheet computes them",
-    |row| row.cells.words.clone(),
-);
-
-/// A row of the table of events.
 #[derive(Debug)]
 pub(super) struct EventRow {
     pub onset: SessionTime,
@@ -132,8 +95,7 @@ pub(super) struct EventRow {
     pub is_of_eyes: bool,
 }
 
-/// The cells of an event's row in the BIDS table that follow from the event alone; a cell is empty where the event says
-/// nothing about the column.
+/// The cells that follow from the event alone; empty where the event says nothing about the column.
 #[derive(Debug, Default)]
 pub(super) struct EventCells {
     pub what: String,
@@ -154,59 +116,23 @@ pub(super) struct EventCells {
 }
 
 impl EventCells {
-    /// The cells of an event's row. `is_words`: whether the event is an answer in the participant's own words.
+    /// `is_words`: whether the event is an answer in the participant's own words.
     pub(super) fn from_event(event: &Event, is_words: bool) -> EventCells {
         let mut cells = EventCells::default();
-        match event {
-            Event::Protocol(event) => cells.take_protocol(event, is_words),
-            Event::Tracker(event) => cells.take_tracker(event),
-            Event::Calibration(event) => cells.take_calibration(event),
-            Event::Display(event) => cells.take_display(event),
-            Event::Probe(event) => cells.take_probe(event),
-            Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) | Event::Advised(_) | Event::OfferOpened(_) => {
-                cells.take_advice(event);
-            }
-            Event::RobotIntends { .. }
-            | Event::RobotAborts { .. }
-            | Event::RobotIdles { .. }
-            | Event::RobotMoves(_)
-            | Event::RobotSafety { .. }
-            | Event::RobotTouched { .. }
-            | Event::RobotStopped
-            | Event::RobotResumed
-            | Event::RobotHeld { .. }
-            | Event::RobotReleased { .. }
-            | Event::RobotSkipped { .. }
-            | Event::RobotDriven { .. } => cells.take_robot(event),
-            event => cells.take_trial(event),
-        }
+        cells.take(event, is_words);
         cells
     }
 
-    /// Fills in the state aspect that the question of a freeze probe is about.
-    pub(super) fn ask_about(&mut self, about: &ProbeSubject) {
-        match about {
-            ProbeSubject::Location { location } => self.location = location.clone(),
-            ProbeSubject::Recipe { dish } => self.dish = dish.clone(),
-            ProbeSubject::NextOrder | ProbeSubject::NextPress => self.reason = tag(about, "asks"),
+    fn take(&mut self, event: &Event, is_words: bool) {
+        if event.kind().starts_with("robot_") {
+            self.agent = "robot".to_string();
         }
-    }
-
-    fn take_signal(&mut self, signal: &Signal) {
-        self.location = signal.target().unwrap_or_default().to_string();
-        if let Signal::Propose(presses) = signal {
-            self.button = presses.join(", ");
-        }
-        self.signal = match signal {
-            Signal::ShowRecipe(_) => "show_recipe",
-            Signal::Highlight(_) => "highlight",
-            Signal::Propose(_) => "propose",
-        }
-        .to_string();
-    }
-
-    fn take_trial(&mut self, event: &Event) {
         match event {
+            Event::Protocol(event) => self.take_protocol(event, is_words),
+            Event::Tracker(event) => self.take_tracker(event),
+            Event::Calibration(event) => self.take_calibration(event),
+            Event::Display(event) => self.take_display(event),
+            Event::Probe(event) => self.take_probe(event),
             Event::Preflight { overridden, .. } => self.what = if *overridden { "overridden" } else { "" }.to_string(),
             Event::TrialEnded { reason } => self.reason = reason.name().to_string(),
             Event::TrialAborted { reason } | Event::TrialExcluded { reason } => self.words = reason.clone(),
@@ -240,13 +166,7 @@ impl EventCells {
             Event::Unblinded { concepts } => {
                 self.item = concepts.iter().map(|concept| concept.name()).collect::<Vec<_>>().join(" ");
             }
-            _ => {}
-        }
-    }
 
-    fn take_robot(&mut self, event: &Event) {
-        self.agent = "robot".to_string();
-        match event {
             Event::RobotIntends { button, until_ns, .. } => (self.button, self.at) = (button.clone(), Some(*until_ns)),
             Event::RobotAborts { button, reason } => (self.button, self.reason) = (button.clone(), name(reason)),
             Event::RobotIdles { reason, waits_for } => {
@@ -260,12 +180,7 @@ impl EventCells {
             Event::RobotStopped | Event::RobotResumed => self.agent = "wizard".to_string(),
             Event::RobotHeld { by } | Event::RobotReleased { by } | Event::RobotSkipped { by } => self.agent = name(by),
             Event::RobotDriven { by, button } => (self.agent, self.button) = (name(by), button.clone()),
-            _ => {}
-        }
-    }
 
-    fn take_advice(&mut self, event: &Event) {
-        match event {
             Event::ParticipantBelieves(belief) => {
                 self.agent = "human".to_string();
                 self.what = belief.origin.as_ref().map(name).unwrap_or_default();
@@ -296,8 +211,30 @@ impl EventCells {
                     OfferedCommunication::Presses(presses) => self.button = presses.join(", "),
                 }
             }
+
             _ => {}
         }
+    }
+
+    pub(super) fn ask_about(&mut self, about: &ProbeSubject) {
+        match about {
+            ProbeSubject::Location { location } => self.location = location.clone(),
+            ProbeSubject::Recipe { dish } => self.dish = dish.clone(),
+            ProbeSubject::NextOrder | ProbeSubject::NextPress => self.reason = tag(about, "asks"),
+        }
+    }
+
+    fn take_signal(&mut self, signal: &Signal) {
+        self.location = signal.target().unwrap_or_default().to_string();
+        if let Signal::Propose(presses) = signal {
+            self.button = presses.join(", ");
+        }
+        self.signal = match signal {
+            Signal::ShowRecipe(_) => "show_recipe",
+            Signal::Highlight(_) => "highlight",
+            Signal::Propose(_) => "propose",
+        }
+        .to_string();
     }
 
     fn take_protocol(&mut self, event: &ProtocolEvent, is_words: bool) {
@@ -434,9 +371,8 @@ fn tag(event: &impl Serialize, key: &str) -> String {
     record.get(key).and_then(|value| value.as_str()).unwrap_or_default().to_string()
 }
 
-/// The kinds of events that have a row in the table of events, as the log names them, with their meanings. Samples of
-/// gaze and arm have tables of their own.
-pub const LEVELS: &[(&str, &str)] = &[
+/// Kinds of events that have a row, as the log names them. Samples of gaze and arm have tables of their own.
+pub const LEVELS: Levels = &[
     ("advised", "The assistant computed a recommendation; seen only if an offer follows"),
     (
         "belief_estimated",

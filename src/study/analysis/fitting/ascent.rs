@@ -15,17 +15,14 @@ use nalgebra::{DMatrix, DVector};
 use crate::analysis::fitting::response_surface::{self, QuadraticSurface, REACH};
 use crate::analysis::fitting::score_surface::{self, ScoreRegression, TriedPoint};
 
-/// First step of the search for the end of a profile interval. The end is interpolated between two values of the
-/// variable that lie closer together than this.
+/// First step of the search for the end of a profile interval, which is interpolated between closer values.
 const PROFILE_STEP: f64 = 0.3;
 /// Part of the distance between two values at the ends of which no value is tried between the two.
 const PROFILE_MARGIN: f64 = 0.2;
 const PROFILE_SURFACES: usize = 3;
-/// A value of a variable is rejected, without optimising the other variables, if it lowers the log likelihood by more
-/// than this (plus the noise).
+/// Loss (plus the noise) above which a value is rejected without optimising the other variables.
 const HOPELESS_NATS: f64 = 30.0;
-/// A value of a variable is rejected as soon as the log likelihood is lower than the maximum by more than this (plus the
-/// noise) and the surface promises no more.
+/// Loss (plus the noise) above which a value is rejected once the surface promises no more.
 const CLEAR_NATS: f64 = 6.0;
 /// Standard deviations of the noise by which a single loss has to exceed the least loss in addition.
 const NOISE_MARGIN: f64 = 2.0;
@@ -110,8 +107,7 @@ pub fn ascend(
 }
 
 impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
-    /// Ends the search at the maximum of a response surface. A variable that converges at a bound is held there, and the
-    /// others are optimised again. `None` if too few evaluations are left.
+    /// Ends the search; a variable that converges at a bound is held. `None` if too few evaluations are left.
     fn settle(&mut self, held: &mut [Option<BoundReached>]) -> Option<SettledSearch> {
         loop {
             let free: Vec<usize> = (0..held.len()).filter(|&index| held[index].is_none()).collect();
@@ -193,15 +189,13 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
 }
 
 const FIRST_STEP: f64 = 0.4;
-/// Steps of the search are chosen so that one step lowers the log likelihood by this much: least and most in nats, and
-/// in standard deviations of the noise.
+/// By how much a step should lower the log likelihood: least and most in nats, and in deviations of the noise.
 const STEP_NATS: [f64; 2] = [1.0, 6.0];
 const STEP_NOISE: f64 = 0.5;
 /// Least and largest size of a step of the search, and the largest factor between the sizes of successive steps.
 const STEPS: [f64; 2] = [0.02, 1.6];
 const STEP_CHANGE: f64 = 2.5;
-/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of
-/// freedom.
+/// Significant at 5 %: half the 95 % quantile of chi squared with one degree of freedom.
 const REJECTED_NATS: f64 = 1.92;
 /// Distance to a bound below which a variable counts as lying at the bound.
 const CLOSE: f64 = 1e-9;
@@ -237,7 +231,6 @@ impl SurfaceSource {
     }
 }
 
-/// A search for the maximum of a log likelihood, and what it has found so far.
 struct SurfaceSearch<'a, F> {
     losses: F,
     pub(super) bounds: &'a [[f64; 2]],
@@ -268,8 +261,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         }
     }
 
-    /// Maximises the likelihood over the free variables. Returns the surface around the maximum (`Some(None)` without
-    /// free variables), or `None` if the search did not converge.
+    /// The surface around the maximum (`Some(None)` without free variables); `None` if it did not converge.
     pub(super) fn climb(&mut self, source: SurfaceSource, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
@@ -311,8 +303,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         }
     }
 
-    /// Goes to the least value of a surface around the current point. Returns the surface, and how far that was, in steps from
-    /// the surface's centre; `None` if too few evaluations are left.
+    /// Returns the surface, and how far it led, in steps; `None` if too few evaluations are left.
     pub(super) fn step(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(QuadraticSurface, Vec<f64>)> {
         let (centre, surface) = self.survey(source, free)?;
         let by = self.least(free, &centre, &surface);
@@ -322,8 +313,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         Some((surface, by))
     }
 
-    /// A surface over the free variables around the current point, inside the bounds, with the surface's centre;
-    /// `None` if too few evaluations are left.
+    /// A surface around the current point, with its centre; `None` if too few evaluations are left.
     fn survey(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + source.points(free.len()) > self.most {
             return None;

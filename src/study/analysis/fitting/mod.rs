@@ -39,10 +39,8 @@ pub fn in_words(model: &HumanModel) -> String {
 }
 
 /// The parameters to fit: those that were named, or else the usual ones that a fit beginning with this model can have.
-///
-/// # Errors
-/// The first named parameter that the fit cannot have, why, and what would be right; or, where none was named, why it
-/// can have none of the usual ones.
+/// Errors: the first named parameter that the fit cannot have, why, and what would be right; or, where none was named,
+/// why it can have none of the usual ones.
 pub fn choose(named: &[HumanModelParameter], model: &HumanModel) -> Result<Vec<HumanModelParameter>, (String, String)> {
     let wanted = if named.is_empty() { &HumanModelParameter::USUAL[..] } else { named };
     let mut chosen = Vec::new();
@@ -62,7 +60,6 @@ pub fn choose(named: &[HumanModelParameter], model: &HumanModel) -> Result<Vec<H
     }
 }
 
-/// The recordings of a fit: their number, their human model, and those that have another one.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
     pub number: u64,
@@ -70,12 +67,10 @@ pub struct FittedRecordings<'a> {
     pub others: &'a [OtherModel],
 }
 
-/// Which parameters of the human model to fit, from which start, and with how many evaluations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitSettings {
     pub parameters: Vec<HumanModelParameter>,
-    /// Start of the search, which also gives the values of parameters that are not fitted. `None`: the parameters in
-    /// the recordings.
+    /// Also gives the values of parameters that are not fitted. `None`: the parameters in the recordings.
     pub start: Option<HumanModel>,
     pub most_tries: usize,
 }
@@ -116,15 +111,13 @@ impl FitSummary {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedParameter {
-    /// The parameter's name in a parameter file: "tau".
     pub name: &'static str,
     pub unit: &'static str,
     pub before: f64,
     pub value: f64,
     /// Whether the parameter's interval is finite on both sides within the bounds of the search.
     pub identified: bool,
-    /// Standard error of the parameter; null where the parameter is not identified, where the log likelihood is not
-    /// concave (parameters cannot be distinguished), and where the search did not converge.
+    /// Null where not identified, where the log likelihood is not concave, and where the search did not converge.
     pub standard_error: Option<f64>,
     /// 95 % interval of the parameter, symmetric on the scale of the fit; for a parameter at a bound, its profile
     /// likelihood interval. An end beyond the bounds of the search is null.
@@ -168,8 +161,7 @@ impl FittedParameter {
     }
 }
 
-/// Fits parameters of the human model. `likelihood` returns the likelihood of all trials under a model; `tried` is
-/// called after each evaluation of the likelihood.
+/// `likelihood`: of all trials under a model; `tried` is called after each evaluation.
 pub fn fit(
     trials: FittedRecordings<'_>,
     plan: &FitSettings,
@@ -215,7 +207,6 @@ pub fn fit(
     }
 }
 
-/// Beginning of the comment at the top of a file of fitted parameters.
 pub const FITTED: &str = "Parameters of the human model, fitted to";
 
 pub fn comment(fit: &FitSummary) -> String {
@@ -289,7 +280,6 @@ pub fn describe(fit: &FitSummary) -> String {
     text + &untold(fit)
 }
 
-/// Lines of text about parameters that are left out, and about recordings that were made with other models.
 fn beside(fit: &FitSummary) -> String {
     let left_out = fit.not_fitted.iter().map(|why| format!("not fitted: {why}\n"));
     let others = fit.others.iter().map(|one| format!("made with {}: {}\n", one.model, one.recordings.join(", ")));
@@ -326,7 +316,6 @@ pub struct ProbeAnswerFit {
     pub shrinkage: Vec<IntervalNarrowing>,
 }
 
-/// How far the answers to freeze probes narrow a parameter's interval, compared with presses alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct IntervalNarrowing {
     pub name: &'static str,
@@ -339,7 +328,6 @@ pub struct IntervalNarrowing {
 }
 
 impl ProbeAnswerFit {
-    /// Log likelihood of the answers under the parameters before the fit and under the fitted parameters.
     fn from_likelihoods(before: &TrialLikelihood, after: &TrialLikelihood) -> ProbeAnswerFit {
         let answers = before.answers.max(1) as f64;
         ProbeAnswerFit {
@@ -357,8 +345,6 @@ impl ProbeAnswerFit {
 }
 
 impl IntervalNarrowing {
-    /// Compares two intervals of a parameter: from presses alone (with the value from that fit), and from presses and
-    /// answers to freeze probes.
     pub fn between(
         parameter: HumanModelParameter,
         value: f64,
@@ -396,8 +382,7 @@ fn describe_answers(answers: &ProbeAnswerFit) -> String {
     text
 }
 
-/// The human model whose `parameters` have the values of a point on the unbounded scale of the fit; other parameters as
-/// in `base`.
+/// `at`: on the unbounded scale of the fit; other parameters as in `base`.
 fn model_at(base: &HumanModel, parameters: &[HumanModelParameter], at: &[f64]) -> HumanModel {
     let mut model = base.clone();
     parameters.iter().zip(at).for_each(|(parameter, &scaled)| parameter.set(&mut model, parameter.from_scale(scaled)));

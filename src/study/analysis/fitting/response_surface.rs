@@ -30,8 +30,7 @@ fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     design(centre.len()).into_iter().map(at).collect()
 }
 
-/// Fits a quadratic surface around `centre`, with steps of the given sizes along each variable and each pair of
-/// variables. Values that are not finite are ignored; `None` if too few remain.
+/// Values that are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let (mut rows, mut values) = (Vec::new(), Vec::new());
@@ -70,8 +69,7 @@ impl QuadraticSurface {
         self.value + self.slope.dot(&by) + by.dot(&(&self.curvature * &by)) / 2.0
     }
 
-    /// Minimum of the surface within bounds, in steps from the surface's centre: the best result of coordinate descents
-    /// from the centre and from the ends of each axis.
+    /// Minimum within bounds, in steps: the best of coordinate descents from the centre and the ends of each axis.
     pub fn least(&self, low: &[f64], high: &[f64]) -> Vec<f64> {
         let n = self.slope.len();
         let mut starts = vec![vec![0.0; n]];

@@ -13,8 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::response_surface::{QuadraticSurface, inverse};
 
-/// Distance from the centre along each variable up to which a point counts for a surface, in steps; with what rounding
-/// adds to the outermost points of the design.
+/// Distance from the centre up to which a point counts, in steps, with what rounding adds to the outermost.
 const WIDTH: f64 = 1.0 + 1e-6;
 
 /// A point at which a log likelihood was evaluated, and the negative log likelihood of each press there, in nats.
@@ -30,8 +29,7 @@ pub fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     design(centre.len()).into_iter().map(at).collect()
 }
 
-/// Linear regressions of the losses of all presses over the points around a centre, whose slopes are the scores;
-/// variables are in steps.
+/// Regressions of the losses of all presses over the points around a centre; their slopes are the scores.
 pub struct ScoreRegression {
     /// A row for each point: 1, and the distance from the centre along each variable.
     design: DMatrix<f64>,
@@ -67,8 +65,7 @@ impl ScoreRegression {
         self.design.nrows().saturating_sub(self.design.ncols()).max(1) as f64
     }
 
-    /// Covariance of the slope of the log likelihood: the sum over presses of the outer products of their scores, with the
-    /// noise of single presses, which moves the slope as well.
+    /// Covariance of the log likelihood's slope: the sum of the outer products of the scores, with their noise.
     pub(crate) fn score_products(&self) -> DMatrix<f64> {
         let scores = self.lines.rows(1, self.lines.nrows() - 1);
         scores * scores.transpose()

@@ -13,7 +13,7 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_study::analysis::offer_summary::TimedOffer;
 use tomcom_study::codes::CodedRecording;
-use tomcom_study::column::{TableCell, CsvRow, CsvTable};
+use tomcom_study::column::{CsvRow, CsvTable, TableCell};
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::kept_cost::KeptCost;

@@ -5,7 +5,7 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
-use tomcom_study::column::{TableCell, TableColumn, CsvRow, CsvTable};
+use tomcom_study::column::{CsvRow, CsvTable, TableCell, TableColumn};
 use tomcom_study::column::{DataDictionaryRow, described, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
 use tomcom_study::frozen_plan::RecordedPlan;

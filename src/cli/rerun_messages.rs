@@ -1,15 +1,16 @@
 //! Opening recordings in the Rerun viewer, with the messages about it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::output::put;
 use crate::run::open_viewer::{
-    OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, review, running, save,
-    until_asked_to_end,
+    OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, landmarks, review,
+    running, save, until_asked_to_end,
 };
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
+use tomcom_devices::scene::moment_on_clock;
 
 impl From<RerunViewerError> for Failure {
     fn from(error: RerunViewerError) -> Failure {
@@ -24,6 +25,22 @@ impl From<RerunViewerError> for Failure {
 pub(super) fn save_all(recordings: &[PathText]) -> Result<(), Failure> {
     for recording in recordings {
         save(recording)?;
+    }
+    Ok(())
+}
+
+/// Prints the errors, signals and false beliefs of these recordings, each as the command that opens the viewer there, with
+/// what happened as its comment.
+pub(super) fn list_landmarks(recordings: &[PathBuf]) -> Result<(), Failure> {
+    for recording in recordings {
+        let mut text = String::new();
+        for (at, words) in landmarks(recording)? {
+            text += &format!("tomcom review {} --at {}  # {words}\n", shell_word(recording), moment_on_clock(at));
+        }
+        if text.is_empty() {
+            text = format!("{}: no error, signal or false belief\n", recording.display());
+        }
+        put(&text)?;
     }
     Ok(())
 }
@@ -52,15 +69,17 @@ pub(super) fn open(
             put(&format!(
                 "{because}: the Rerun viewer is served here, for a browser on this machine, until ctrl+c\n{url}\n"
             ))?;
-            if let Some(at) = at {
-                put(&format!(
-                    "the time from {at} on is marked in the viewer's time line: a click on the mark goes there\n"
-                ))?;
-            }
             until_asked_to_end()?;
         }
     }
     Ok(())
+}
+
+/// A path as one word of a shell's command.
+fn shell_word(path: &Path) -> String {
+    let path = path.display().to_string();
+    let is_plain = |sign: char| sign.is_alphanumeric() || "/._-".contains(sign);
+    if path.chars().all(is_plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }
 }
 
 /// Why an existing stream file was rebuilt, in words.

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::list::each_chosen;
-use super::rerun_messages::open;
+use super::rerun_messages::{list_landmarks, open};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::features::Feature;
 
@@ -17,7 +17,8 @@ use tomcom_session::features::Feature;
 #[command(
     after_help = "Without a viewer of Rerun in PATH it is served for a browser. Several recordings stand side by side, by the \
                   clocks of their trials.\nExamples: tomcom review sessions/2026-03-14-P07-1\n          \
-                  tomcom review sessions/2026-03-14-P07-1 --at 1:34\nMore: docs/rerun.md"
+                  tomcom review sessions/2026-03-14-P07-1 --at 1:34\n          \
+                  tomcom review sessions/2026-03-14-P07-1 --errors\nMore: docs/rerun.md"
 )]
 pub(super) struct ReviewArgs {
     /// The folders of recordings, or their events.jsonl. Of a folder of recordings, one is chosen from a list.
@@ -32,6 +33,9 @@ pub(super) struct ReviewArgs {
     /// Open at this time on the trial's clock, as the console shows it: 1:34, or seconds.
     #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "save")]
     at: Option<SessionTime>,
+    /// Only print a line for each error, signal and false belief (by the estimate): the command that opens the viewer there.
+    #[arg(long, conflicts_with_all = ["save", "web", "at"])]
+    errors: bool,
 }
 
 /// Parses a time on the trial's clock, written as the console shows it, or in seconds.
@@ -68,5 +72,6 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    open(each_chosen(&recordings)?, save, args.web, args.at)
+    let recordings = each_chosen(&recordings)?;
+    if args.errors { list_landmarks(&recordings) } else { open(recordings, save, args.web, args.at) }
 }

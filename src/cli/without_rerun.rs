@@ -12,6 +12,11 @@ pub(super) fn save_all(_: &[PathText]) -> Result<(), Failure> {
     Err(MissingFeature(Feature::Rerun).into())
 }
 
+/// Refuses to list what a Rerun viewer shows, since this build lacks Rerun.
+pub(super) fn list_landmarks(_: &[PathBuf]) -> Result<(), Failure> {
+    Err(MissingFeature(Feature::Rerun).into())
+}
+
 /// Refuses to open a Rerun viewer, since this build lacks Rerun.
 pub(super) fn open(
     _: Vec<PathBuf>,

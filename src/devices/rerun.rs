@@ -6,6 +6,7 @@
 
 mod blueprint;
 mod kept_messages;
+mod viewer_page;
 mod viewer_server;
 
 use std::io;
@@ -16,16 +17,18 @@ use std::time::Duration;
 use nalgebra::Isometry3;
 use re_sdk::log::{ChunkBatcherConfig, TimeColumn};
 use re_sdk::sink::FileSink;
-use re_sdk::web_viewer::WebViewerConfig;
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::archetypes;
 use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
 use re_sdk_types::datatypes::Quaternion;
 
-use self::blueprint::{APPLICATION, ViewerLayout, ViewerStart};
+use self::blueprint::{APPLICATION, SESSION_TIME, ViewerLayout, ViewerStart};
 pub use self::blueprint::{ShownRecording, TRIAL_TIME};
+pub use self::viewer_page::WebViewer;
 use self::viewer_server::ViewerServer;
-use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SeriesStyle};
+use crate::scene::entity_content::{
+    MarkShape, SceneArea, SceneLabel, SceneLogLevel, ScenePicture, ScenePoint, SeriesStyle,
+};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 use tomcom_arm::kinematics::{CollisionSolid, LinkShape};
 use tomcom_core::base::text::{printable, printable_lines};
@@ -33,8 +36,7 @@ use tomcom_core::base::time::SessionTime;
 
 /// Version of Rerun with which streams are written; viewers of the same version can read the streams.
 pub const VERSION: &str = "0.36.3";
-/// Timelines of session time and of events, beside that of the trial's clock.
-const SESSION_TIME: &str = "session_time";
+/// The timeline of events, beside those of the clocks.
 const STEP: &str = "step";
 /// A millisecond in nanoseconds.
 const MS: u64 = 1_000_000;
@@ -53,9 +55,11 @@ const ALL_BYTES: usize = usize::MAX;
 /// Least time between two gaze samples that viewers of a running session get; more frequent samples could not be seen.
 const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 
-/// Radius of the mark where somebody looks, and half the line width of the circle around that mark, in millimetres.
-const SIGHT_MM: f32 = 9.0;
-const LINE_MM: f32 = 2.0;
+/// Radius of a gaze point, and half the line width of the circle around the newest one.
+const SIGHT: f32 = 4.0;
+const LINE: f32 = 2.0;
+/// Drawing order of pictures of the lowest layer: below outlines and labels.
+const LOWEST: f32 = -20.0;
 
 /// Identity of a Rerun stream: id and name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,9 +74,6 @@ pub struct StreamOutlets {
     pub file: Option<PathBuf>,
     /// Address of the server for viewers; `true` if viewers get the whole stream, whatever its size.
     pub server: Option<(SocketAddr, bool)>,
-    /// Time on the trial's clock from which connected viewers play; `None`: they wait at the beginning, or follow the
-    /// newest data.
-    pub at: Option<SessionTime>,
 }
 
 /// Writer of a Rerun stream. The writer serves each output independently, so that no output delays another.
@@ -102,7 +103,6 @@ struct Sights {
     entity: String,
     times: Vec<[i64; 3]>,
     at: Vec<[f32; 2]>,
-    around: Vec<[f32; 2]>,
     colours: Vec<Color>,
 }
 
@@ -128,11 +128,7 @@ impl RerunWriter {
             let stream = stream(identity, PIECE)?;
             let kept = if all { ALL_BYTES } else { KEPT_BYTES };
             stream.set_sink(Box::new(ViewerServer::open(address, kept)?));
-            let opens = match outlets.at {
-                Some(at) => ViewerStart::From(at),
-                None if all => ViewerStart::Waiting,
-                None => ViewerStart::Following,
-            };
+            let opens = if all { ViewerStart::Waiting } else { ViewerStart::Following };
             ViewerLayout::from_lanes(lanes, opens).send(&stream)?;
             streams.push(OpenStream::new(stream, None, if all { SessionTime::ZERO } else { GAZE_EVERY }));
         }
@@ -144,6 +140,10 @@ impl RerunWriter {
         for row in rows {
             let (entity, components) = (entity(lane, row), components(row));
             self.streams.iter().for_each(|one| one.log(&entity, true, &components));
+            if let EntityData::SightRadius(_) = row.shown {
+                let points = archetypes::Points2D::update_fields().with_radii([SIGHT]).as_serialized_batches();
+                self.streams.iter().for_each(|one| one.log(&trail_of(&entity), true, &points));
+            }
         }
     }
 
@@ -153,7 +153,7 @@ impl RerunWriter {
         for row in &moment.rows {
             let entity = entity(lane, row);
             let sight = match row.shown {
-                EntityData::Sight { at, around, colour } => Some((at, around, colour_of(colour))),
+                EntityData::Sight { at, colour } => Some((at, colour_of(colour))),
                 _ => None,
             };
             // A file gets gaze samples together with the others of their piece, viewers get each of them at once.
@@ -165,10 +165,11 @@ impl RerunWriter {
             if !self.streams.iter().any(is_at_once) {
                 continue;
             }
-            let components = components(row);
+            let (components, trail) = (components(row), sight.map(|sight| [sight_point(sight)]));
             for one in self.streams.iter_mut().filter(|one| is_at_once(one)) {
                 if sight.is_none() || one.shows_gaze(moment.time) {
                     one.log(&entity, false, &components);
+                    trail.iter().for_each(|points| one.log(&trail_of(&entity), false, &batches(points)));
                 }
             }
         }
@@ -216,7 +217,7 @@ impl OpenStream {
     }
 
     /// Keeps a gaze sample until the end of its piece.
-    fn see(&mut self, entity: &str, time: SessionTime, (at, around, colour): ([f64; 2], f64, Color)) {
+    fn see(&mut self, entity: &str, time: SessionTime, (at, colour): ([f64; 2], Color)) {
         if !self.shows_gaze(time) {
             return;
         }
@@ -226,13 +227,12 @@ impl OpenStream {
         }
         self.sights.times.push(self.now);
         self.sights.at.push(at.map(|length| length as f32));
-        self.sights.around.push([around as f32; 2]);
         self.sights.colours.push(colour);
     }
 
     /// Writes the gaze samples that wait.
     fn write_sights(&mut self) {
-        let Sights { entity, times, at, around, colours } = std::mem::take(&mut self.sights);
+        let Sights { entity, times, at, colours } = std::mem::take(&mut self.sights);
         if times.is_empty() {
             return;
         }
@@ -242,15 +242,14 @@ impl OpenStream {
             TimeColumn::new_duration_nanos(SESSION_TIME, timeline(1)),
             TimeColumn::new_sequence(STEP, timeline(2)),
         ];
-        // The same elements as those of `sight_in_2d`, for many samples.
-        let circles = archetypes::Ellipses2D::from_half_sizes(around)
-            .with_centers(at.iter().copied())
-            .with_colors(colours.iter().copied())
-            .with_line_radii(times.iter().map(|_| LINE_MM));
-        let points = archetypes::Points2D::new(at).with_radii(times.iter().map(|_| SIGHT_MM)).with_colors(colours);
+        let colours_of = || colours.iter().copied();
+        let circles =
+            archetypes::Ellipses2D::update_fields().with_centers(at.iter().copied()).with_colors(colours_of());
+        let points = archetypes::Points2D::update_fields().with_positions(at).with_colors(colours_of());
         // Writing fails only if components cannot be serialised, and these components can.
         if let (Ok(circles), Ok(points)) = (circles.columns_of_unit_batches(), points.columns_of_unit_batches()) {
-            let _ = self.stream.send_columns(entity.as_str(), indexes, circles.chain(points));
+            let _ = self.stream.send_columns(entity.as_str(), indexes.clone(), circles);
+            let _ = self.stream.send_columns(trail_of(&entity), indexes, points);
         }
     }
 
@@ -283,7 +282,11 @@ fn entity(lane: &ShownRecording, row: &EntityUpdate) -> String {
 }
 
 fn components(row: &EntityUpdate) -> Vec<SerializedComponentBatch> {
-    parts(&row.shown).iter().flat_map(|part| part.as_serialized_batches()).collect()
+    batches(&parts(&row.shown))
+}
+
+fn batches(parts: &[Part]) -> Vec<SerializedComponentBatch> {
+    parts.iter().flat_map(|part| part.as_serialized_batches()).collect()
 }
 
 /// A Rerun stream without an output yet. The stream passes rows on in pieces of this duration of the wall clock.
@@ -313,36 +316,22 @@ pub fn uri(address: SocketAddr) -> String {
     format!("rerun+http://{address}/proxy")
 }
 
-/// Web server that provides Rerun's viewer to browsers, until this value is dropped.
-pub struct WebViewer {
-    _server: Box<dyn std::any::Any>,
-}
-
-impl WebViewer {
-    /// Serves Rerun's viewer to browsers at this port of this machine.
-    ///
-    /// # Errors
-    /// The network port is in use.
-    pub fn serve(port: u16) -> io::Result<WebViewer> {
-        let config = WebViewerConfig {
-            bind_ip: "127.0.0.1".to_string(),
-            web_port: port.into(),
-            open_browser: false,
-            ..WebViewerConfig::default()
-        };
-        let server = re_sdk::serve_web_viewer(config).map_err(io::Error::other)?;
-        Ok(WebViewer { _server: Box::new(server) })
-    }
-}
-
 type Part = Box<dyn AsComponents>;
 
 /// Rerun's archetypes (kinds of graphical elements) that show these data of an entity.
 fn parts(shown: &EntityData) -> Vec<Part> {
     match shown {
         EntityData::Areas(areas) => vec![Box::new(areas_in_2d(areas))],
-        EntityData::Discs(discs) => vec![Box::new(discs_in_2d(discs))],
-        EntityData::Sight { at, around, colour } => sight_in_2d(*at, *around, colour_of(*colour)),
+        EntityData::Labels(labels) => vec![Box::new(labels_in_2d(labels))],
+        EntityData::Picture(picture) => picture_in_2d(picture),
+        EntityData::Sight { at, colour } => {
+            let circle = archetypes::Ellipses2D::update_fields().with_centers([at.map(|length| length as f32)]);
+            vec![Box::new(circle.with_colors([colour_of(*colour)]))]
+        }
+        EntityData::SightRadius(radius) => {
+            let circle = archetypes::Ellipses2D::update_fields().with_half_sizes([[*radius as f32; 2]]);
+            vec![Box::new(circle.with_line_radii([LINE]))]
+        }
         EntityData::Points(points) => vec![Box::new(points_in_3d(points))],
         EntityData::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
         EntityData::Place(place) => vec![Box::new(transform(place))],
@@ -351,14 +340,9 @@ fn parts(shown: &EntityData) -> Vec<Part> {
             let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
         }
-        EntityData::QuietLine(SeriesStyle { name, colour }) => {
-            let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
-            vec![Box::new(line.with_widths([1.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
-        }
         EntityData::Marks(SeriesStyle { name, colour }, shape) => {
             let shape = match shape {
                 MarkShape::Cross => MarkerShape::Cross,
-                MarkShape::Circle => MarkerShape::Circle,
                 MarkShape::Diamond => MarkerShape::Diamond,
             };
             let marks = archetypes::SeriesPoints::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
@@ -389,20 +373,33 @@ fn areas_in_2d(areas: &[SceneArea]) -> archetypes::Boxes2D {
         .with_radii(areas.iter().map(|area| area.line as f32))
 }
 
-fn discs_in_2d(discs: &[SceneDisc]) -> archetypes::Points2D {
-    archetypes::Points2D::new(discs.iter().map(|disc| disc.at.map(|length| length as f32)))
-        .with_radii(discs.iter().map(|disc| disc.radius as f32))
-        .with_colors(discs.iter().map(|disc| colour_of(disc.colour)))
-        .with_labels(discs.iter().map(|disc| disc.words.as_str()))
+fn labels_in_2d(labels: &[SceneLabel]) -> archetypes::Points2D {
+    archetypes::Points2D::new(labels.iter().map(|label| label.at.map(|length| length as f32)))
+        .with_radii([0.0])
+        .with_colors(labels.iter().map(|label| colour_of(label.colour)))
+        .with_labels(labels.iter().map(|label| label.words.as_str()))
         .with_show_labels(true)
 }
 
-/// Rerun's elements that show a point of regard: a point, and the circle around it.
-fn sight_in_2d(at: [f64; 2], around: f64, colour: Color) -> Vec<Part> {
+/// Rerun draws a pixel of an image as a unit of length: the transform gives the image its place and size.
+fn picture_in_2d(picture: &ScenePicture) -> Vec<Part> {
+    // Width and height stand in the first chunk of a PNG file.
+    let number = |from: usize| Some(u32::from_be_bytes(picture.png.get(from..from + 4)?.try_into().ok()?));
+    let pixels = [16, 20].map(|from| number(from).map_or(1.0, f64::from));
+    let scale = [picture.width / pixels[0], picture.height / pixels[1], 1.0].map(|factor| factor as f32);
+    let place = archetypes::Transform3D::from_translation_scale([picture.left as f32, picture.top as f32, 0.0], scale);
+    let image = archetypes::EncodedImage::from_file_contents(picture.png.to_vec());
+    vec![Box::new(place), Box::new(image.with_draw_order(LOWEST + f32::from(picture.layer)))]
+}
+
+/// Entity of the last gaze points, of which the viewer shows those of the last seconds.
+fn trail_of(entity: &str) -> String {
+    format!("{entity}/trail")
+}
+
+fn sight_point((at, colour): ([f64; 2], Color)) -> Part {
     let at = at.map(|length| length as f32);
-    let circle = archetypes::Ellipses2D::from_half_sizes([[around as f32; 2]]).with_centers([at]).with_colors([colour]);
-    let point = archetypes::Points2D::new([at]).with_radii([SIGHT_MM]).with_colors([colour]);
-    vec![Box::new(circle.with_line_radii([LINE_MM])), Box::new(point)]
+    Box::new(archetypes::Points2D::update_fields().with_positions([at]).with_colors([colour]))
 }
 
 fn points_in_3d(points: &[ScenePoint]) -> archetypes::Points3D {

@@ -62,11 +62,8 @@ impl RerunStream {
         opening: SceneUpdate,
     ) -> io::Result<RerunStream> {
         let server = server.map(free_port).transpose()?;
-        let outlets = StreamOutlets {
-            file: file.map(Path::to_path_buf),
-            server: server.map(|address| (address, false)),
-            at: None,
-        };
+        let outlets =
+            StreamOutlets { file: file.map(Path::to_path_buf), server: server.map(|address| (address, false)) };
         let lane = ShownRecording::default();
         let mut writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);

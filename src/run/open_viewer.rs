@@ -14,7 +14,7 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
 use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
 use tomcom_devices::scene::entity_content::slug;
-use tomcom_devices::scene::{SceneInputs, SessionScene};
+use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, landmark};
 use tomcom_devices::stream::{PORTS, is_free};
 use tomcom_devices::stream_head;
 use tomcom_devices::viewer::{self, ViewerAvailability};
@@ -202,21 +202,24 @@ fn serve(
     because: &'static str,
 ) -> Result<RerunReviewOutcome, RerunViewerError> {
     let playing = playing(recordings)?;
-    let (server, web, viewer) = ports().map_err(RerunViewerError::Web)?;
-    let outlets = StreamOutlets { file: None, server: Some((server, true)), at };
+    let (server, web, viewer) = ports(at).map_err(RerunViewerError::Web)?;
+    let outlets = StreamOutlets { file: None, server: Some((server, true)) };
     let writer = write(playing, recordings, &outlets)?.map_err(RerunViewerError::Web)?;
-    let url = format!("http://{web}/?url={}", uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F"));
+    let url = format!(
+        "http://{web}/?hide_welcome_screen&url={}",
+        uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F")
+    );
     viewer::browse(&url);
     Ok(RerunReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// The first free pair of network ports for stream and web viewer; the web viewer is served at once. Ports are taken in
-/// pairs, because Rerun's server does not report that another program took its port in the meantime.
-fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
+/// The first free pair of network ports for stream and web viewer; the web viewer is served at once, and opens at this
+/// time.
+fn ports(at: Option<SessionTime>) -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
     for nth in 0..=PORTS {
         let [server, web] = [SERVER_PORT, WEB_PORT].map(|port| SocketAddr::from((Ipv4Addr::LOCALHOST, port + nth)));
-        match WebViewer::serve(web.port()).and_then(|viewer| is_free(server).map(|()| viewer)) {
+        match WebViewer::serve(web, at).and_then(|viewer| is_free(server).map(|()| viewer)) {
             Ok(viewer) => return Ok((server, web, viewer)),
             Err(reason) => failed = reason,
         }
@@ -283,7 +286,7 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewe
         Ok(begun) => begun,
         Err(reason) => return Ok(Err(reason)),
     };
-    let outlets = StreamOutlets { file: Some(begun.new_path().to_path_buf()), server: None, at: None };
+    let outlets = StreamOutlets { file: Some(begun.new_path().to_path_buf()), server: None };
     let written = write(playing(recordings)?, recordings, &outlets)?;
     Ok(written.and_then(|_| begun.finish()))
 }
@@ -344,6 +347,19 @@ fn write(
     Ok(Ok(writer))
 }
 
+/// Errors, signals and beginning false beliefs of a recording, as the viewer shows them, each with its time on the
+/// trial's clock.
+///
+/// # Errors
+/// The recording cannot be read.
+pub fn landmarks(recording: &Path) -> FileResult<Vec<(SessionTime, String)>> {
+    let mut found = Vec::new();
+    Playing::open(recording)?.play(|moment| {
+        found.extend(moment.rows.iter().filter_map(landmark).map(|words| (moment.trial, words)));
+    })?;
+    Ok(found)
+}
+
 /// A recording that is being written to a stream.
 struct Playing {
     replay: RecordingReplay,
@@ -353,7 +369,7 @@ struct Playing {
 
 impl Playing {
     fn open(recording: &Path) -> FileResult<Playing> {
-        let replay = RecordingReplay::open(recording)?.without_causes();
+        let replay = RecordingReplay::open(recording)?;
         let scene = SessionScene::new(replay.session(), 0);
         Ok(Playing { replay, scene, lane: ShownRecording::default() })
     }
@@ -364,10 +380,18 @@ impl Playing {
         header.started.clone().unwrap_or_else(|| format!("seed {} trial {}", header.session.seed, header.trial))
     }
 
-    /// Writes the whole recording to the stream; returns the number of rows.
-    fn write(mut self, writer: &mut RerunWriter) -> FileResult<u64> {
+    /// Writes the whole recording to the stream.
+    fn write(mut self, writer: &mut RerunWriter) -> FileResult<()> {
         writer.fixed(&self.lane, &self.scene.fixed());
-        let mut rows = writer.moment(&self.lane, &self.scene.opening());
+        let (opening, lane) = (self.scene.opening(), self.lane.clone());
+        writer.moment(&lane, &opening);
+        self.play(|moment| {
+            writer.moment(&lane, moment);
+        })
+    }
+
+    /// Passes on all updates of the scene, in the order of time.
+    fn play(mut self, mut show: impl FnMut(&SceneUpdate)) -> FileResult<()> {
         let mut held: Option<(TimestampedEvent, Option<DirichletBelief>)> = None;
         loop {
             let next = self.replay.step()?;
@@ -376,10 +400,9 @@ impl Playing {
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
                 let derived = SceneInputs { judged, belief: belief.as_ref().filter(|_| is_last) };
-                let moments = self.scene.see(&stamped, derived);
-                rows += moments.iter().map(|moment| writer.moment(&self.lane, moment)).sum::<u64>();
+                self.scene.see(&stamped, derived).iter().for_each(&mut show);
             }
-            let Some(next) = next else { return Ok(rows) };
+            let Some(next) = next else { return Ok(()) };
             let wants = self.scene.wants_belief(next.stamped.time);
             let belief = wants.then(|| self.replay.follower.filter.belief().clone());
             held = Some((next.stamped, belief));

@@ -15,6 +15,7 @@ from rerun.experimental import RrdReader
 
 RERUN = Path(find_spec("rerun_sdk").submodule_search_locations[0]) / "rerun_cli" / "rerun"
 LEAST_PRESSES = 20
+FALSE_BELOW = 0.5
 
 
 def run(*command):
@@ -38,12 +39,13 @@ def rows_of(path, timeline="session_time"):
 
 
 def expected(log):
-    """What the log says: for every entity, the (time, number) of the events that change it."""
+    """What the log says: for every entity, the (time, number) of the events that change it; and for curves of beliefs,
+    those of the events before which the belief is false."""
     lines = [json.loads(line) for line in log.read_text().splitlines()]
     header, events = lines[0], lines[1:]
     kitchen = Kitchen(header["layout"]["text"], header["recipes"]["text"])
     trial = Trial(kitchen)
-    found, running, shown = {}, False, {}
+    found, false, running, shown = {}, {}, False, {}
     places = [*kitchen.orders, *trial.content]
     # How everything is at the beginning.
     for place in places:
@@ -59,6 +61,7 @@ def expected(log):
                 running = False
             case "gaze":
                 add("human/gaze")
+                add("human/gaze/trail")
             case "press" if running:
                 add(f"{event['agent']}/presses")
                 _, served = trial.press(event["agent"], event["button"])
@@ -78,22 +81,31 @@ def expected(log):
                 add("robot/force")
             case "belief_estimated":
                 for aspect in event["aspects"]:
-                    add("human/belief/estimated/" + aspect["aspect"].replace(" ", "_"))
+                    entity = "human/belief/estimated/" + aspect["aspect"].replace(" ", "_")
+                    add(entity)
+                    if aspect["p_truth"] < FALSE_BELOW:
+                        false.setdefault(entity, []).append(at)
             case "participant_believes":
                 for aspect in event["aspects"]:
-                    add("human/belief/true/" + aspect["aspect"].replace(" ", "_"))
+                    if aspect["p_truth"] < FALSE_BELOW:
+                        add("human/belief/true/" + aspect["aspect"].replace(" ", "_"))
         for place, content in contents().items():
             if content != before[place]:
                 add(f"kitchen/{place}")
-    return found
+    return found, false
 
 
 def compare(stream, log, least_presses=LEAST_PRESSES):
-    rows, wanted = rows_of(stream), expected(log)
+    rows, (wanted, false) = rows_of(stream), expected(log)
     assert len(wanted["human/presses"]) >= least_presses, "too few presses to compare anything"
     for entity, places in sorted(wanted.items()):
         got = rows.get(entity, [])
         if entity.startswith("human/belief/estimated/"):
+            # A curve begins with the first false belief, at a press or between presses.
+            assert min(got, default=(1 << 62, 0)) <= min(false.get(entity, [(1 << 62, 0)])), f"{entity} begins too late"
+            places = [place for place in places if got and place >= min(got)]
+            if len(places) < LEAST_PRESSES:
+                continue
             # Between presses the estimate is shown five times a second; those at presses are told by the log.
             steps = {step for _, step in places}
             between = [place for place in got if place[1] not in steps]

@@ -1,24 +1,32 @@
-//! Layout (blueprint) of the Rerun viewer when it opens a stream: kitchen and arm above, beliefs and benefits of
-//! signals below, a list of events at the side; several recordings beside each other.
+//! Layout (blueprint) of the Rerun viewer when it opens a stream: the kitchen above; errors and false beliefs,
+//! arm and curves below; the moment in words and a list of events at the side; several recordings beside each other.
 
 use std::io;
 
-use re_sdk::blueprint::components::{LoopMode, PanelState, PlayState};
+use re_sdk::blueprint::components::{PanelState, PlayState};
 use re_sdk::blueprint::datatypes::{TextLogColumn, TextLogColumnKind, TimelineColumn};
 use re_sdk::blueprint::{
     Blueprint, BlueprintPanel, ContainerLike, Horizontal, SelectionPanel, Spatial2DView, Spatial3DView,
     StateTimelineView, Tabs, TextDocumentView, TextLogView, TimePanel, TimeSeriesView, Vertical,
 };
-use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg, TimeInt};
+use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg};
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
-use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns};
+use re_sdk_types::blueprint::archetypes::{
+    EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns, VisibleTimeRanges, VisualBounds2D,
+};
+use re_sdk_types::blueprint::components::Corner2D;
+use re_sdk_types::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 
-use tomcom_core::base::time::SessionTime;
+use crate::scene::WIDE;
 
 /// Application name of all streams, by which recordings share one layout in the Rerun viewer.
 pub(super) const APPLICATION: &str = "tomcom";
 /// The timeline that viewers open with: the trial's clock, as the console shows it.
 pub const TRIAL_TIME: &str = "trial_time";
+/// The timeline of the session's clock.
+pub(super) const SESSION_TIME: &str = "session_time";
+/// Duration of the gaze's trail, in nanoseconds.
+const TRAIL_NS: i64 = 1_500_000_000;
 
 /// Position of the camera, and the point at which it looks, in metres from the arm's base: the view shows the whole
 /// table from the human's side.
@@ -44,8 +52,6 @@ pub(super) enum ViewerStart {
     Waiting,
     /// The viewer follows the newest data of a running session.
     Following,
-    /// The viewer plays from this time on the trial's clock; no other setting of the layout has this effect.
-    From(SessionTime),
 }
 
 /// Layout of a Rerun viewer: the views, and properties that Rerun's own API for views lacks.
@@ -63,16 +69,10 @@ impl ViewerLayout {
         };
         let hidden = PanelState::Hidden;
         let time = TimePanel::new().with_state(PanelState::Collapsed).with_timeline(TRIAL_TIME);
-        let time = match opens {
-            ViewerStart::Waiting => time.with_play_state(PlayState::Paused),
-            ViewerStart::Following => time.with_play_state(PlayState::Following),
-            ViewerStart::From(at) => {
-                let from = TimeInt::new_temporal(i64::try_from(at.0).unwrap_or(i64::MAX));
-                time.with_play_state(PlayState::Playing)
-                    .with_loop_mode(LoopMode::Selection)
-                    .with_time_selection(from..=TimeInt::MAX)
-            }
-        };
+        let time = time.with_play_state(match opens {
+            ViewerStart::Waiting => PlayState::Paused,
+            ViewerStart::Following => PlayState::Following,
+        });
         let blueprint = Blueprint::new(root)
             .with_blueprint_panel(BlueprintPanel::from_state(hidden))
             .with_selection_panel(SelectionPanel::from_state(hidden))
@@ -109,33 +109,24 @@ impl ViewerLayout {
 }
 
 fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
-    let wrong = StateTimelineView::new("False beliefs")
-        .with_origin(path(lane, "human/belief/wrong"))
-        .with_contents([path(lane, "human/belief/wrong/**")]);
-    let beliefs = beliefs(lane, "P(truth): false ones marked, circles estimate, diamonds participant", properties);
-    let probes = StateTimelineView::new("Probes: answers and estimate")
-        .with_origin(path(lane, "human/probes"))
-        .with_contents([path(lane, "human/probes/**")]);
-    let beliefs = Tabs::new([beliefs, wrong.into(), probes.into()]);
-    let safety = StateTimelineView::new("Safety")
-        .with_origin(path(lane, "robot/safety"))
-        .with_contents([path(lane, "robot/safety/**")]);
-    let forces = series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
+    let arm = arm(lane, properties);
+    let (beliefs, benefit) = (beliefs(lane, properties), benefit(lane, properties));
+    let probes = lanes(lane, "Probes: answers and estimate", &["human/probes/**"]);
     let joints = series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties);
-    let worth = Tabs::new([benefit(lane, properties), joints, forces, safety.into()]);
-    let below = Horizontal::new([beliefs.into(), worth.into()]);
-    let side = Vertical::new([believed(lane), happened(lane, properties)]).with_row_shares([2.0, 3.0]);
-    let left = Vertical::new([above.into(), below.into()]).with_row_shares([5.0, 3.0]);
-    Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
+    let forces = series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
+    let safety = lanes(lane, "Safety", &["robot/safety/**"]);
+    let below =
+        Horizontal::new([overview(lane), Tabs::new([arm, beliefs, benefit, probes, joints, forces, safety]).into()]);
+    let left = Vertical::new([kitchen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
+    let side = Vertical::new([now(lane), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
+    Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 3.0]).into()
 }
 
 /// Viewer layout for one of several recordings side by side.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let belief = beliefs(lane, "P(truth)", properties);
-    let below = Horizontal::new([belief, benefit(lane, properties)]);
-    let words = Horizontal::new([believed(lane), happened(lane, properties)]);
-    Vertical::new([kitchen(lane), below.into(), words.into()]).with_row_shares([5.0, 3.0, 3.0]).into()
+    let curves = Tabs::new([overview(lane), beliefs(lane, properties), benefit(lane, properties)]);
+    let words = Horizontal::new([now(lane), happened(lane, properties)]);
+    Vertical::new([kitchen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
 }
 
 fn path(lane: &ShownRecording, entities: &str) -> String {
@@ -161,9 +152,23 @@ fn with(
     view
 }
 
-fn kitchen(lane: &ShownRecording) -> ContainerLike {
-    let contents = ["kitchen/**", "human/gaze"].map(|entities| path(lane, entities));
-    Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents).into()
+fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
+    let contents = ["kitchen/**", "human/gaze/**"].map(|entities| path(lane, entities));
+    let view = Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents);
+    // The display with the labels around it: the viewer by itself takes scaled pictures for larger than they are.
+    let (x_range, y_range) = ([-30.0, WIDE + 30.0].into(), [-95.0, WIDE * 9.0 / 16.0 + 50.0].into());
+    let view = with(view, "VisualBounds2D", &VisualBounds2D::new(Range2D { x_range, y_range }), properties);
+    // Only the points of the gaze's trail are shown for a time, on either of the clocks.
+    let last = |timeline: &str| VisibleTimeRange {
+        timeline: timeline.into(),
+        range: TimeRange {
+            start: TimeRangeBoundary::CursorRelative(TimeInt(-TRAIL_NS)),
+            end: TimeRangeBoundary::CursorRelative(TimeInt(0)),
+        },
+    };
+    let ranges = VisibleTimeRanges::new([TRIAL_TIME, SESSION_TIME].map(last));
+    let trail = path(lane, "human/gaze/trail");
+    with(view, &format!("ViewContents/overrides{trail}/visualizers"), &ranges, properties)
 }
 
 fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
@@ -173,20 +178,18 @@ fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     with(view, "EyeControls3D", &eye, properties)
 }
 
-/// A view of curves, without a legend, which would cover the curves: their colours are those of the names in the
-/// kitchen, and the viewer names the curve under the mouse.
+/// A view of curves, with a legend in a corner where the curves seldom are.
 fn series(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
-    with(view, "PlotLegend", &PlotLegend::new().with_visible(false), properties)
+    with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::RightTop), properties)
 }
 
-/// A view of belief probabilities: the estimate and, for a simulated participant, the true belief. Curves are
-/// inconspicuous, and false beliefs are marked in the colour of their state aspect.
-fn beliefs(lane: &ShownRecording, name: &str, properties: &mut Vec<Property>) -> ContainerLike {
-    let curves = ["estimated", "true", "estimated_wrong", "truly_wrong"].map(|of| format!("human/belief/{of}/**"));
-    let entities: Vec<&str> = curves.iter().map(String::as_str).chain(["human/errors/**"]).collect();
-    let view = series(lane, name, &entities, properties);
+/// A view of belief probabilities of the aspects that were false once: the estimate and, for a simulated participant, its
+/// own belief. Below them the errors.
+fn beliefs(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
+    let entities = ["human/belief/estimated/**", "human/belief/true/**", "human/errors/**"];
+    let view = series(lane, "P(truth)", &entities, properties);
     with(view, "ScalarAxis", &ScalarAxis::new().with_range(PROBABILITY), properties)
 }
 
@@ -194,12 +197,19 @@ fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
     series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"], properties)
 }
 
-fn believed(lane: &ShownRecording) -> ContainerLike {
-    let page = path(lane, "human/belief/page");
-    TextDocumentView::new(titled(lane, "What the participant believes"))
-        .with_origin(page.clone())
-        .with_contents([page])
-        .into()
+/// A view of states over time, as lanes with words.
+fn lanes(lane: &ShownRecording, name: &str, entities: &[&str]) -> ContainerLike {
+    let view = StateTimelineView::new(titled(lane, name)).with_origin(path(lane, ""));
+    view.with_contents(entities.iter().map(|entities| path(lane, entities))).into()
+}
+
+fn overview(lane: &ShownRecording) -> ContainerLike {
+    lanes(lane, "Errors, false beliefs, signals", &["error", "false/**", "signal"])
+}
+
+fn now(lane: &ShownRecording) -> ContainerLike {
+    let page = path(lane, "human/now");
+    TextDocumentView::new(titled(lane, "At this moment")).with_origin(page.clone()).with_contents([page]).into()
 }
 
 /// A view of the list of events, each with its time on the trial's clock.

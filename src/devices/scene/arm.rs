@@ -142,7 +142,9 @@ impl RobotArmScene {
         {
             return match agent {
                 Agent::Human => {
-                    vec![EntityUpdate::new("human/hand", EntityData::Points(vec![mark(kitchen, agent, button)]))]
+                    // The mark has no words, which would cover those of the robot's goal; the page has them.
+                    let pressed = ScenePoint { words: String::new(), ..mark(kitchen, agent, button) };
+                    vec![EntityUpdate::new("human/hand", EntityData::Points(vec![pressed]))]
                 }
                 Agent::Robot => self.goes_up(now),
             };
@@ -162,7 +164,12 @@ impl RobotArmScene {
                 Vec::new()
             }
             Event::RobotMoves(moment) => self.moves(moment),
-            Event::RobotTouched { force_n } => vec![touched(session, format!("{force_n:.0} N"))],
+            Event::RobotTouched { force_n } => {
+                // The words of the contact take the place of those of the goal.
+                let mut rows = self.goes_up(now);
+                rows.push(touched(session, format!("contact, {force_n:.0} N")));
+                rows
+            }
             Event::RobotSafety { mode, .. } => {
                 let state = if *mode == SafetyMode::Normal { String::new() } else { mode.name().to_lowercase() };
                 let mut rows = vec![EntityUpdate::new(SAFETY, EntityData::State(state))];
@@ -186,7 +193,7 @@ impl RobotArmScene {
         let felt = (moment.force_n >= SHOWN_N).then(|| ScenePoint {
             at_m: self.arm.tip(&self.joints).translation.vector.into(),
             radius_m: FELT_M,
-            words: format!("{:.0} N", moment.force_n),
+            words: String::new(),
             colour: entity_content::SIGNAL,
         });
         if felt.is_some() || self.feels {

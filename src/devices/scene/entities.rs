@@ -1,354 +1,203 @@
-//! Entities of the kitchen's places, of beliefs, and of freeze probes.
+//! Entities of the kitchen: its places with what lies there, the present signal, and the gaze.
 
-use super::entity_content::{
-    self, EntityData, EntityUpdate, MarkShape, SceneArea, SceneColour, SceneDisc, SceneLogLevel, SeriesStyle, slug,
-};
-use tomcom_core::base::time::SessionTime;
+use super::entity_content::{self, EntityData, EntityUpdate, SceneArea, SceneColour, SceneLabel, ScenePicture, slug};
+use super::pictures;
 use tomcom_core::communication::Signal;
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::{
     self, Agent, AspectId, ContentId, IngredientStorage, Kitchen, Location, LocationId, LocationKind, OrderContent,
-    State, StateAspect,
+    State,
 };
-use tomcom_core::measures::sequences::FALSE_BELOW;
-use tomcom_core::mind::RecordedEstimate;
-use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_core::mind::{AspectBelief, RecordedBelief};
 use tomcom_session::history::wording;
-use tomcom_session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
-use tomcom_session::{Event, Session, TimestampedEvent, probe_sampling, proposals};
+use tomcom_session::{Session, proposals};
 
-/// Period of updates of the belief estimate between presses, in nanoseconds.
-const EVERY_NS: u64 = 200_000_000;
-/// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
-const KNOWN: f64 = 0.95;
-
-/// Believed value of a state aspect with its probability.
-struct Held<'a> {
-    believes: &'a str,
-    p_truth: f64,
-}
-
-/// State of the Rerun entities that show beliefs.
-#[derive(Clone, Debug, Default)]
-pub struct BeliefScene {
-    tick: Option<u64>,
-    page: String,
-    /// For each state aspect, the falsely believed value; empty if the belief about the aspect is right.
-    taken_for: Vec<String>,
-}
-
-fn estimated(aspect: &str) -> String {
-    format!("human/belief/estimated/{}", slug(aspect))
-}
-
-fn held_truly(aspect: &str) -> String {
-    format!("human/belief/true/{}", slug(aspect))
-}
-
-/// Path of the marks at times when the estimated belief about an aspect is false.
-fn estimated_wrong(aspect: &str) -> String {
-    format!("human/belief/estimated_wrong/{}", slug(aspect))
-}
-
-/// Path of the marks at times when a simulated participant's belief about an aspect is false.
-fn truly_wrong(aspect: &str) -> String {
-    format!("human/belief/truly_wrong/{}", slug(aspect))
-}
-
-/// Updates that add a value of P(truth) to the aspect's thin curve, and a mark if the belief is false.
-fn p_truth_rows(curve: String, marks: String, p_truth: f64) -> impl Iterator<Item = EntityUpdate> {
-    let mark = (p_truth < FALSE_BELOW).then(|| EntityUpdate::new(marks, EntityData::Value(p_truth)));
-    std::iter::once(EntityUpdate::new(curve, EntityData::Value(p_truth))).chain(mark)
-}
-
-fn estimate_rows(aspect: &str, p_truth: f64) -> impl Iterator<Item = EntityUpdate> + use<> {
-    p_truth_rows(estimated(aspect), estimated_wrong(aspect), p_truth)
-}
-
-fn wrong(aspect: &str) -> String {
-    format!("human/belief/wrong/{}", slug(aspect))
-}
-
-/// Entity updates with the names and colours of the curves and marks.
-pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
-    let mut rows = Vec::new();
-    for (nth, aspect) in kitchen.aspects.iter().enumerate() {
-        let colour = entity_content::of_aspect(AspectId(nth as u8));
-        let name = wording::location(&aspect.name);
-        // All curves are grey; marks in the aspect's colour stand out where a belief is false.
-        let quiet = EntityData::QuietLine(SeriesStyle { name: name.clone(), colour: entity_content::QUIET });
-        rows.push(EntityUpdate::new(estimated(&aspect.name), quiet.clone()));
-        rows.push(EntityUpdate::new(held_truly(&aspect.name), quiet));
-        let marks = |who: &str, shape| EntityData::Marks(SeriesStyle { name: format!("{name}, {who}"), colour }, shape);
-        let wrong = [
-            (estimated_wrong(&aspect.name), marks("wrong by the estimate", MarkShape::Circle)),
-            (truly_wrong(&aspect.name), marks("truly wrong", MarkShape::Diamond)),
-        ];
-        rows.extend(wrong.map(|(entity, marks)| EntityUpdate::new(entity, marks)));
-    }
-    rows
-}
-
-impl BeliefScene {
-    pub fn is_due(&self, now: SessionTime) -> bool {
-        self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
-    }
-
-    /// Entity updates from an event that has just been applied to the session; `belief` is the estimate after the
-    /// event.
-    pub fn follow(
-        &mut self,
-        session: &Session,
-        stamped: &TimestampedEvent,
-        belief: Option<&DirichletBelief>,
-    ) -> Vec<EntityUpdate> {
-        match &stamped.event {
-            Event::ParticipantBelieves(witness) => truly(witness),
-            Event::BeliefEstimated(witness) => self.before_press(session, witness),
-            _ => belief.map_or_else(Vec::new, |belief| self.between(session, stamped.time, belief)),
-        }
-    }
-
-    fn before_press(&mut self, session: &Session, witness: &RecordedEstimate) -> Vec<EntityUpdate> {
-        let aspects = || witness.aspects.iter();
-        let mut rows: Vec<EntityUpdate> =
-            aspects().flat_map(|told| estimate_rows(&told.aspect, told.p_truth)).collect();
-        let held: Vec<Held> = aspects()
-            .map(|told| Held { believes: session.kitchen.worded(&told.believes), p_truth: told.p_truth })
-            .collect();
-        if held.len() == session.kitchen.aspects.len() {
-            rows.extend(self.in_words(session, &held));
-        }
-        rows
-    }
-
-    fn between(&mut self, session: &Session, now: SessionTime, belief: &DirichletBelief) -> Vec<EntityUpdate> {
-        if !self.is_due(now) {
-            return Vec::new();
-        }
-        self.tick = Some(now.0 / EVERY_NS);
-        let kitchen = &session.kitchen;
-        let p_truth = |index: usize| belief.p_truth(kitchen, session.state, AspectId(index as u8));
-        let held: Vec<Held> = (0..kitchen.aspects.len())
-            .map(|index| {
-                let believes = &kitchen.aspects[index].wordings[belief.aspects[index].most_likely()];
-                Held { believes, p_truth: p_truth(index) }
-            })
-            .collect();
-        let value = |(aspect, held): (&StateAspect, &Held)| estimate_rows(&aspect.name, held.p_truth);
-        let mut rows: Vec<EntityUpdate> = kitchen.aspects.iter().zip(&held).flat_map(value).collect();
-        rows.extend(self.in_words(session, &held));
-        rows
-    }
-
-    /// Entity updates of the page of beliefs and of the lanes whose text has changed.
-    fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
-        let kitchen = &session.kitchen;
-        let mut rows = Vec::new();
-        self.taken_for.resize(held.len(), String::new());
-        for (index, taken_for) in self.taken_for.iter_mut().enumerate() {
-            let (aspect, is_wrong) = (&kitchen.aspects[index], held[index].p_truth < FALSE_BELOW);
-            let now_taken_for = if is_wrong { taken_for_what(session, index, &held[index]) } else { "" };
-            if now_taken_for != taken_for {
-                *taken_for = now_taken_for.to_string();
-                rows.push(EntityUpdate::new(wrong(&aspect.name), EntityData::State(taken_for.clone())));
-            }
-        }
-        let page = page(session, held);
-        if page != self.page {
-            self.page.clone_from(&page);
-            rows.push(EntityUpdate::new("human/belief/page", EntityData::Page(page)));
-        }
-        rows
-    }
-}
-
-/// Entity updates from the recorded belief of a simulated participant.
-fn truly(witness: &RecordedBelief) -> Vec<EntityUpdate> {
-    let rows = |told: &AspectBelief| p_truth_rows(held_truly(&told.aspect), truly_wrong(&told.aspect), told.p_truth);
-    witness.aspects.iter().flat_map(rows).collect()
-}
-
-/// A page in Markdown with the false beliefs (lowest P(truth) first) and the uncertain beliefs.
-fn page(session: &Session, held: &[Held]) -> String {
-    let kitchen = &session.kitchen;
-    let mut doubtful: Vec<usize> = (0..held.len()).filter(|&index| held[index].p_truth < KNOWN).collect();
-    doubtful.sort_by(|&a, &b| held[a].p_truth.total_cmp(&held[b].p_truth));
-    let wrong = doubtful.iter().filter(|&&index| held[index].p_truth < FALSE_BELOW);
-    let unsure = doubtful.iter().filter(|&&index| held[index].p_truth >= FALSE_BELOW);
-    let name = |index: usize| wording::location(&kitchen.aspects[index].name);
-    let percent = |index: usize| (held[index].p_truth * 100.0).round();
-    let line = |&index: &usize| {
-        let (believes, truth) = (taken_for_what(session, index, &held[index]), truth(kitchen, session.state, index));
-        format!("| **{}** | **{believes}** | {truth} | {} % |\n", name(index), percent(index))
-    };
-    let lines: String = wrong.map(line).collect();
-    let mut text = match lines.is_empty() {
-        true => "Nothing is believed wrong.\n".to_string(),
-        false => format!("| believed wrong | taken for | truly | P(truth), estimate |\n|:--|:--|:--|--:|\n{lines}"),
-    };
-    let unsure: Vec<String> = unsure.map(|&index| format!("{} {} %", name(index), percent(index))).collect();
-    let less = format!("below {:.0} %", KNOWN * 100.0);
-    match unsure.is_empty() {
-        true => text.push_str(&format!("\nNothing else has an estimated P(truth) {less}.\n")),
-        false => text.push_str(&format!("\nRight, but with an estimated P(truth) {less}: {}.\n", unsure.join(", "))),
-    }
-    text
-}
-
-/// The falsely believed value of a state aspect, as its lane shows it.
-fn taken_for_what<'a>(session: &Session, aspect: usize, held: &Held<'a>) -> &'a str {
-    if held.believes == truth(&session.kitchen, session.state, aspect) { "not sure" } else { held.believes }
-}
-
-fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> &str {
-    &kitchen.aspects[aspect].wordings[kitchen.true_value(state, AspectId(aspect as u8))]
-}
-
-/// Half widths of the outlines in the kitchen, in millimetres.
+/// Width of the display in the kitchen's lengths.
+pub const WIDE: f64 = 1500.0;
+/// Half widths of the outlines in the kitchen.
 const THIN: f64 = 2.0;
 const THICK: f64 = 6.0;
-/// Distance of a label's anchor above the edge of its location, in millimetres; Rerun draws text below its anchor.
-const ABOVE_MM: f64 = 52.0;
+/// Distance of a label's anchor above the edge of its location; Rerun draws text below its anchor.
+const ABOVE: f64 = 46.0;
+/// Distance of a label's middle from the edge of the storage beside it.
+const BESIDE: f64 = 60.0;
+/// Largest number of items of a recipe that is shown.
+const MOST_ITEMS: usize = 6;
 
-const MM: f64 = 1000.0;
+/// Lengths of the kitchen in a metre.
+fn per_metre(kitchen: &Kitchen) -> f64 {
+    WIDE / kitchen.display_m[0]
+}
 
 fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: SceneColour) -> SceneArea {
-    let [width_mm, height_mm] = kitchen.display_m.map(|length| length * MM);
-    SceneArea {
-        left: on.x * width_mm,
-        top: on.y * height_mm,
-        width: on.w * width_mm,
-        height: on.h * height_mm,
-        colour,
-        line: THIN,
-    }
+    let [width, height] = kitchen.display_m.map(|length| length * per_metre(kitchen));
+    SceneArea { left: on.x * width, top: on.y * height, width: on.w * width, height: on.h * height, colour, line: THIN }
 }
 
-fn words_at(at: [f64; 2], words: &str, colour: SceneColour) -> SceneDisc {
-    SceneDisc { at, radius: 0.0, words: words.to_string(), colour }
+fn words_at(at: [f64; 2], words: &str, colour: SceneColour) -> SceneLabel {
+    SceneLabel { at, words: words.to_string(), colour }
 }
 
-/// Entity updates with the display's edge, the names of the locations, and the storages.
-pub fn fixed_places(kitchen: &Kitchen) -> Vec<EntityUpdate> {
+/// Entity updates with the display's edge, the names and furniture of the locations, and the storages.
+pub fn fixed_places(session: &Session) -> Vec<EntityUpdate> {
+    let kitchen = &session.kitchen;
     let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
+    let named = |on, words: &str, colour| {
+        let SceneArea { left, top, width, .. } = area(kitchen, on, colour);
+        words_at([left + width / 2.0, top - ABOVE], words, colour)
+    };
     let name = |(index, location): (usize, &Location)| {
-        // The name has the colour of the location's curves, since the plots have no legend.
+        // The name has the colour of the location's curves.
         let colour = entity_content::of_aspect(AspectId::of_location(LocationId(index as u8)));
-        let SceneArea { left, top, width, .. } = area(kitchen, location.display, colour);
-        words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colour)
+        named(location.display, &location.label(), colour)
     };
     let mut rows = vec![
         EntityUpdate::new("kitchen/display", EntityData::Areas(vec![area(kitchen, whole, entity_content::FRAME)])),
-        EntityUpdate::new("kitchen/names", EntityData::Discs(kitchen.locations.iter().enumerate().map(name).collect())),
+        EntityUpdate::new(
+            "kitchen/names",
+            EntityData::Labels(kitchen.locations.iter().enumerate().map(name).collect()),
+        ),
+        EntityUpdate::new(
+            "human/gaze",
+            EntityData::SightRadius(session.spec.human.perception.radius_m() * per_metre(kitchen)),
+        ),
     ];
+    for location in &kitchen.locations {
+        let look = match location.kind {
+            LocationKind::Order => pictures::named("card"),
+            LocationKind::Hand(Agent::Human) => pictures::named("human_hand"),
+            LocationKind::Hand(Agent::Robot) => pictures::named("robot_hand"),
+            _ => location.look.as_ref().and_then(pictures::of_look).or_else(|| pictures::named("counter")),
+        };
+        let at = area(kitchen, location.display, entity_content::FRAME);
+        rows.extend(picture(format!("kitchen/furniture/{}", slug(&location.name)), look, &at, 0));
+    }
     for agent in Agent::BOTH {
         let own = || kitchen.storages.iter().filter(|storage| storage.agent == agent);
         let entity = format!("kitchen/storage/{}", agent.name());
-        let areas = own().map(|storage| area(kitchen, storage.display, dimmed(entity_content::agent_colour(agent))));
-        rows.push(EntityUpdate::new(&entity, EntityData::Areas(areas.collect())));
-        rows.push(EntityUpdate::new(
-            format!("{entity}/items"),
-            EntityData::Discs(own().flat_map(|storage| stored(kitchen, storage)).collect()),
-        ));
+        let names = own().map(|storage| beside(kitchen, storage));
+        rows.push(EntityUpdate::new(&entity, EntityData::Labels(names.collect())));
+        for (nth, storage) in own().enumerate() {
+            let at = area(kitchen, storage.display, entity_content::FRAME);
+            let item = kitchen.content(storage.item).look.as_ref().and_then(pictures::of_look);
+            // Not one below the other: the place of a picture would be that of what is below it, too.
+            rows.extend(picture(format!("{entity}/shelves/{nth}"), pictures::named("shelf"), &at, 0));
+            rows.extend(picture(format!("{entity}/items/{nth}"), item, &square(&at, 1.0, 50.0), 1));
+        }
     }
     rows
 }
 
-fn dimmed([red, green, blue, opacity]: SceneColour) -> SceneColour {
-    [red / 2, green / 2, blue / 2, opacity]
+/// The name of a storage, beside its area towards the middle of the display: storages lie one above the other.
+fn beside(kitchen: &Kitchen, storage: &IngredientStorage) -> SceneLabel {
+    let colour = entity_content::agent_colour(storage.agent);
+    let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, colour);
+    let is_left = left + width / 2.0 < WIDE / 2.0;
+    let x = if is_left { left + width + BESIDE } else { left - BESIDE };
+    words_at([x, top + height / 2.0 - ABOVE / 2.0], &storage.label, colour)
+}
+
+fn picture(entity: String, png: Option<&'static [u8]>, at: &SceneArea, layer: u8) -> Option<EntityUpdate> {
+    let &SceneArea { left, top, width, height, .. } = at;
+    Some(EntityUpdate::new(entity, EntityData::Picture(ScenePicture { png: png?, left, top, width, height, layer })))
+}
+
+/// A square in an area, so high as a share of the area's height; its centre at this percentage of the height.
+fn square(on: &SceneArea, share: f64, centre: f64) -> SceneArea {
+    let side = share * on.height;
+    let (left, top) = (on.left + (on.width - side) / 2.0, on.top + on.height * centre / 100.0 - side / 2.0);
+    SceneArea { left, top, width: side, height: side, ..*on }
 }
 
 /// Entity updates with the contents of the locations that differ from the state `before`, or of all locations without
 /// `before`.
-pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = EntityUpdate> {
+pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> Vec<EntityUpdate> {
     let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
-    let changed = locations.filter(move |&id| before.is_none_or(|before| before.code(id) != state.code(id)));
-    changed.flat_map(move |id| {
-        let location = kitchen.location(id);
-        let items = items(kitchen, state, id);
-        let is_order = location.kind == LocationKind::Order;
-        let words = if items.is_empty() && !is_order { "" } else { kitchen.content_label(state, id) };
-        let colour = match (items.is_empty(), location.kind) {
-            (true, _) => entity_content::EMPTY,
-            (false, LocationKind::Hand(agent)) => entity_content::agent_colour(agent),
-            (false, _) => entity_content::FULL,
+    let changed = locations.filter(|&id| before.is_none_or(|before| before.code(id) != state.code(id)));
+    changed.flat_map(|id| content(kitchen, before, state, id)).collect()
+}
+
+fn content(kitchen: &Kitchen, before: Option<State>, state: State, id: LocationId) -> Vec<EntityUpdate> {
+    let location = kitchen.location(id);
+    let shown = shown(kitchen, state, id);
+    let is_order = location.kind == LocationKind::Order;
+    let words = if !is_order && state.content(id).is_empty() { "" } else { kitchen.content_label(state, id) };
+    let colour = match location.kind {
+        _ if shown.is_empty() => entity_content::FRAME,
+        LocationKind::Hand(agent) => entity_content::agent_colour(agent),
+        _ => entity_content::FULL,
+    };
+    let entity = format!("kitchen/{}", slug(&location.name));
+    let on = area(kitchen, location.display, colour);
+    let below = words_at([on.left + on.width / 2.0, on.top + on.height], words, colour);
+    let label = EntityData::Labels(if words.is_empty() { Vec::new() } else { vec![below] });
+    let mut rows = vec![
+        EntityUpdate::new(&entity, EntityData::Areas(vec![on.clone()])),
+        EntityUpdate::new(format!("{entity}/words"), label),
+    ];
+    // Stacked as on the participant's page, the last one on top.
+    let (share, step) = match shown.len() {
+        1 => (1.0, 0.0),
+        2 => (0.7, 26.0),
+        _ => (0.6, 21.0),
+    };
+    let first = 50.0 + step * (shown.len() as f64 - 1.0) / 2.0;
+    let places: Vec<SceneArea> = (0..shown.len()).map(|nth| square(&on, share, first - step * nth as f64)).collect();
+    let were = before.map_or(0, |before| self::shown(kitchen, before, id).len());
+    rows.extend(pictured(&format!("{entity}/items"), &shown, &places, were));
+    rows
+}
+
+/// Pictures of contents at these places, in entities with numbers; of entities that showed one before, `were` in all, the
+/// others become empty.
+fn pictured(entity: &str, looks: &[Option<&'static [u8]>], places: &[SceneArea], were: usize) -> Vec<EntityUpdate> {
+    let nowhere = SceneArea { left: 0.0, top: 0.0, width: 1.0, height: 1.0, colour: entity_content::FRAME, line: THIN };
+    let blank = pictures::named("blank");
+    let one = |nth: usize| {
+        let png = looks.get(nth).copied().flatten().or(blank);
+        picture(format!("{entity}/{nth}"), png, places.get(nth).unwrap_or(&nowhere), 1 + nth as u8)
+    };
+    (0..looks.len().max(were)).filter_map(one).collect()
+}
+
+/// Pictures of what the page shows at a location: of an order's dish, or of the items; `None` for what has no picture.
+fn shown(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<Option<&'static [u8]>> {
+    if kitchen.location(id).kind == LocationKind::Order {
+        return match state.order(id) {
+            OrderContent::Dish(dish) => vec![kitchen.dish(dish).look.as_ref().and_then(pictures::of_look)],
+            OrderContent::None | OrderContent::Served => Vec::new(),
         };
-        let entity = format!("kitchen/{}", slug(&location.name));
-        let discs = content(kitchen, location.display, &items, words, colour);
-        [
-            EntityUpdate::new(&entity, EntityData::Areas(vec![area(kitchen, location.display, colour)])),
-            EntityUpdate::new(format!("{entity}/items"), EntityData::Discs(discs)),
-        ]
-    })
+    }
+    match state.content(id) {
+        content if content.is_empty() => Vec::new(),
+        content => of_items(kitchen, content),
+    }
 }
 
-/// Ingredient items at a location; for an order location, the items of the order's dish.
-fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
-    let content = match kitchen.location(id).kind {
-        LocationKind::Order => match state.order(id) {
-            OrderContent::Dish(dish) => kitchen.dish(dish).stack(),
-            OrderContent::None | OrderContent::Served => ContentId::EMPTY,
-        },
-        _ => state.content(id),
-    };
-    if content.is_empty() { Vec::new() } else { kitchen.content(content).items.clone() }
-}
-
-/// A disc for each item of a content, side by side in an area, with a label below.
-fn content(
-    kitchen: &Kitchen,
-    on: kitchen::DisplayArea,
-    items: &[ContentId],
-    words: &str,
-    colour: SceneColour,
-) -> Vec<SceneDisc> {
-    let SceneArea { left, top, width, height, .. } = area(kitchen, on, colour);
-    let share = width / (items.len() as f64 + 1.0);
-    let radius = (height * 0.34).min(share * 0.6);
-    let disc = |(nth, &item): (usize, &ContentId)| SceneDisc {
-        at: [left + share * (nth as f64 + 1.0), top + height / 2.0],
-        radius,
-        words: String::new(),
-        colour: entity_content::of_item(kitchen, item),
-    };
-    let below = words_at([left + width / 2.0, top + height], words, colour);
-    items.iter().enumerate().map(disc).chain((!words.is_empty()).then_some(below)).collect()
-}
-
-/// Discs for a storage: its item above its name, both inside its area, since storages are adjacent.
-fn stored(kitchen: &Kitchen, storage: &IngredientStorage) -> [SceneDisc; 2] {
-    let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, entity_content::QUIET);
-    let middle = left + width / 2.0;
-    let disc = SceneDisc {
-        at: [middle, top + height * 0.26],
-        radius: (height * 0.2).min(width * 0.3),
-        words: String::new(),
-        colour: entity_content::of_item(kitchen, storage.item),
-    };
-    [disc, words_at([middle, top + height * 0.42], &storage.label, entity_content::QUIET)]
+fn of_items(kitchen: &Kitchen, content: ContentId) -> Vec<Option<&'static [u8]>> {
+    let items = kitchen.content(content).items.iter();
+    items.map(|&item| kitchen.content(item).look.as_ref().and_then(pictures::of_look)).collect()
 }
 
 /// Entities for the present signal: a highlighted location, a recipe at its order, or proposed presses in the middle of
 /// the display.
 pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
-    let outline = |areas| EntityUpdate::new("kitchen/shown", EntityData::Areas(areas));
-    let label = |words| EntityUpdate::new("kitchen/shown/words", EntityData::Discs(words));
+    let kitchen = &session.kitchen;
+    let rows = |outlines, words, items: &[Option<&'static [u8]>], places: &[SceneArea]| {
+        let mut rows = vec![
+            EntityUpdate::new("kitchen/shown", EntityData::Areas(outlines)),
+            EntityUpdate::new("kitchen/shown/words", EntityData::Labels(words)),
+        ];
+        rows.extend(pictured("kitchen/shown/items", items, places, MOST_ITEMS));
+        rows
+    };
     if let Some(left) = proposals::left(session) {
-        let middle = session.kitchen.display_m.map(|length| length * MM / 2.0);
+        let middle = kitchen.display_m.map(|length| length * per_metre(kitchen) / 2.0);
         let words = format!("next: {}", wording::proposal(left));
-        return vec![outline(Vec::new()), label(vec![words_at(middle, &words, entity_content::SIGNAL)])];
+        return rows(Vec::new(), vec![words_at(middle, &words, entity_content::SIGNAL)], &[], &[]);
     }
     let shown = session.shown.as_ref().and_then(|shown| Some((&shown.signal, shown.location?)));
-    let Some((signal, location)) = shown else { return vec![outline(Vec::new()), label(Vec::new())] };
-    let words = match signal {
-        Signal::ShowRecipe(_) => {
-            wording::recipe(session, location).map_or_else(String::new, |recipe| format!("recipe: {recipe}"))
-        }
-        Signal::Highlight(_) | Signal::Propose(_) => "look here".to_string(),
-    };
-    let inner = area(&session.kitchen, session.kitchen.location(location).display, entity_content::SIGNAL);
+    let Some((signal, location)) = shown else { return rows(Vec::new(), Vec::new(), &[], &[]) };
+    let inner = area(kitchen, kitchen.location(location).display, entity_content::SIGNAL);
     let (gap, line) = (4.0 * THIN, THICK);
     let outer = SceneArea {
         left: inner.left - gap,
@@ -358,96 +207,30 @@ pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
         line,
         ..inner
     };
-    let below = [outer.left + outer.width / 2.0, outer.top + outer.height + ABOVE_MM];
-    vec![outline(vec![outer]), label(vec![words_at(below, &words, entity_content::SIGNAL)])]
+    // Above the location's name.
+    let words_for = |words: &str| {
+        vec![words_at([inner.left + inner.width / 2.0, inner.top - 2.0 * ABOVE], words, entity_content::SIGNAL)]
+    };
+    let (Signal::ShowRecipe(_), OrderContent::Dish(dish)) = (signal, session.state.order(location)) else {
+        return rows(vec![outer], words_for("look here"), &[], &[]);
+    };
+    let (items, side) = (of_items(kitchen, kitchen.dish(dish).stack()), inner.height);
+    let below = |nth: usize| SceneArea {
+        left: inner.left + inner.width / 2.0 + side * (nth as f64 - items.len() as f64 / 2.0),
+        top: inner.top + inner.height + ABOVE,
+        width: side,
+        height: side,
+        ..inner
+    };
+    let places: Vec<SceneArea> = (0..items.len()).map(below).collect();
+    let recipe = wording::recipe(session, location).unwrap_or_default();
+    rows(vec![outer], words_for(&format!("recipe: {recipe}")), &items, &places)
 }
 
-/// Entity update with the gaze point, and with the area around the point that the participant can read.
+/// Entity update with the gaze point; the area around it is what the participant can read.
 pub fn gaze(session: &Session, sample: GazeSample) -> EntityUpdate {
-    let [width_m, height_m] = session.kitchen.display_m;
-    let at = [sample.x * width_m * MM, sample.y * height_m * MM];
-    let around = session.spec.human.perception.radius_m() * MM;
-    let colour = if sample.confidence >= MIN_CONFIDENCE { entity_content::SIGNAL } else { entity_content::LOST };
-    EntityUpdate::new("human/gaze", EntityData::Sight { at, around, colour })
-}
-
-/// Path of the lane with the question that is being asked.
-const ASKED: &str = "human/probes/asked";
-/// Path of the text log of the participant's answers.
-const SAID: &str = "human/answers";
-
-/// State of the lanes that show freeze probes.
-#[derive(Clone, Debug, Default)]
-pub struct ProbeScene {
-    /// Lanes that contain text. Answers stay in their lanes until the next probe begins, since the trial's clock stands
-    /// still during a probe.
-    filled: Vec<String>,
-}
-
-impl ProbeScene {
-    /// Entity updates from an event that has just been applied to the session; `belief` is the estimate after the
-    /// event.
-    pub fn follow(
-        &mut self,
-        session: &Session,
-        event: &ProbeEvent,
-        belief: Option<&DirichletBelief>,
-    ) -> Vec<EntityUpdate> {
-        let question = |number: u32| {
-            let open = session.probes.open.as_ref()?;
-            open.questions.get((number as usize).checked_sub(1)?)
-        };
-        match event {
-            ProbeEvent::Begun { .. } => self.filled.drain(..).map(|lane| state(lane, "")).collect(),
-            ProbeEvent::Asked { question: number, .. } => {
-                let asked = question(*number).map_or_else(String::new, |asked| wording::probe_subject(&asked.about));
-                vec![state(ASKED, asked)]
-            }
-            ProbeEvent::Answered { question: number, answer, .. } => {
-                let Some(asked) = question(*number) else { return Vec::new() };
-                self.answered(session, asked, answer.as_deref(), belief)
-            }
-            ProbeEvent::Closed { .. } => vec![state(ASKED, "")],
-            _ => Vec::new(),
-        }
-    }
-
-    fn answered(
-        &mut self,
-        session: &Session,
-        asked: &ProbeQuestion,
-        answer: Option<&str>,
-        belief: Option<&DirichletBelief>,
-    ) -> Vec<EntityUpdate> {
-        let about = wording::probe_subject(&asked.about);
-        let said = match (answer, &asked.about) {
-            (None, _) => "does not know".to_string(),
-            (Some(name), ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. }) => {
-                session.kitchen.worded(name).to_string()
-            }
-            (Some(name), ProbeSubject::NextOrder | ProbeSubject::NextPress) => wording::location(name),
-        };
-        let estimate = probe_sampling::aspect(&session.kitchen, &asked.about).zip(belief).map(|(aspect, belief)| {
-            let (held, values) = (&belief.aspects[aspect.index()], &session.kitchen.aspects[aspect.index()]);
-            let value = held.most_likely();
-            format!("{} {:.0} %", values.wordings[value], 100.0 * held.mean()[value])
-        });
-        let beside = estimate.as_ref().map_or_else(String::new, |estimate| format!(" (estimate: {estimate})"));
-        let text = format!("human answers, {about}: {said}{beside}");
-        let line =
-            EntityData::Words { level: SceneLogLevel::Info, text, colour: entity_content::agent_colour(Agent::Human) };
-        let lane = |kind: &str| format!("human/probes/{}_{kind}", slug(&about));
-        let mut rows = vec![EntityUpdate::new(SAID, line)];
-        for (kind, text) in [("answer", Some(said)), ("estimate", estimate)] {
-            if let Some(text) = text {
-                self.filled.push(lane(kind));
-                rows.push(state(lane(kind), text));
-            }
-        }
-        rows
-    }
-}
-
-fn state(entity: impl Into<String>, text: impl Into<String>) -> EntityUpdate {
-    EntityUpdate::new(entity, EntityData::State(text.into()))
+    let [width, height] = session.kitchen.display_m.map(|length| length * per_metre(&session.kitchen));
+    let at = [sample.x * width, sample.y * height];
+    let colour = if sample.confidence >= MIN_CONFIDENCE { entity_content::GAZE } else { entity_content::QUIET };
+    EntityUpdate::new("human/gaze", EntityData::Sight { at, colour })
 }

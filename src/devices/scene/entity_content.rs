@@ -1,10 +1,10 @@
-//! Content of an entity in Rerun's scene: shapes, values, text. Lengths in the kitchen are in millimetres on the wall
-//! display, measured from its top left corner; lengths of the arm are in metres in the frame of the robot's base.
+//! Content of an entity in Rerun's scene: shapes, values, text. Lengths in the kitchen are such that the wall display
+//! is 1500 wide, measured from its top left corner; lengths of the arm are in metres in the frame of the robot's base.
 
 use nalgebra::Isometry3;
 
 use tomcom_arm::kinematics::CollisionSolid;
-use tomcom_core::kitchen::{Agent, AspectId, ContentId, Kitchen};
+use tomcom_core::kitchen::{Agent, AspectId};
 
 /// New content of one entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,21 +25,21 @@ impl EntityUpdate {
 pub enum EntityData {
     /// Outlines of rectangles in the kitchen; an empty list clears the entity.
     Areas(Vec<SceneArea>),
-    Discs(Vec<SceneDisc>),
-    /// The gaze point with a circle around the point, in the kitchen.
+    Labels(Vec<SceneLabel>),
+    /// A picture in the kitchen; another one takes its place.
+    Picture(ScenePicture),
+    /// The gaze point, with a circle around it.
     Sight {
-        /// Position of the point, in millimetres from the display's upper left corner.
         at: [f64; 2],
-        /// Radius of the circle, in millimetres.
-        around: f64,
         colour: SceneColour,
     },
+    /// Radius of the circle around gaze points.
+    SightRadius(f64),
     Points(Vec<ScenePoint>),
     Solids(Vec<CollisionSolid>, SceneColour),
     Place(Isometry3<f64>),
     Value(f64),
     Line(SeriesStyle),
-    QuietLine(SeriesStyle),
     Marks(SeriesStyle, MarkShape),
     Words {
         level: SceneLogLevel,
@@ -62,16 +62,25 @@ pub struct SceneArea {
     pub line: f64,
 }
 
-/// A disc in the kitchen with a label below its centre.
+/// A label in the kitchen; Rerun draws the text below this point.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SceneDisc {
-    /// Centre of the disc, in millimetres from the display's upper left corner.
+pub struct SceneLabel {
     pub at: [f64; 2],
-    /// Radius of the disc in millimetres; 0 shows the label only.
-    pub radius: f64,
-    /// Label below the disc's centre; empty for no label.
     pub words: String,
     pub colour: SceneColour,
+}
+
+/// A picture that fills a rectangle in the kitchen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenePicture {
+    /// The content of a PNG file.
+    pub png: &'static [u8],
+    pub left: f64,
+    pub top: f64,
+    pub width: f64,
+    pub height: f64,
+    /// Pictures with a larger number lie on those with a smaller one.
+    pub layer: u8,
 }
 
 /// A labelled point in space, in metres.
@@ -97,7 +106,6 @@ pub struct SeriesStyle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkShape {
     Cross,
-    Circle,
     Diamond,
 }
 
@@ -118,30 +126,30 @@ pub fn slug(name: &str) -> String {
 /// A colour: red, green, blue and opacity, each from 0 to 255.
 pub type SceneColour = [u8; 4];
 
-/// Colour of the display's outline.
-pub const FRAME: SceneColour = [104, 110, 122, 255];
-/// Colour of locations without content.
-pub const EMPTY: SceneColour = [124, 130, 142, 255];
+// The viewer's ground is black or white. Colours of texts have a luminance whose contrast is above 4 with both.
+
+/// Colour of the display's outline, and of locations without content.
+pub const FRAME: SceneColour = [115, 121, 132, 255];
 /// Colour of locations with content.
-pub const FULL: SceneColour = [0, 172, 160, 255];
-/// Colour of the human and the human's presses.
-pub const HUMAN: SceneColour = [52, 152, 235, 255];
+pub const FULL: SceneColour = [0, 136, 126, 255];
+/// Colour of the human and the human's presses, as on the participant's page.
+pub const HUMAN: SceneColour = [179, 101, 43, 255];
 /// Colour of the human's hand and forearm.
 pub const SKIN: SceneColour = [222, 170, 136, 255];
-/// Colour of the robot and its presses.
-pub const ROBOT: SceneColour = [236, 136, 32, 255];
-/// Colour of signals, and of usable gaze samples.
-pub const SIGNAL: SceneColour = [236, 184, 0, 255];
+/// Colour of the robot and its presses, as on the participant's page.
+pub const ROBOT: SceneColour = [77, 124, 176, 255];
+/// Colour of signals, as on the participant's page.
+pub const SIGNAL: SceneColour = [199, 76, 136, 255];
+/// Colour of usable gaze samples.
+pub const GAZE: SceneColour = [236, 184, 0, 255];
 /// Colour of signals that the wizard sends.
-pub const WIZARD: SceneColour = [180, 100, 230, 255];
+pub const WIZARD: SceneColour = [160, 88, 205, 255];
 /// Colour of signals that the assistant recommends or sends.
-pub const ASSISTANT: SceneColour = [40, 176, 104, 255];
+pub const ASSISTANT: SceneColour = [29, 138, 80, 255];
 /// Colour of the human's errors and of stops of the arm.
-pub const ERROR: SceneColour = [232, 60, 60, 255];
-/// Colour of less important curves and texts.
-pub const QUIET: SceneColour = [134, 140, 152, 255];
-/// Colour of gaze samples that the belief filter cannot use.
-pub const LOST: SceneColour = [120, 120, 120, 255];
+pub const ERROR: SceneColour = [223, 57, 57, 255];
+/// Colour of less important curves and texts, and of gaze samples that the belief filter cannot use.
+pub const QUIET: SceneColour = [116, 121, 131, 255];
 /// Colour of the table.
 pub const TABLE: SceneColour = [92, 84, 76, 255];
 /// Colour of buttons on the table.
@@ -151,9 +159,6 @@ pub const STEEL: SceneColour = [176, 186, 200, 255];
 /// Colour of the arm's joints.
 pub const JOINT: SceneColour = [82, 132, 190, 255];
 
-/// Hues of ingredients that do not look alike: yellow, green, orange, blue, pink, violet, cyan, lime.
-const HUES: [f64; 8] = [0.13, 0.38, 0.06, 0.58, 0.93, 0.75, 0.48, 0.22];
-
 pub fn agent_colour(agent: Agent) -> SceneColour {
     match agent {
         Agent::Human => HUMAN,
@@ -161,30 +166,32 @@ pub fn agent_colour(agent: Agent) -> SceneColour {
     }
 }
 
-/// The colour of an item: ingredients that look alike share a hue, and the further an ingredient is processed, the
-/// paler it is.
-pub fn of_item(kitchen: &Kitchen, item: ContentId) -> SceneColour {
-    let content = kitchen.content(item);
-    let own = content.ingredient.unwrap_or_default();
-    let alike = content.look_alikes.iter().filter_map(|&other| kitchen.content(other).ingredient);
-    let family = alike.fold(own, usize::min);
-    let states = || (0..item.index()).filter(|&other| kitchen.contents[other].ingredient == Some(own));
-    let paler = states().count() as f64;
-    let hue = (HUES[family % HUES.len()] + if own == family { 0.0 } else { 0.94 }).fract();
-    of_hue(hue, (0.85 - 0.22 * paler).max(0.25), 0.98)
-}
+/// Colours of aspects, neighbours far apart.
+const ASPECTS: [u32; 24] = [
+    0xe72f16, 0x5970e0, 0x448908, 0xc14ba4, 0x088781, 0x937438, 0x8458ff, 0x33893a, 0xed1745, 0x457cb2, 0x698207,
+    0xb74bc2, 0x088a58, 0xaf6643, 0x6563ff, 0x488732, 0xe51688, 0x368391, 0x8a7908, 0xa055d8, 0x098c2d, 0xcb5051,
+    0x3f6cff, 0x628330,
+];
 
+/// The colour of an aspect's name and curves.
 pub fn of_aspect(aspect: AspectId) -> SceneColour {
-    let nth = aspect.index();
-    of_hue((0.02 + nth as f64 * 0.618).fract(), if nth.is_multiple_of(2) { 0.75 } else { 0.45 }, 0.95)
+    let [_, red, green, blue] = ASPECTS[aspect.index() % ASPECTS.len()].to_be_bytes();
+    [red, green, blue, 255]
 }
 
-/// Computes the colour with this hue, saturation and value, each from 0 to 1.
-fn of_hue(hue: f64, saturation: f64, value: f64) -> SceneColour {
-    let channel = |shift: f64| {
-        let k = (shift + hue * 6.0) % 6.0;
-        let part = value - value * saturation * k.min(4.0 - k).clamp(0.0, 1.0);
-        (part * 255.0).round() as u8
-    };
-    [channel(5.0), channel(3.0), channel(1.0), 255]
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_can_be_read_on_black_and_on_white() {
+        let named = [FRAME, FULL, HUMAN, ROBOT, SIGNAL, WIZARD, ASSISTANT, ERROR, QUIET];
+        for colour in named.into_iter().chain((0..24).map(|nth| of_aspect(AspectId(nth)))) {
+            let light = |part: u8| ((f64::from(part) / 255.0 + 0.055) / 1.055).powf(2.4);
+            let [red, green, blue, _] = colour.map(light);
+            let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+            let [on_black, on_white] = [(luminance + 0.05) / 0.05, 1.05 / (luminance + 0.05)];
+            assert!(on_black > 4.0 && on_white > 4.0, "{colour:?}: {on_black:.1}, {on_white:.1}");
+        }
+    }
 }

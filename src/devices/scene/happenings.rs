@@ -1,6 +1,7 @@
 //! Text log of events, and the net benefit of signals, for Rerun.
 
 use super::EntityUpdate;
+use super::beliefs;
 use super::entity_content::{self, EntityData, MarkShape, SceneColour, SceneLogLevel, SeriesStyle, slug};
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
@@ -19,6 +20,8 @@ const COST_LINE: &str = "assistant/benefit/cost_line";
 
 /// Path of the entity with all lines of the text log.
 const HAPPENED: &str = "happened";
+/// Largest number of characters of a line of the text log, which the viewer would cut at the edge of its view.
+const LINE: usize = 76;
 
 fn benefit(signal: &Signal) -> String {
     format!("assistant/benefit/{}", slug(signal.target().unwrap_or_default()))
@@ -50,22 +53,34 @@ fn say(entity: &str, level: SceneLogLevel, text: String, colour: SceneColour) ->
     EntityUpdate::new(entity, EntityData::Words { level, text, colour })
 }
 
-/// Only the lines of the text log among these updates, in the order of time.
+/// Only the lines of the text log among these updates, in the order of time and cut to length; the rows of their own
+/// entities have the whole text.
 pub fn in_order(rows: &[EntityUpdate]) -> Vec<EntityUpdate> {
-    let lines = rows.iter().filter(|row| matches!(row.shown, EntityData::Words { .. }));
-    lines.map(|row| EntityUpdate::new(HAPPENED, row.shown.clone())).collect()
+    let line = |row: &EntityUpdate| {
+        let EntityData::Words { level, text, colour } = &row.shown else { return None };
+        Some(say(HAPPENED, *level, short(text), *colour))
+    };
+    rows.iter().filter_map(line).collect()
+}
+
+/// The beginning of a text, in whole words.
+fn short(text: &str) -> String {
+    let Some((cut, _)) = text.char_indices().nth(LINE) else { return text.to_string() };
+    let start = &text[..cut];
+    let end = start.rfind(' ').filter(|end| *end > 0).unwrap_or(cut);
+    format!("{}…", start[..end].trim_end_matches([',', ';', ':']))
 }
 
 /// A line of the text log for a new entry of the timeline; presses that were judged errors are marked.
-pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPress>) -> EntityUpdate {
+pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<'_>>) -> EntityUpdate {
     let (who, text) = wording::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match entry.what {
         TimelineEvent::Press { agent, no_effect, .. } => {
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
-                Some(press) => {
-                    let text = format!("{text} ({})", wording::error(&session.kitchen, press));
+                Some(error) => {
+                    let text = format!("ERROR {}, {text} ({})", error.number, error.why(&session.kitchen));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
                 None if no_effect.is_none() => {
@@ -90,40 +105,90 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
     }
 }
 
+/// The words of an update that shows an error, a signal, or the beginning of a false belief; `None` for other updates.
+pub fn landmark(row: &EntityUpdate) -> Option<String> {
+    match (row.entity.as_str(), &row.shown) {
+        ("human/presses", EntityData::Words { level: SceneLogLevel::Error, text, .. })
+        | ("wizard/signals" | "assistant/signals", EntityData::Words { level: SceneLogLevel::Info, text, .. }) => {
+            Some(text.clone())
+        }
+        (entity, EntityData::State(taken_for)) if !taken_for.is_empty() => {
+            let aspect = entity.strip_prefix(beliefs::FALSE)?;
+            Some(format!("false belief about {}: {taken_for}", wording::location(aspect)))
+        }
+        _ => None,
+    }
+}
+
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
     say("trial/events", SceneLogLevel::Info, wording::protocol(event), entity_content::QUIET)
 }
 
-/// The judgement of the press in this event, if the press was an error.
-pub fn error<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Option<&'a JudgedPress> {
-    let press = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok().map(|index| &judged[index]);
-    press.filter(|press| press.verdict.error)
+/// A press that was an error.
+#[derive(Clone, Copy, Debug)]
+pub struct ShownError<'a> {
+    /// Its number among the errors of the trial, from 1.
+    pub number: usize,
+    pub press: &'a JudgedPress,
+}
+
+impl ShownError<'_> {
+    /// Why the press was an error.
+    pub fn why(&self, kitchen: &Kitchen) -> String {
+        let words = wording::error(kitchen, self.press);
+        words.strip_prefix("error, ").unwrap_or(&words).to_string()
+    }
+}
+
+/// The error in this event, if its press was one.
+pub fn error<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Option<ShownError<'a>> {
+    let index = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok()?;
+    let press = judged.get(index).filter(|press| press.verdict.error)?;
+    let number = judged[..=index].iter().filter(|press| press.verdict.error).count();
+    Some(ShownError { number, press })
 }
 
 pub fn mark() -> EntityUpdate {
     EntityUpdate::new(ERROR_MARKS, EntityData::Value(0.0))
 }
 
-/// Entity updates with the expected saving of each signal before its cost is subtracted, and with the recommendation.
-pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
-    let mut rows: Vec<EntityUpdate> = advice
-        .options
-        .iter()
-        .map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net)))
-        .collect();
-    rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
-    if let Some(best) = &advice.best {
+/// The signals whose net benefit is shown.
+#[derive(Clone, Debug, Default)]
+pub struct AdviceScene {
+    /// The signals that were advised so far: a curve begins where its signal is advised first, so that plot and legend have
+    /// only those.
+    advised: Vec<Signal>,
+}
+
+impl AdviceScene {
+    /// Entity updates with the net benefits of signals, and with the recommendation in words.
+    pub fn follow(&mut self, advice: &Recommendation, told: &str) -> Vec<EntityUpdate> {
+        if let Some(best) = advice.best.as_ref().filter(|best| !self.advised.contains(best)) {
+            self.advised.push(best.clone());
+        }
+        let drawn = advice.options.iter().filter(|option| self.advised.contains(&option.signal));
+        let mut rows: Vec<EntityUpdate> =
+            drawn.map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net))).collect();
+        rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
+        if !told.is_empty() {
+            let text = format!("assistant {told}");
+            rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::ASSISTANT));
+        }
+        rows
+    }
+}
+
+/// What the assistant recommends, in words; empty if it recommends nothing.
+pub fn advised(kitchen: &Kitchen, advice: &Recommendation) -> String {
+    let signal = advice.best.as_ref().map(|best| {
         let net = advice.top().map_or(0.0, |top| top.net);
         let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
         let why = reason.map_or_else(String::new, |reason| format!("; {}", reason.words()));
-        let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
-        rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::ASSISTANT));
-    }
-    if let Some(proposal) = &advice.proposal {
-        let text = format!("assistant proposes: {}", wording::proposal(&proposal.presses));
-        rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::ASSISTANT));
-    }
-    rows
+        format!("advises: {} (net {net:+.2}){why}", wording::signal(best))
+    });
+    let proposal =
+        advice.proposal.as_ref().map(|proposal| format!("proposes: {}", wording::proposal(&proposal.presses)));
+    [signal, proposal].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {

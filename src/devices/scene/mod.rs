@@ -5,14 +5,22 @@
 //! viewer.
 
 mod arm;
+mod beliefs;
 mod entities;
 pub mod entity_content;
 mod happenings;
+mod pictures;
+mod probes;
 
+pub use entities::WIDE;
 pub use entity_content::{EntityData, EntityUpdate};
+pub use happenings::landmark;
+pub use pictures::of_look as picture;
 
 use arm::RobotArmScene;
-use entities::{BeliefScene, ProbeScene};
+use beliefs::BeliefScene;
+use happenings::AdviceScene;
+use probes::ProbeScene;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::KitchenChange;
@@ -21,7 +29,13 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 6;
+pub const VERSION: u32 = 7;
+
+/// A time on the trial's clock, in minutes, seconds and tenths, rounded up: what happens at it is past then.
+pub fn moment_on_clock(time: SessionTime) -> String {
+    let time = SessionTime(time.0.next_multiple_of(100_000_000));
+    format!("{time}.{}", time.0 / 100_000_000 % 10)
+}
 
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +61,7 @@ pub struct SessionScene {
     session: Session,
     arm: RobotArmScene,
     belief: BeliefScene,
+    advice: AdviceScene,
     probes: ProbeScene,
     /// Sequence number of the first event that the scene has not shown yet.
     next: u64,
@@ -60,6 +75,7 @@ impl SessionScene {
             session: session.clone(),
             arm: RobotArmScene::new(session),
             belief: BeliefScene::default(),
+            advice: AdviceScene::default(),
             probes: ProbeScene::default(),
             next,
             told: session.timeline.len(),
@@ -69,16 +85,16 @@ impl SessionScene {
     /// Entities that do not change during the session.
     pub fn fixed(&self) -> Vec<EntityUpdate> {
         let kitchen = &self.session.kitchen;
-        let mut rows = entities::fixed_places(kitchen);
+        let mut rows = entities::fixed_places(&self.session);
         rows.extend(self.arm.fixed(kitchen));
-        rows.extend(entities::fixed_beliefs(kitchen));
+        rows.extend(beliefs::fixed_beliefs(kitchen));
         rows.extend(happenings::fixed(&self.session));
         rows
     }
 
     pub fn opening(&mut self) -> SceneUpdate {
         let (kitchen, state) = (self.session.kitchen.clone(), self.session.state);
-        let mut rows: Vec<EntityUpdate> = entities::contents(&kitchen, None, state).collect();
+        let mut rows = entities::contents(&kitchen, None, state);
         rows.extend(entities::shown_signal(&self.session));
         rows.extend(self.arm.opening(&self.session));
         let time = self.session.time;
@@ -136,7 +152,10 @@ impl SessionScene {
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => {
                 rows.extend(entities::shown_signal(session));
             }
-            Event::Advised(advice) => rows.extend(happenings::advice(&session.kitchen, advice)),
+            Event::Advised(advice) => {
+                self.belief.advice = happenings::advised(&session.kitchen, advice);
+                rows.extend(self.advice.follow(advice, &self.belief.advice));
+            }
             Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),
             Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),
             Event::Probe(event) => rows.extend(self.probes.follow(session, event, derived.belief)),
@@ -144,12 +163,13 @@ impl SessionScene {
             _ => {}
         }
         let error = happenings::error(stamped, derived.judged);
-        rows.extend(session.timeline[self.told..].iter().map(|entry| happenings::entry(session, entry, error)));
-        self.told = session.timeline.len();
+        let new = &session.timeline[self.told..];
+        rows.extend(new.iter().map(|entry| happenings::entry(session, entry, error)));
         rows.extend(happenings::in_order(&rows));
         rows.extend(error.map(|_| happenings::mark()));
         rows.extend(self.arm.follow(session, stamped, change));
-        rows.extend(self.belief.follow(session, stamped, derived.belief));
+        rows.extend(self.belief.follow(session, stamped, new, error, derived.belief));
+        self.told = session.timeline.len();
         rows
     }
 }

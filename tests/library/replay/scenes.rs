@@ -1,9 +1,12 @@
 //! The scene that Rerun shows of a session.
 
+use std::collections::BTreeSet;
+
+use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_session::history::wording;
 
-use super::{folder, session, simulated};
+use super::{SESSIONS, folder, session, simulated};
 use crate::support::*;
 
 /// Everything that a recording shows, and its events.
@@ -69,12 +72,99 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         };
         let happened = lines("happened");
         assert!(happened.len() > presses[0].len() + presses[1].len(), "{name}: more than presses happened");
-        let [mut ordered, mut told] = [happened.clone(), lines("")];
-        ordered.extend(happened);
-        ordered.sort();
-        told.sort();
-        assert_eq!(ordered, told, "{name}: every line stands in the list of what happened once more");
+        // Every line stands in the list of what happened once more, cut to the width of the view.
+        let mut whole: Vec<String> = lines("").into_iter().collect();
+        for line in &happened {
+            assert!(line.chars().count() <= 77, "{name}: the viewer would cut {line}");
+            let start = line.strip_suffix('…').unwrap_or(line);
+            let is_it = |text: &String| *text == *line || (line.ends_with('…') && text.starts_with(start));
+            // The line itself is among the lines, too.
+            let of = whole.iter().position(|text| *text == *line).expect("the line");
+            whole.remove(of);
+            let of = whole.iter().position(is_it).unwrap_or_else(|| panic!("{name}: {line} is nobody's"));
+            whole.remove(of);
+        }
+        assert!(whole.is_empty(), "{name}: not in the list: {whole:?}");
     }
+}
+
+/// The texts of an entity with a page or states, with the moments.
+fn texts<'a>(moments: &'a [SceneUpdate], entity: &str) -> Vec<(&'a SceneUpdate, &'a str)> {
+    let rows = moments.iter().flat_map(|moment| moment.rows.iter().map(move |row| (moment, row)));
+    let text = |(moment, row): (&'a SceneUpdate, &'a EntityUpdate)| match &row.shown {
+        EntityData::Page(text) | EntityData::State(text) if row.entity == entity => Some((moment, text.as_str())),
+        _ => None,
+    };
+    rows.filter_map(text).collect()
+}
+
+#[test]
+fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
+    let recording = Path::new("tests/golden/format-3-offers.jsonl");
+    let (moments, _) = shown(recording);
+    let mut replay = RecordingReplay::open(recording).expect("a recording");
+    replay.run().expect("events of a session");
+    let errors: Vec<u64> =
+        replay.follower.judged.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect();
+    assert!(errors.len() > 2, "{} errors", errors.len());
+    let pages = texts(&moments, "human/now");
+    let states = texts(&moments, "error");
+    for (number, seq) in (1..).zip(&errors) {
+        let heading = format!("## Error {number} at ");
+        let (moment, page) = pages.iter().find(|(_, page)| page.starts_with(&heading)).expect("a page of the error");
+        assert_eq!(moment.step, *seq, "{heading}");
+        assert!(page.contains("**Why an error**: "), "{page}");
+        let (_, then) = pages.iter().rfind(|(_, page)| page.starts_with(&heading)).expect("a page of the error");
+        // A table would be as wide as its longest line, and cut.
+        assert!(!then.contains('|'), "{then}");
+        assert!(states.iter().any(|(moment, text)| moment.step == *seq && text.starts_with(&number.to_string())));
+    }
+    let believed =
+        |by: &str| pages.iter().any(|(_, page)| page.contains(&format!("Believed wrong before it, by the {by}:")));
+    assert!(believed("estimate") && believed("simulated participant"));
+}
+
+#[test]
+fn a_scene_shows_contents_as_the_page_draws_them() {
+    for name in SESSIONS {
+        let files = session(name);
+        let kitchen = &files.kitchen.kitchen;
+        let items = || kitchen.contents.iter().filter_map(|content| content.look.as_ref());
+        let looks = items().chain(kitchen.dishes.iter().filter_map(|dish| dish.look.as_ref()));
+        let places = kitchen.locations.iter().filter_map(|place| place.look.as_ref());
+        for look in looks.chain(places) {
+            let picture = tomcom_devices::scene::picture(look).unwrap_or_else(|| panic!("no picture of {look:?}"));
+            assert!(picture.starts_with(b"\x89PNG"), "{look:?}");
+        }
+    }
+    // An item that is taken lies in the hand, as a picture.
+    let (moments, _) = shown(Path::new("tests/golden/format-3-hand.jsonl"));
+    let in_hand =
+        moments.iter().flat_map(|moment| &moment.rows).filter(|row| row.entity == "kitchen/human_hand/items/0");
+    let mut seen = Vec::new();
+    for row in in_hand {
+        let EntityData::Picture(picture) = &row.shown else { panic!("{row:?}") };
+        seen.push(picture.png);
+    }
+    seen.sort();
+    seen.dedup();
+    assert!(seen.len() > 2, "{} pictures, of nothing and of items", seen.len());
+}
+
+#[test]
+fn curves_begin_with_the_first_false_belief() {
+    let (moments, _) = shown(Path::new("tests/golden/format-3-offers.jsonl"));
+    let mut drawn = BTreeSet::new();
+    for row in moments.iter().flat_map(|moment| &moment.rows) {
+        let EntityData::Value(p_truth) = row.shown else { continue };
+        if row.entity.starts_with("human/belief/true/") {
+            assert!(p_truth < FALSE_BELOW, "{row:?}");
+        }
+        if row.entity.starts_with("human/belief/estimated/") && drawn.insert(&row.entity) {
+            assert!(p_truth < FALSE_BELOW, "{row:?}");
+        }
+    }
+    assert!(!drawn.is_empty());
 }
 
 #[test]
@@ -94,7 +184,10 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
         for told in &witness.aspects {
             let entity = format!("human/belief/estimated/{}", told.aspect.replace(' ', "_"));
             let mut rows = moment.rows.iter().filter(|row| row.entity == entity);
-            assert_eq!(rows.next().map(|row| &row.shown), Some(&EntityData::Value(told.p_truth)), "{entity}");
+            match rows.next() {
+                Some(row) => assert_eq!(row.shown, EntityData::Value(told.p_truth), "{entity}"),
+                None => assert!(told.p_truth >= FALSE_BELOW, "{entity} is not drawn"),
+            }
             assert!(rows.next().is_none(), "{entity} once");
         }
     }

@@ -169,3 +169,20 @@ fn a_path_that_is_nearly_right_gets_a_suggestion() {
     let far = complaint(&["replay", &format!("{out}/another"), "--verify"]);
     assert!(!far.contains("did you mean") && far.contains("cannot be read"), "{far}");
 }
+
+#[test]
+fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
+    let recording = "tests/golden/format-3-hand.jsonl";
+    let output = check(&["review", recording, "--errors"], 0);
+    let told = String::from_utf8(output.stdout).expect("UTF-8");
+    let line =
+        |words: &str| told.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{words}: {told}"));
+    for words in ["# ERROR 1, human: ", "# ERROR 3, human: ", "# false belief about ", "# wizard: "] {
+        let (command, _) = line(words).split_once("  # ").expect("a comment");
+        let at = command.strip_prefix(&format!("tomcom review {recording} --at ")).expect("a command");
+        // What is printed is taken: the refusal is of --errors beside it.
+        assert!(complaint(&["review", recording, "--errors", "--at", at]).contains("--errors"), "{at}");
+    }
+    let errors = told.matches("# ERROR ").count() as u64;
+    assert_eq!(Value::from(errors), figures(&["replay", recording, "--format", "json"], 0)["errors"]);
+}

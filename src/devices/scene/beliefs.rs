@@ -1,0 +1,259 @@
+//! Entities of beliefs: curves and lanes of what is believed wrong, and the page that tells in words what was pressed,
+//! shown and believed.
+
+use super::entity_content::{self, EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
+use super::happenings::ShownError;
+use super::moment_on_clock;
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
+use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
+use tomcom_session::history::wording;
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
+
+/// Period of updates of the belief estimate between presses, in nanoseconds.
+const EVERY_NS: u64 = 200_000_000;
+/// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
+const KNOWN: f64 = 0.95;
+/// Path of the page in words.
+const PAGE: &str = "human/now";
+/// Path of the lane with the human's errors, each until the next press.
+const ERRORS: &str = "error";
+/// Path of the lane with the present signal.
+const SIGNALS: &str = "signal";
+
+/// Beginning of the paths of lanes with false beliefs.
+pub const FALSE: &str = "false/";
+
+/// A belief about one state aspect.
+#[derive(Clone, Copy)]
+struct Held<'a> {
+    aspect: usize,
+    believes: &'a str,
+    p_truth: f64,
+}
+
+/// State of the Rerun entities that show beliefs.
+#[derive(Clone, Debug, Default)]
+pub struct BeliefScene {
+    tick: Option<u64>,
+    /// For each state aspect, the falsely believed value; empty if the belief about the aspect is right.
+    taken_for: Vec<String>,
+    /// For each state aspect, whether its estimate was false once: its curve begins there, so that plot and legend
+    /// have only what was believed wrong.
+    is_drawn: Vec<bool>,
+    /// What the simulated participant believes wrong before its next press, in words.
+    own: String,
+    /// State of the kitchen before the last press of the human.
+    before: Option<State>,
+    /// Parts of the page: the last press of the human with the false beliefs before it, the signal, what the assistant
+    /// advises, and the estimate now.
+    press: String,
+    is_error: bool,
+    signal: String,
+    pub advice: String,
+    estimate: String,
+    page: String,
+}
+
+fn estimated(aspect: &str) -> String {
+    format!("human/belief/estimated/{}", slug(aspect))
+}
+
+/// Path of the marks at presses before which a simulated participant's belief about an aspect is false.
+fn held_truly(aspect: &str) -> String {
+    format!("human/belief/true/{}", slug(aspect))
+}
+
+fn wrong(aspect: &str) -> String {
+    format!("{FALSE}{}", slug(aspect))
+}
+
+/// Entity updates with the names and colours of the curves and marks.
+pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
+    let of_aspect = |(nth, aspect): (usize, &StateAspect)| {
+        let colour = entity_content::of_aspect(AspectId(nth as u8));
+        let name = wording::location(&aspect.name);
+        let own = SeriesStyle { name: format!("{name}, the participant's own"), colour };
+        [
+            EntityUpdate::new(estimated(&aspect.name), EntityData::Line(SeriesStyle { name, colour })),
+            EntityUpdate::new(held_truly(&aspect.name), EntityData::Marks(own, MarkShape::Diamond)),
+        ]
+    };
+    kitchen.aspects.iter().enumerate().flat_map(of_aspect).collect()
+}
+
+impl BeliefScene {
+    pub fn is_due(&self, now: SessionTime) -> bool {
+        self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
+    }
+
+    /// Entity updates from an event that has just been applied to the session, with the entries of the timeline that it
+    /// made; `belief` is the estimate after the event.
+    pub fn follow(
+        &mut self,
+        session: &Session,
+        stamped: &TimestampedEvent,
+        new: &[TimelineEntry],
+        error: Option<ShownError<'_>>,
+        belief: Option<&DirichletBelief>,
+    ) -> Vec<EntityUpdate> {
+        let mut rows = Vec::new();
+        for entry in new {
+            if let TimelineEvent::Press { agent: Agent::Human, before, .. } = entry.what {
+                rows.extend(self.pressed(session, entry, error));
+                self.before = Some(before);
+            }
+        }
+        match &stamped.event {
+            Event::ParticipantBelieves(witness) => rows.extend(self.truly(session, witness)),
+            Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, witness)),
+            _ => rows.extend(belief.and_then(|belief| self.between(session, stamped.time, belief)).unwrap_or_default()),
+        }
+        let signal = session.shown.as_ref().map_or_else(String::new, |shown| wording::signal(&shown.signal));
+        if signal != self.signal {
+            rows.push(EntityUpdate::new(SIGNALS, EntityData::State(signal.clone())));
+            self.signal = signal;
+        }
+        let page = self.page();
+        if page != self.page {
+            self.page.clone_from(&page);
+            rows.push(EntityUpdate::new(PAGE, EntityData::Page(page)));
+        }
+        rows
+    }
+
+    fn pressed(
+        &mut self,
+        session: &Session,
+        entry: &TimelineEntry,
+        error: Option<ShownError<'_>>,
+    ) -> Option<EntityUpdate> {
+        let (at, (_, pressed)) =
+            (moment_on_clock(session.trial_clock(entry.time)), wording::happening(&session.kitchen, &entry.what));
+        let was_error = std::mem::replace(&mut self.is_error, error.is_some());
+        let own = std::mem::take(&mut self.own);
+        let Some(error) = error else {
+            self.press = format!("**Last press**, {at}: {pressed}. No error.\n");
+            return was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new())));
+        };
+        let why = error.why(&session.kitchen);
+        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {why}.\n{own}", error.number);
+        Some(EntityUpdate::new(ERRORS, EntityData::State(format!("{}: {pressed}", error.number))))
+    }
+
+    fn before_press(&mut self, session: &Session, witness: &RecordedEstimate) -> Vec<EntityUpdate> {
+        let kitchen = &session.kitchen;
+        let held: Vec<Held> = witness
+            .aspects
+            .iter()
+            .enumerate()
+            .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
+            .collect();
+        if let Some(before) = self.before.take_if(|_| self.is_error) {
+            self.press += &believed(kitchen, before, "Believed wrong before it, by the estimate", &held);
+        }
+        self.estimated(session, &held)
+    }
+
+    /// `None` if no update is due.
+    fn between(&mut self, session: &Session, now: SessionTime, belief: &DirichletBelief) -> Option<Vec<EntityUpdate>> {
+        if !self.is_due(now) {
+            return None;
+        }
+        self.tick = Some(now.0 / EVERY_NS);
+        let kitchen = &session.kitchen;
+        let of_aspect = |aspect: usize| {
+            let believes = kitchen.aspects[aspect].wordings[belief.aspects[aspect].most_likely()].as_str();
+            Held { aspect, believes, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
+        };
+        let held: Vec<Held> = (0..kitchen.aspects.len()).map(of_aspect).collect();
+        Some(self.estimated(session, &held))
+    }
+
+    /// Entity updates of the estimate: curves of aspects that were false once, and lanes whose text has changed.
+    fn estimated(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
+        let kitchen = &session.kitchen;
+        let mut rows = Vec::new();
+        self.taken_for.resize(held.len(), String::new());
+        self.is_drawn.resize(held.len(), false);
+        for (one, (taken_for, is_drawn)) in held.iter().zip(self.taken_for.iter_mut().zip(&mut self.is_drawn)) {
+            let (name, is_false) = (&kitchen.aspects[one.aspect].name, one.p_truth < FALSE_BELOW);
+            *is_drawn |= is_false;
+            if *is_drawn {
+                rows.push(EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth)));
+            }
+            let now_taken_for = if is_false { taken_for_what(kitchen, session.state, one) } else { "" };
+            if now_taken_for != taken_for {
+                *taken_for = now_taken_for.to_string();
+                rows.push(EntityUpdate::new(wrong(name), EntityData::State(taken_for.clone())));
+            }
+        }
+        let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
+        let unsure: Vec<String> = unsure.map(|one| format!("{} {}", named(kitchen, one), percent(one))).collect();
+        self.estimate = believed(kitchen, session.state, "Believed wrong now, by the estimate", held);
+        if self.estimate.is_empty() {
+            self.estimate = "\nNothing is believed wrong now, by the estimate.\n".to_string();
+        }
+        if !unsure.is_empty() {
+            let below = KNOWN * 100.0;
+            self.estimate += &format!("\nRight, but with a P(truth) below {below:.0} %: {}.\n", unsure.join(", "));
+        }
+        rows
+    }
+
+    /// Entity updates from the recorded belief of a simulated participant before its press.
+    fn truly(&mut self, session: &Session, witness: &RecordedBelief) -> Vec<EntityUpdate> {
+        let kitchen = &session.kitchen;
+        let aspects = witness.aspects.iter().enumerate();
+        let held: Vec<Held> = aspects
+            .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
+            .collect();
+        self.own = believed(kitchen, session.state, "Believed wrong before it, by the simulated participant", &held);
+        let is_false = |one: &&Held| one.p_truth < FALSE_BELOW;
+        let row = |one: &Held| {
+            EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth))
+        };
+        held.iter().filter(is_false).map(row).collect()
+    }
+
+    fn page(&self) -> String {
+        let told = |what: &str, text: &str| match text {
+            "" => String::new(),
+            text => format!("\n**{what}**: {text}\n"),
+        };
+        let signal = told("Signal on the display", &self.signal);
+        format!("{}{signal}{}{}", self.press, told("Assistant", &self.advice), self.estimate)
+    }
+}
+
+/// False beliefs in Markdown, the most certain first; empty without any. A list, since the viewer breaks lines in lists, not
+/// in tables.
+fn believed(kitchen: &Kitchen, state: State, title: &str, held: &[Held]) -> String {
+    let mut wrong: Vec<&Held> = held.iter().filter(|one| one.p_truth < FALSE_BELOW).collect();
+    wrong.sort_by(|a, b| a.p_truth.total_cmp(&b.p_truth));
+    let line = |one: &&Held| {
+        let (believes, truly) = (taken_for_what(kitchen, state, one), truth(kitchen, state, one.aspect));
+        format!("- **{}**: **{believes}**, truly {truly} (P(truth) {})\n", named(kitchen, one), percent(one))
+    };
+    let lines: String = wrong.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("\n{title}:\n\n{lines}") }
+}
+
+fn named(kitchen: &Kitchen, held: &Held) -> String {
+    wording::location(&kitchen.aspects[held.aspect].name)
+}
+
+fn percent(held: &Held) -> String {
+    format!("{:.0} %", 100.0 * held.p_truth)
+}
+
+/// The falsely believed value of a state aspect.
+fn taken_for_what<'a>(kitchen: &Kitchen, state: State, held: &Held<'a>) -> &'a str {
+    if held.believes == truth(kitchen, state, held.aspect) { "not sure" } else { held.believes }
+}
+
+fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> &str {
+    &kitchen.aspects[aspect].wordings[kitchen.true_value(state, AspectId(aspect as u8))]
+}

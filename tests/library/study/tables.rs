@@ -5,6 +5,7 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
+use tomcom_session::wall_display::DisplayEvent;
 use tomcom_study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use tomcom_study::column::{DataDictionaryRow, columns, dictionary};
 use tomcom_study::files::export::AnalysisFolder;

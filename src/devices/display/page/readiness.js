@@ -16,7 +16,7 @@ const Readiness = (() => {
   }
 
   function draw() {
-    if (!made || !made.isConnected) return;
+    if (!made) return;
     const [wide, high] = [window.innerWidth, window.innerHeight].map((length) => Math.round(length * devicePixelRatio));
     // Who holds an upright screen in the hand reads it from nearby.
     const isSmall = wide >= high && (wide < SMALL_PX[0] || high < SMALL_PX[1]);
@@ -39,7 +39,7 @@ const Readiness = (() => {
   function build(page, element) {
     words = page;
     made = element("p", "readiness");
-    queueMicrotask(draw);
+    draw();
     return made;
   }
 
